@@ -1,6 +1,8 @@
 // The schemas in docs/schemas follow from the fields of types. GLINT_UPDATE_DOCUMENTS=1 in the environment
 // writes them instead of comparing them.
 #include "base/fields.h"
+#include "cli/render/report.h"
+#include "emit/package/manifest.h"
 #include "inspect/pipelines.h"
 #include "measure/report_json.h"
 #include "resolve/profile.h"
@@ -34,9 +36,10 @@ Part fileOf(const char* file, const char* title, const Json& schema) {
 Part outputOf(const char* file, const char* title, Json schema) {
     schema["required"].push_back("diagnostics");
     schema["properties"]["diagnostics"] = {{"$ref", "common.json#/definitions/diagnostics"}};
-    return fileOf(file, title,
-                  {{"anyOf", {{{"$ref", "common.json#/definitions/failure"}}, {{"$ref", "#/definitions/result"}}}},
-                   {"definitions", {{"result", std::move(schema)}}}});
+    return fileOf(
+        file, title,
+        {{"anyOf", {{{"$ref", "common.json#/definitions/failure"}}, {{"$ref", "#/definitions/result"}}}},
+         {"definitions", {{"result", std::move(schema)}}}});
 }
 
 std::vector<Part> parts() {
@@ -47,8 +50,11 @@ std::vector<Part> parts() {
         outputOf("calibration",
                  "glint bench --calibrate --json; calibration.json is the same without diagnostics",
                  schemaOf<measure::CalibrationReport>()),
+        outputOf("render", "glint render --json; --stats writes the same without diagnostics",
+                 schemaOf<cli::RenderReport>()),
         fileOf("device", "The device file of glint bench --calibrate", schemaOf<measure::DeviceFile>()),
         fileOf("gpu", "A table of --gpu", schemaOf<compiler::GpuCosts>()),
+        fileOf("manifest", "manifest.json of a package", schemaOf<compiler::Manifest>()),
         fileOf("profile", "The file of glint render --profile", schemaOf<compiler::Profile>()),
         {"common", "/definitions/pipelineReport", schemaOf<inspect::PipelineReport>()},
     };

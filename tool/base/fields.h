@@ -7,7 +7,7 @@
 //     }
 //
 // A field is a number, a text, a flag, a value with names (glint/names.h), Json, another described type, or
-// an optional, a list, a map by text or a variant of these.
+// an optional, a list, a map or list of pairs by text or a variant of these.
 #pragma once
 
 #include "base/fields_fwd.h"
@@ -93,7 +93,7 @@ concept List = !Text<T> && requires(const T& list) {
 };
 template <typename T>
 concept Map = List<T> && requires {
-    typename T::mapped_type;
+    requires Text<typename T::value_type::first_type>;
 };
 template <typename T>
 concept Nullable = !Text<T> && requires(const T& value) {
@@ -155,10 +155,11 @@ void read(V& value, JsonReader& reader, const Json& json, const std::string& pla
             read(value.emplace(), reader, json, place, traits);
         }
     } else if constexpr (Map<V>) {
-        reader.eachMember(json, place,
-                          [&](const std::string& name, const Json& one, const std::string& there) {
-                              read(value[name], reader, one, there, traits);
-                          });
+        reader.eachMember(
+            json, place, [&](const std::string& name, const Json& one, const std::string& there) {
+                using Element = typename V::value_type;
+                read(value.insert(value.end(), Element(name, {}))->second, reader, one, there, traits);
+            });
     } else {
         reader.each(json, place, [&](const Json& one, const std::string& there) {
             if (traits.mostElements > 0 && value.size() == traits.mostElements) {
@@ -197,7 +198,8 @@ Json schema(const FieldTraits& traits) {
     } else if constexpr (Nullable<V>) {
         return schemaOrNull(schema<std::remove_cvref_t<decltype(*std::declval<V&>())>>(traits));
     } else if constexpr (Map<V>) {
-        return {{"type", "object"}, {"additionalProperties", schema<typename V::mapped_type>(traits)}};
+        return {{"type", "object"},
+                {"additionalProperties", schema<typename V::value_type::second_type>(traits)}};
     } else {
         return schemaOfList(schema<std::remove_cvref_t<decltype(*std::declval<const V&>().begin())>>(traits),
                             traits);

@@ -1,12 +1,14 @@
 // The bytes that the passes of a frame move, as JSON and as tables.
 #pragma once
 
-#include "base/json.h"
+#include "base/fields.h"
 
 #include <glint/frame_traffic.h>
 #include <glint/package.h>
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace glint::cli {
 
@@ -15,13 +17,18 @@ struct TrafficReport {
     TrafficShape shape;
     TrafficCounts counts;
 };
-base::Json toJson(const TrafficReport& report);
+base::Fields fieldsOf(const TrafficReport*);
 std::string toText(const TrafficReport& report);
 // "X bytes a pixel moved".
 std::string summaryOf(const TrafficReport& report);
 
+struct StrategyTraffic {
+    std::string_view strategy;
+    std::vector<TrafficRow> passes;
+};
+base::Fields fieldsOf(const StrategyTraffic*);
 // The bytes that frames of a package move for each pixel, ray and hit, by strategy.
-base::Json trafficToJson(const Package& package);
+std::vector<StrategyTraffic> trafficOf(const Package& package);
 std::string trafficTable(const Package& package);
 
 }  // namespace glint::cli

@@ -405,8 +405,7 @@ base::Fields fieldsOf(const PipelineStatistics*) {
     using T = PipelineStatistics;
     return {output<&T::name>("name", "The role of its module, and its case, effect or ordering."),
             output<&T::creationMs>("creationMs", "Time by the driver's clock; null if it does not say."),
-            output<&T::cacheHit>("cacheHit",
-                                 "Whether the driver found it in the cache; null if it does not say."),
+            output<&T::cacheHit>("cacheHit", "Whether it was cached; null if the driver does not say."),
             output<&T::executables>("executables", "The parts of its code on the device.")};
 }
 
@@ -472,8 +471,7 @@ static base::Fields fieldsOf(const ReportedPipeline*) {
         field<&T::tracer>("tracer", "Its tracer; null if it traces nothing.", {.orNull = true}),
         field<&T::strategies>("strategies", "Strategies that it is made for."),
         field<&T::modules>("modules", "The modules that it was made for, which have the same code."),
-        field<&T::subgroupSize>("subgroupSize",
-                                "The largest subgroup of its code; 0 if the driver does not say.",
+        field<&T::subgroupSize>("subgroupSize", "The largest of its code; 0 if the driver does not say.",
                                 {.most = kMaxSubgroup}),
         output<&T::creationMs>("creationMs", "Time by the driver's clock; null if it does not say."),
         field<&T::failure>("failure", "Why the driver did not make it; null if it did.", {.orNull = true}),
@@ -496,8 +494,7 @@ static base::Fields fieldsOf(const ModuleCost*) {
             field<&T::modules>("modules", "Number of pipelines.", {.most = inspect::kMaxShaderId}),
             field<&T::cost>("cost", "Average of the estimated cycles; 0 if the driver does not report them.",
                             any),
-            field<&T::weight>("weight",
-                              "Average of the SPIR-V instructions, 20 for each that reads a texture.", any),
+            field<&T::weight>("weight", "Average of the SPIR-V instructions, 20 for a fetch.", any),
             field<&T::occupancy>("occupancy", "Average occupancy; 0 if the driver does not report it.",
                                  {.least = 0, .most = 1}),
             field<&T::leastOccupancy>("leastOccupancy", "The least occupancy.",

@@ -141,9 +141,7 @@ namespace {
 Fields fieldsOf(const MeasuredTimes*) {
     using T = MeasuredTimes;
     return {field<&T::interval>("", ""),
-            output<&T::values>("values",
-                               "The measured times, one for each round; for the default of a bench, "
-                               "those of all batches.")};
+            output<&T::values>("values", "One time for each round; for a bench's default, of all batches.")};
 }
 
 Fields fieldsOf(const SkippedStrategy*) {
@@ -169,8 +167,7 @@ static Fields fieldsOf(const PictureDifference*) {
         output<&T::largest>("largest", "Largest |a - b| / max(1, |b|) over all channels."),
         field<&T::differing>("differing", "Number of pixels that differ by more than 0.001 by that measure."),
         field<&T::pixels>("pixels", "Number of all pixels."),
-        output<&T::isWrong>("wrong",
-                            "Whether more than 1 in 1000 pixels differ; its times then don't count.")};
+        output<&T::isWrong>("wrong", "Whether over 1 in 1000 pixels differ; its times don't count then.")};
 }
 
 static Fields fieldsOf(const StrategyMeasure*) {
@@ -192,9 +189,7 @@ static Fields fieldsOf(const StrategyMeasure*) {
             [](T& it, const Interval& ratio) { it.ratios = {ratio.median}; }),
         output<&T::split>("split", "Means over all rounds, milliseconds a sample."),
         output<&T::pipelineMs>("pipelineMs", "Wall-clock time of making the pipelines."),
-        output<&T::firstMs>("firstMs",
-                            "Wall-clock time of the first sample and of reading it back; drivers "
-                            "may compile in it."),
+        output<&T::firstMs>("firstMs", "Wall-clock time of the first sample; drivers may compile in it."),
         output<&T::bytes>("bytes", "Size of the renderer's buffers and images."),
         field<&T::difference>("difference", "Difference of the picture from that of uber.")};
 }
@@ -223,7 +218,8 @@ std::vector<StrategyOutcome> outcomesOf(const CalibrationEntry& entry) {
 }
 
 base::Field strategiesField() {
-    base::Field field = output<outcomesOf>("strategies", "The strategies that the device can run, uber first.");
+    base::Field field =
+        output<outcomesOf>("strategies", "The strategies that the device can run, uber first.");
     field.read = [](void* object, base::JsonReader& reader, const base::Json& json, const std::string& place,
                     const base::FieldTraits&) {
         reader.each(json, place, [&](const base::Json& outcome, const std::string& there) {
@@ -242,45 +238,37 @@ Fields fieldsOf(const CalibrationEntry*) {
     using T = CalibrationEntry;
     using Point = CalibrationPoint;
     constexpr double kMaxCases = 1U << 20U;
-    return {
-        field<&T::point, &Point::cases>("cases", "Number of shaders of the scene's hits, one for each key.",
-                                        {.most = kMaxCases}),
-        field<&T::point, &Point::cost>("cost", "What shading a hit costs: cheap or expensive."),
-        field<&T::point, &Point::coherence>("coherence",
-                                            "`coherent` means rays of a mirror; `incoherent` means "
-                                            "rays of a white floor by the cosine."),
-        output<&T::shares>("shares", "How the ceiling is divided among the cases: uniform or zipf."),
-        output<&T::lights>("lights", "Number of point lights that shade each hit."),
-        output<&T::shadows>("shadows", "Whether hits send shadow rays to them."),
-        output<&T::width>("width", "Width of the picture in pixels."),
-        output<&T::height>("height", "Height of the picture in pixels."),
-        field(
-            "rays",
-            "Rays of the list in one sample: one for each pixel except those that would bring no light.",
-            [](const T& it) { return static_cast<std::uint64_t>(it.point.rays); },
-            [](T& it, std::uint64_t rays) { it.point.rays = static_cast<double>(rays); }),
-        output<&T::hits>("hits", "Number of rays of the list that hit something."),
-        field<&T::point, &Point::hitShare>("hitShare", "Share of the rays that hit something.",
-                                           {.least = 0, .most = 1}),
-        field<&T::point, &Point::coherentShare>(
-            "coherentShare",
-            "How alike neighbours are: (a - r) / (1 - r), where a is the chance that two hits of 32 rays in "
-            "a "
-            "row, 8 x 4 pixels, are of one case, and r that of any two hits. 0: as in random order; 1: all "
-            "alike. Computed from the geometry.",
-            {.least = -1, .most = 1}),
-        output<&T::filledCases>("filledCases", "Number of cases that have a hit."),
-        output("instructions",
-               "Average number of SPIR-V instructions over all hits, in the shader of their case.",
-               [](const T& it) { return meanOf(it.point.work, &CaseWork::instructions); }),
-        output("fetches", "Texture fetches of the same shader.",
-               [](const T& it) { return meanOf(it.point.work, &CaseWork::fetches); }),
-        field<&T::point, &Point::work>("work", "The cost of each shader, by shader ID."),
-        output<&T::samples>("samples", "Number of samples of which each time is the mean."),
-        strategiesField(),
-        output<&T::fastest>("fastest",
-                            "The strategies whose intervals of the ratio overlap with the least one: "
-                            "several are a tie.")};
+    return {field<&T::point, &Point::cases>(
+                "cases", "Number of shaders of the scene's hits, one for each key.", {.most = kMaxCases}),
+            field<&T::point, &Point::cost>("cost", "What shading a hit costs: cheap or expensive."),
+            field<&T::point, &Point::coherence>(
+                "coherence", "Rays of a mirror (coherent), or of a white floor (incoherent)."),
+            output<&T::shares>("shares", "How the ceiling is divided among the cases: uniform or zipf."),
+            output<&T::lights>("lights", "Number of point lights that shade each hit."),
+            output<&T::shadows>("shadows", "Whether hits send shadow rays to them."),
+            output<&T::width>("width", "Width of the picture in pixels."),
+            output<&T::height>("height", "Height of the picture in pixels."),
+            field(
+                "rays", "Rays of the list in one sample: those that may bring light.",
+                [](const T& it) { return static_cast<std::uint64_t>(it.point.rays); },
+                [](T& it, std::uint64_t rays) { it.point.rays = static_cast<double>(rays); }),
+            output<&T::hits>("hits", "Number of rays of the list that hit something."),
+            field<&T::point, &Point::hitShare>("hitShare", "Share of the rays that hit something.",
+                                               {.least = 0, .most = 1}),
+            field<&T::point, &Point::coherentShare>(
+                "coherentShare",
+                "(a - r) / (1 - r): a is the chance that two hits of 32 neighbouring rays are of one case, r "
+                "that of any two. 0: as in random order; 1: all alike. Computed from the geometry.",
+                {.least = -1, .most = 1}),
+            output<&T::filledCases>("filledCases", "Number of cases that have a hit."),
+            output("instructions", "Mean of the SPIR-V instructions over all hits.",
+                   [](const T& it) { return meanOf(it.point.work, &CaseWork::instructions); }),
+            output("fetches", "Texture fetches of the same shader.",
+                   [](const T& it) { return meanOf(it.point.work, &CaseWork::fetches); }),
+            field<&T::point, &Point::work>("work", "The cost of each shader, by shader ID."),
+            output<&T::samples>("samples", "Number of samples of which each time is the mean."),
+            strategiesField(),
+            output<&T::fastest>("fastest", "The strategies with the least ratio; several are a tie.")};
 }
 
 namespace {
@@ -312,17 +300,13 @@ Fields fieldsOf(const CalibrationReport*) {
     return withHead<T>(
         "glint-calibration",
         {field<&T::machine>("machine", "Where the calibration ran."),
-         group("method", "How the calibration measured.",
-               {output<&T::rounds>("rounds",
-                                   "Number of rounds; in each, every strategy is timed once, in random "
-                                   "order."),
-                output<&T::seed>("seed",
-                                 "Seed of the order; round r renders with the random numbers seed + r."),
-                confidenceField<T>(), output<&T::quick>("quick", "Whether --quick was given."),
-                output<&T::compileSeconds>("compileSeconds",
-                                           "Wall-clock time of compiling all packages, before "
-                                           "anything is measured."),
-                output<&T::seconds>("seconds", "Wall-clock time in seconds of everything so far.")}),
+         group(
+             "method", "How the calibration measured.",
+             {output<&T::rounds>("rounds", "Rounds; in each, every strategy is timed once, in random order."),
+              output<&T::seed>("seed", "Seed of the order; round r renders with seed + r."),
+              confidenceField<T>(), output<&T::quick>("quick", "Whether --quick was given."),
+              output<&T::compileSeconds>("compileSeconds", "Wall-clock time of compiling all packages."),
+              output<&T::seconds>("seconds", "Wall-clock time in seconds of everything so far.")}),
          output<&T::complete>("complete", "False if the run was cut short before the last point."),
          field<&T::entries>("points", "The points, in the order in which they were measured.")});
 }
@@ -337,13 +321,9 @@ static Fields fieldsOf(const MeanInterval*) {
 static Fields fieldsOf(const RemovedError*) {
     using T = RemovedError;
     return {output<&T::point>("point", "Id of the configuration."),
-            output<&T::all>("removed",
-                            "Share of the default's error that goes, from rounds with the same seed; "
-                            "below 0 the error grows."),
-            output<&T::bias>("bias",
-                             "Share of the default's error that goes and that no number of samples takes "
-                             "away; below 0 it grows."),
-            output<&T::noise>("noise", "Share that goes and that samples take away, too; below 0 it grows.")};
+            output<&T::all>("removed", "Share of the default's error that goes; below 0 it grows."),
+            output<&T::bias>("bias", "The part of it that no number of samples takes away."),
+            output<&T::noise>("noise", "The part of it that samples take away, too.")};
 }
 
 static Fields fieldsOf(const ErrorPart*) {
@@ -358,9 +338,7 @@ static Fields fieldsOf(const ErrorParts*) {
     return {output<&T::parts>("parts", "The approximations, the most bias first."),
             output<&T::exact>("exact", "All exact values together; null where that was not measured."),
             output<&T::noise>("noise", "Share that any number of samples would take away; 0 with one round."),
-            output<&T::rest>("rest",
-                             "Share of bias that is in no part. Above 0 it is what only several exact "
-                             "values take away together; below 0 the parts overlap.")};
+            output<&T::rest>("rest", "Share of bias that is in no part; below 0 the parts overlap.")};
 }
 
 static Fields fieldsOf(const SkippedValue*) {
@@ -392,8 +370,7 @@ static Fields fieldsOf(const BenchScene*) {
     return {output<&T::file>("file", "Path as given on the command line."),
             output("name", "Name of the file.",
                    [](const T& scene) { return std::filesystem::path(scene.file).stem().string(); }),
-            output("sceneInFile",
-                   "Which of the file's scenes was read (--scene); null if the file has no scenes.",
+            output("sceneInFile", "The scene that was read (--scene); null if there are none.",
                    [](const T& scene) { return orNone(scene.inFile); }),
             output<&T::triangles>("triangles", "Number of triangles of all instances."),
             output<&T::materials>("materials", "Number of materials."),
@@ -428,15 +405,11 @@ static Fields fieldsOf(const BenchPoint*) {
     using Errors = image::ImageErrors;
     return {
         output<errorInterval<&Errors::relMse>>("relMse",
-                                               "Mean of d² / (r² + 0.01) over red, green and blue of "
-                                               "all pixels; exposed, in linear light."),
+                                               "Mean of d² / (r² + 0.01), exposed, in linear light."),
         output<errorInterval<&Errors::rmse>>("rmse", "Root of the mean of d²."),
-        output<errorInterval<&Errors::psnr>>("psnr",
-                                             "Peak signal-to-noise ratio in decibels, relative to "
-                                             "white; null where it is infinite."),
+        output<errorInterval<&Errors::psnr>>("psnr", "In decibels, relative to white; null if infinite."),
         output<errorInterval<&Errors::p999>>("p999", "99.9th percentile of the relative error of a pixel."),
-        output<errorInterval<&Errors::trimmed>>("trimmed",
-                                                "relMse without the 0.1 % of pixels that are worst."),
+        output<errorInterval<&Errors::trimmed>>("trimmed", "relMse without the worst 0.1 % of the pixels."),
         output<errorInterval<&Errors::flip>>("flip", "Mean LDR-FLIP of the displayed pictures."),
         output("bias", "Mean of d over mean of r: light that is added or lost.",
                [](const T& point) { return meanOf(valuesOf(point, &Errors::bias)); })};
@@ -462,12 +435,10 @@ Fields fieldsOf(const PointOf*) {
                {.names = {"default", "single", "pair", "search", "package", "exact", "filtered"}}),
         output("settings", "The settings that differ from the default, as on the command line.",
                [](const T& it) { return inOrder(it.point().configuration); }),
-        output<&T::point, &Point::package>(
-            "package", "Folder that --candidate named; null for other configurations.", {.orNull = true}),
+        output<&T::point, &Point::package>("package", "Folder that --candidate named; null for others.",
+                                           {.orNull = true}),
         output<&T::point, &Point::filteredFrames>(
-            "filteredFrames",
-            "Frames that the filter of --only denoise has seen, with the picture; 0 for "
-            "configurations without the filter."),
+            "filteredFrames", "Frames that the filter of --only denoise has seen; 0 without it."),
         output("command", "The command that renders it.",
                [](const T& it) { return renderCommand(*it.report, it.point()); }),
         output("time",
@@ -485,19 +456,16 @@ Fields fieldsOf(const PointOf*) {
                "Whether the interval of the error's ratio to that of the default, seed by seed, contains 1.",
                [](const T& it) { return isErrorTie(it.point()); }),
         output<&T::point, &Point::sameImage>("sameImage",
-                                             "Whether every picture equals that of the default, bit by bit."),
+                                             "Whether every picture is bit-exact with the default's."),
         output("front", "Whether it is on the Pareto front.",
                [](const T& it) { return std::ranges::count(it.report->front, it.index) > 0; }),
         output<&T::point, &Point::tracer>("tracer", "Tracer that ran."),
-        output<&T::point, &Point::ordering>(
-            "ordering", "The ordering that ran; null where hits are not sorted.", {.orNull = true}),
-        output<&T::point, &Point::counters, &FrameCounters::rays>(
-            "rays", "Number of rays of effects in the last sample."),
+        output<&T::point, &Point::ordering>("ordering", "The ordering; null without one.", {.orNull = true}),
+        output<&T::point, &Point::counters, &FrameCounters::rays>("rays",
+                                                                  "Rays of effects in the last sample."),
         output<&T::point, &Point::cases>("cases", "Number of shaders of hits."),
-        output<&T::point, &Point::footprint, &Renderer::Footprint::pipelines>(
-            "pipelines", "Number of pipelines of the renderer."),
-        output<&T::point, &Point::footprint, &Renderer::Footprint::bytes>(
-            "bytes", "Size of the renderer's images and buffers."),
+        output<&T::point, &Point::footprint, &Renderer::Footprint::pipelines>("pipelines", "Its pipelines."),
+        output<&T::point, &Point::footprint, &Renderer::Footprint::bytes>("bytes", "Its images and buffers."),
         output("image", "File of the picture of the first round, relative to the folder.",
                [](const T& it) { return imageName(it.index); }),
         output("errorImage", "File of the map that shows how far the picture is from the reference.",
@@ -512,15 +480,11 @@ Fields fieldsOf(const RowOf*) {
         output<&T::row, &Row::point>("point", "Id of the configuration."),
         output("time", "Time of a picture.", [](const T& it) { return timeOf(*it.report, it.row->point); }),
         output<&T::row, &Row::ratio>("ratio", "Ratio of this time to that of the default."),
-        output<&T::row, &Row::hits>("hits",
-                                    "Milliseconds of a picture: the passes that strategies differ in, from "
-                                    "the list of rays to their shaded hits."),
-        output<&T::row, &Row::hitRatio>("hitRatio",
-                                        "Ratio of these passes to the default's in the same round."),
+        output<&T::row, &Row::hits>("hits", "Milliseconds of the passes that strategies differ in."),
+        output<&T::row, &Row::hitRatio>("hitRatio", "Their ratio to the default's in the same round."),
         output<&T::row, &Row::traceMs>("traceMs", "Time of tracing, if a separate pass traces hits."),
         output<&T::row, &Row::orderMs>("orderMs", "Time of sorting hits: the passes count, offset and copy."),
-        output<&T::row, &Row::shadeMs>("shadeMs",
-                                       "Time of shading hits; for uber and hit-shaders it includes tracing."),
+        output<&T::row, &Row::shadeMs>("shadeMs", "Time of shading; for uber and hit-shaders with tracing."),
         output<&T::row, &Row::commonMs>("commonMs", "Time of the work that every strategy does alike."),
         output<&T::row, &Row::rays>("rays", "Number of rays of the last sample.")};
 }
@@ -532,8 +496,8 @@ Fields fieldsOf(const AdviceOf*) {
         output<&T::advice, &Advice::budgetMs>("budgetMs", "The limit of --budget-ms."),
         output<&T::advice, &Advice::maxError>("maxError", "The limit of --max-error."),
         output("metric", "Metric of the error.", [](const T& it) { return nameOf(it.report->metric); }),
-        output<&T::advice, &Advice::point>(
-            "point", "Id of the recommended configuration; null if none is certainly within the limits."),
+        output<&T::advice, &Advice::point>("point",
+                                           "Id of the configuration; null if none is within the limits."),
         output("file", "File with its settings, for `--settings`.",
                [](const T& it) { return it.advice->point ? std::optional(it.advice->file) : std::nullopt; }),
         output("compile", "Options with which its package is compiled; absent without a configuration.",
@@ -578,9 +542,7 @@ Fields fieldsOf(const BenchReport*) {
               output<&T::seed>("seed", "Seed of the first round and of the order."), confidenceField<T>(),
               output<&T::quick>("quick", "Whether --quick was given."),
               output<&T::batch>("batch", "Configurations at a time, besides the default."),
-              output<pictureScale>("pictureScale",
-                                   "The page has pictures that are smaller by this in width and "
-                                   "height."),
+              output<pictureScale>("pictureScale", "How much smaller the page's pictures are."),
               output<&T::seconds>("seconds", "Wall-clock time in seconds."),
               output("metric", "The error that configurations are ordered by.",
                      [](const T& report) { return nameOf(report.metric); })}),
@@ -597,31 +559,18 @@ Fields fieldsOf(const BenchReport*) {
          output<&T::settings>("settings", "All settings, or those of --only."),
          output<pointsOf>("points", "The configurations that were measured; the default comes first.",
                           {.leastElements = 1}),
-         output<&T::front>("front",
-                           "Ids of the configurations on the Pareto front of error against time, starting "
-                           "with the fastest."),
+         output<&T::front>("front", "Ids on the Pareto front of error against time, the fastest first."),
          output<adviceOf>("advice", "Advice for --budget-ms and --max-error; null if none was asked for."),
-         output<&T::errorParts>("errorParts",
-                                "Which part of the default's error is which approximation, as shares "
-                                "of that error: of its square for rmse."),
+         output<&T::errorParts>("errorParts", "Which share of the default's error is which approximation."),
          group(
              "strategies", "Which strategy is fastest, and why. Milliseconds are medians.",
-             {output<&T::strategies, &Strategies::fastest>("fastest",
-                                                           "The fastest strategies; several are a tie."),
+             {output<&T::strategies, &Strategies::fastest>("fastest", "The fastest; several are a tie."),
               output<rowsOf>("rows", "The strategies that were measured, with the default's other settings."),
-              output<&T::strategies, &Strategies::cases>("cases",
-                                                         "Number of shaders of hits; 0 if no strategy that "
-                                                         "counts hits was measured."),
-              output<&T::strategies, &Strategies::filledCases>("filledCases",
-                                                               "Number of these shaders that have a hit."),
-              output<&T::strategies, &Strategies::largestShare>(
-                  "largestShare",
-                  "The largest share of the hits that one shader "
-                  "has."),
-              output<&T::strategies, &Strategies::casesInWave>(
-                  "casesInWave",
-                  "Average number of different shaders among 32 hits "
-                  "in random order."),
+              output<&T::strategies, &Strategies::cases>("cases", "Shaders of hits; 0 if none was counted."),
+              output<&T::strategies, &Strategies::filledCases>("filledCases", "Those that have a hit."),
+              output<&T::strategies, &Strategies::largestShare>("largestShare", "The most that one has."),
+              output<&T::strategies, &Strategies::casesInWave>("casesInWave",
+                                                               "Different ones among 32 hits."),
               output<&T::strategies, &Strategies::why>("why", "Sentences that explain the choice.")})});
 }
 

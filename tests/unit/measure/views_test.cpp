@@ -1,4 +1,5 @@
 // Views of values that are given: statistics, colours, legends.
+#include "base/fields.h"
 #include "image/palette.h"
 
 #include <glint/measure/views.h>
@@ -81,7 +82,7 @@ TEST(ViewStatisticsOf, NumbersAreThoseOfOneSample) {
     for (const std::uint64_t pixels : statistics.histogram) {
         EXPECT_EQ(pixels, 2U);
     }
-    const auto json = toJson(raysView());
+    const auto json = base::jsonOf(raysView());
     EXPECT_EQ(json["name"], "rays");
     EXPECT_EQ(json["greatest"], 31.0);
     EXPECT_EQ(json["histogram"]["pixels"].size(), 16U);

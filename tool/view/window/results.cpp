@@ -1,6 +1,6 @@
 // The window's measurements and files: exposure, differences, screenshots and reports.
+#include "base/fields.h"
 #include "base/files.h"
-#include "base/json.h"
 #include "base/text.h"
 #include "image/compare.h"
 #include "image/flip.h"
@@ -193,7 +193,7 @@ Status Window::writeReport(const std::string& file) {
         {"passes", passes},
         {"look", look_.name()},
         {"looks", looks},
-        {"view", view_ ? measure::toJson(*view_) : base::Json(nullptr)},
+        {"view", base::jsonOf(view_)},
         {"lookNote", lookNote_},
         {"pick", picked},
         {"error", error_ ? base::Json(toString(*error_)) : base::Json(nullptr)},

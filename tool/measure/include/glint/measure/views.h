@@ -6,14 +6,13 @@
 // layers.
 #pragma once
 
+#include "base/fields_fwd.h"
 #include "image/text.h"
 #include "materials/material_model.h"
 
 #include <glint/package.h>
 #include <glint/renderer.h>
 #include <glint/result.h>
-
-#include <nlohmann/json_fwd.hpp>
 
 #include <array>
 #include <cstdint>
@@ -151,7 +150,7 @@ image::DisplayImage makeLegend(const View& view, std::uint32_t width);
 // Returns the picture with the legend below it.
 image::DisplayImage withLegend(const View& view);
 
-// Returns the member "view" of render --stats.
-nlohmann::ordered_json toJson(const View& view);
+// The fields of the member "view" of render --stats.
+base::Fields fieldsOf(const View*);
 
 }  // namespace glint::measure
