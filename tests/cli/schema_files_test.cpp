@@ -7,6 +7,8 @@
 #include "measure/report_json.h"
 #include "resolve/profile.h"
 
+#include <glint/measure/device_file.h>
+
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -79,6 +79,16 @@ Json schemaOfList(Json elements, const FieldTraits& traits);
 Json schemaOrNull(Json schema);
 Json schemaOfAny(std::vector<Json> schemas);
 
+// Returns the names of all values of an enumeration.
+template <HasNames V>
+std::vector<std::string_view> wordsFor() {
+    std::vector<std::string_view> words;
+    for (const Named<V>& one : namesOf(V{})) {
+        words.push_back(one.name);
+    }
+    return words;
+}
+
 namespace detail {
 
 template <typename T>
@@ -184,11 +194,7 @@ Json schema(const FieldTraits& traits) {
             return schemaOfAny({schema<Parts>({})...});
         }(static_cast<const V*>(nullptr));
     } else if constexpr (HasNames<V>) {
-        FieldTraits named;
-        for (const auto& one : namesOf(V{})) {
-            named.names.push_back(one.name);
-        }
-        return schemaOfText(named);
+        return schemaOfText({.names = wordsFor<V>()});
     } else if constexpr (Text<V>) {
         return schemaOfText(traits);
     } else if constexpr (std::same_as<V, bool>) {

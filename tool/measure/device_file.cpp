@@ -28,7 +28,7 @@ std::string memberOf(const compiler::CostTermInfo& info) {
 // A strategy with its constants by name, and how well they fit.
 struct FittedStrategy {
     std::string strategy;
-    nlohmann::ordered_map<std::string, double> constants;
+    std::vector<std::pair<std::string, double>> constants;
     std::optional<StrategyQuality> fit;
 };
 
@@ -39,7 +39,8 @@ std::vector<FittedStrategy> strategiesOf(const DeviceFile& file) {
         entry.strategy = costs.strategy;
         for (const compiler::CostTermInfo& info : compiler::costTerms()) {
             if (hasTerm(costs.strategy, info.term)) {
-                entry.constants[memberOf(info)] = costs.constants[static_cast<std::size_t>(info.term)];
+                entry.constants.emplace_back(memberOf(info),
+                                             costs.constants[static_cast<std::size_t>(info.term)]);
             }
         }
         for (const StrategyQuality& quality : file.quality.strategies) {
@@ -62,7 +63,8 @@ void setStrategies(DeviceFile& file, std::vector<FittedStrategy> list, base::Jso
         compiler::StrategyCosts& costs = file.costs.strategies.emplace_back();
         costs.strategy = entry.strategy;
         for (const compiler::CostTermInfo& info : compiler::costTerms()) {
-            const auto constant = entry.constants.find(memberOf(info));
+            const auto constant =
+                std::ranges::find(entry.constants, memberOf(info), &std::pair<std::string, double>::first);
             if (hasTerm(entry.strategy, info.term) && constant == entry.constants.end()) {
                 reader.fail(there + "/constants", fmt::format("has no member \"{}\"", memberOf(info)));
             } else if (hasTerm(entry.strategy, info.term)) {
@@ -129,8 +131,10 @@ Fields fieldsOf(const DeviceFile*) {
                 {.names = {"cpu", "gpu"}}),
             field<&T::costs, &Costs::subgroupSize>("subgroupSize", "Lanes of a subgroup.",
                                                    {.least = 1, .most = 1024}),
-            field<&T::costs, &Costs::tracer>("tracer", "The tracer, except for hit-shaders."),
-            field<&T::costs, &Costs::shadows>("shadows", "Where shadow rays of hits were traced."),
+            field<&T::costs, &Costs::tracer>("tracer", "The tracer, except for hit-shaders.",
+                                             {.names = base::wordsFor<package::Tracer>()}),
+            field<&T::costs, &Costs::shadows>("shadows", "Where shadow rays of hits were traced.",
+                                              {.names = base::wordsFor<package::ShadowPlacement>()}),
             field<&T::costs, &Costs::source>("command", "The command that measured it."),
             field(
                 "strategies", "The strategies that could be measured.",

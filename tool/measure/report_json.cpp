@@ -25,14 +25,14 @@ using base::output;
 namespace {
 
 // Values in the order of the table of settings.
-using SettingValues = nlohmann::ordered_map<std::string, std::string>;
+using SettingValues = std::vector<std::pair<std::string, std::string>>;
 
 SettingValues inOrder(const compiler::Configuration& configuration) {
     SettingValues values;
     for (const std::string& name : compiler::settingNames()) {
         const auto value = configuration.find(name);
         if (value != configuration.end()) {
-            values[name] = value->second;
+            values.emplace_back(name, value->second);
         }
     }
     return values;
@@ -130,7 +130,8 @@ Fields fieldsOf(const BenchMachine*) {
         field<&T::deviceType>("deviceType", "Kind of the device.", {.names = {"cpu", "gpu"}}),
         field<&T::subgroupSize>("subgroupSize", "Lanes of a subgroup; left out where glint wrote the file.",
                                 {.least = 1, .most = 1024, .optional = true}),
-        field<&T::tracers>("tracers", "Tracers that the device has."),
+        field<&T::tracers>("tracers", "Tracers that the device has.",
+                           {.names = base::wordsFor<package::Tracer>()}),
         output<&T::processor>("cpu", "Processor of the host; empty where it is not known."),
         output<&T::cores>("cores", "Number of cores of the host."),
         output<&T::system>("os", "Operating system of the host.")};
@@ -175,7 +176,7 @@ static Fields fieldsOf(const StrategyMeasure*) {
     // A file has the median of the ratios, which is enough for a fit.
     return {
         field<&T::strategy>("strategy", "Name of the strategy.", {.names = compiler::strategyWords()}),
-        output<&T::tracer>("tracer", "The tracer."),
+        output<&T::tracer>("tracer", "The tracer.", {.names = base::wordsFor<package::Tracer>()}),
         output<&T::ordering>("ordering", "How hits are ordered; null where they are not.", {.orNull = true}),
         field(
             "time", "Milliseconds of device time, a sample, of the passes that strategies differ in.",
@@ -268,7 +269,8 @@ Fields fieldsOf(const CalibrationEntry*) {
             field<&T::point, &Point::work>("work", "The cost of each shader, by shader ID."),
             output<&T::samples>("samples", "Number of samples of which each time is the mean."),
             strategiesField(),
-            output<&T::fastest>("fastest", "The strategies with the least ratio; several are a tie.")};
+            output<&T::fastest>("fastest", "The strategies with the least ratio; several are a tie.",
+                                {.names = compiler::strategyWords()})};
 }
 
 namespace {
@@ -564,7 +566,8 @@ Fields fieldsOf(const BenchReport*) {
          output<&T::errorParts>("errorParts", "Which share of the default's error is which approximation."),
          group(
              "strategies", "Which strategy is fastest, and why. Milliseconds are medians.",
-             {output<&T::strategies, &Strategies::fastest>("fastest", "The fastest; several are a tie."),
+             {output<&T::strategies, &Strategies::fastest>("fastest", "The fastest; several are a tie.",
+                                                           {.names = compiler::strategyWords()}),
               output<rowsOf>("rows", "The strategies that were measured, with the default's other settings."),
               output<&T::strategies, &Strategies::cases>("cases", "Shaders of hits; 0 if none was counted."),
               output<&T::strategies, &Strategies::filledCases>("filledCases", "Those that have a hit."),

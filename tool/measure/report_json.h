@@ -1,9 +1,9 @@
-// The JSON of the bench and of calibrations (docs/schemas).
+// The JSON of the bench, of calibrations, devices and views (docs/schemas).
 #pragma once
 
 #include "base/fields.h"
 
-#include <glint/measure/calibration.h>
+#include <glint/measure/calibration_report.h>
 #include <glint/measure/report.h>
 
 namespace glint::measure {
@@ -15,6 +15,10 @@ base::Fields fieldsOf(const CalibrationEntry*);
 base::Fields fieldsOf(const CalibrationReport*);
 base::Fields fieldsOf(const BenchReport*);
 
-base::Fields fieldsOf(const DeviceFile*);  // in device_file.cpp
+// These stand in device_file.cpp and views/view.cpp.
+struct DeviceFile;
+base::Fields fieldsOf(const DeviceFile*);
+struct View;
+base::Fields fieldsOf(const View*);
 
 }  // namespace glint::measure

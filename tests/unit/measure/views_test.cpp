@@ -1,5 +1,5 @@
 // Views of values that are given: statistics, colours, legends.
-#include "base/fields.h"
+#include "measure/report_json.h"
 #include "image/palette.h"
 
 #include <glint/measure/views.h>

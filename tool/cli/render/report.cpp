@@ -3,6 +3,7 @@
 #include "cli/report.h"
 #include "cli/table.h"
 #include "emit/package/json.h"
+#include "measure/report_json.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -314,10 +315,11 @@ base::Fields fieldsOf(const RenderReport*) {
         output<&T::driver>("driver", "Name of its driver."),
         output<&T::strategy>("strategy", "How hits were shaded.", {.names = compiler::strategyWords()}),
         output<&T::strategyChoice>("strategyChoice", "How --strategy auto chose; null without it."),
-        output<&T::tracer>("tracer", "The tracer."),
+        output<&T::tracer>("tracer", "The tracer.", {.names = base::wordsFor<package::Tracer>()}),
         output<&T::ordering>("ordering", "How hits were ordered; null where the strategy orders none."),
         output<&T::merge>("merge", "Policy of the package that was compiled; null with --package."),
-        output<&T::alpha>("alpha", "What rays do with the alpha of what they hit."),
+        output<&T::alpha>("alpha", "What rays do with the alpha of what they hit.",
+                          {.names = base::wordsFor<package::AlphaPolicy>()}),
         output<&T::width>("width", "Width in pixels."),
         output<&T::height>("height", "Height in pixels."),
         output<&T::samples>("spp", "Samples of each pixel."),

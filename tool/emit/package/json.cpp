@@ -37,11 +37,11 @@ double fact(const StrategyAdvice& advice) {
     return rounded(advice.choice.facts.*Member);
 }
 
-nlohmann::ordered_map<std::string, double> partsOf(const StrategyEstimate& estimate) {
-    nlohmann::ordered_map<std::string, double> parts;
+std::vector<std::pair<std::string_view, double>> partsOf(const StrategyEstimate& estimate) {
+    std::vector<std::pair<std::string_view, double>> parts;
     for (const CostTermInfo& info : costTerms()) {
         if (hasTerm(estimate.strategy, info.term)) {
-            parts[std::string(info.name)] = rounded(estimate.parts[static_cast<std::size_t>(info.term)]);
+            parts.emplace_back(info.name, rounded(estimate.parts[static_cast<std::size_t>(info.term)]));
         }
     }
     return parts;
@@ -81,14 +81,16 @@ base::Fields fieldsOf(const StrategyAdvice*) {
         output<fact<&Facts::laterRays>>("laterRays", "Those of them that hits send, after the first bounce."),
         output<fact<&Facts::hits>>("hits", "Expected number of hits of these rays."),
         output<&T::choice, &Choice::facts, &Facts::cases>("cases", "Number of shaders."),
-        output<fact<&Facts::instructions>>("instructions",
-               "SPIR-V instructions that shading a hit takes on average, 20 for each texture fetch beside "
-               "its own."),
+        output<fact<&Facts::instructions>>(
+            "instructions",
+            "SPIR-V instructions that shading a hit takes on average, 20 for each texture fetch beside "
+            "its own."),
         output("coherence",
                "How alike the hits of neighbouring rays are expected to be: 0 as drawn at random, 1 all of "
                "one case.",
                [](const T& advice) { return roundedShare(advice.choice.facts.coherence); }),
-        output<fact<&Facts::casesRun>>("casesRun", "Cases that a subgroup of unsorted hits is expected to run one after another."),
+        output<fact<&Facts::casesRun>>(
+            "casesRun", "Cases that a subgroup of unsorted hits is expected to run one after another."),
         output<&T::choice, &Choice::estimates>("estimates", "Strategies whose constants are known.")};
 }
 

@@ -1,6 +1,6 @@
 // Makes views of a renderer's frames.
-#include "base/fields.h"
 #include "image/palette.h"
+#include "measure/report_json.h"
 #include "settings/layer_words.h"
 
 #include <glint/measure/views.h>

@@ -1,11 +1,11 @@
 // The window's measurements and files: exposure, differences, screenshots and reports.
-#include "base/fields.h"
 #include "base/files.h"
 #include "base/text.h"
 #include "image/compare.h"
 #include "image/flip.h"
 #include "image/image_file.h"
 #include "image/tone.h"
+#include "measure/report_json.h"
 #include "settings/table.h"
 #include "view/shot_command.h"
 #include "view/window/window.h"

@@ -6,7 +6,6 @@
 // layers.
 #pragma once
 
-#include "base/fields_fwd.h"
 #include "image/text.h"
 #include "materials/material_model.h"
 
@@ -149,8 +148,5 @@ View colorView(const ViewChoice& choice, const ViewInput& input,
 image::DisplayImage makeLegend(const View& view, std::uint32_t width);
 // Returns the picture with the legend below it.
 image::DisplayImage withLegend(const View& view);
-
-// The fields of the member "view" of render --stats.
-base::Fields fieldsOf(const View*);
 
 }  // namespace glint::measure
