@@ -100,10 +100,9 @@ TEST(PipelineTable, HasTheFacts) {
 
 TEST(PipelineJson, HasEveryStatisticWithItsType) {
     cli::PipelineReport report;
-    EXPECT_TRUE(statisticsToJson(report).is_null());
-    EXPECT_TRUE(cacheToJson(report).is_null());
+    EXPECT_TRUE(base::jsonOf(report.statistics).is_null());
     report.statistics = {sample()};
-    const base::Json json = statisticsToJson(report);
+    const base::Json json = base::jsonOf(report.statistics);
     ASSERT_EQ(json.size(), 1U);
     EXPECT_EQ(json[0].at("name"), "ShadeCase Glass");
     EXPECT_EQ(json[0].at("creationMs"), 1.5);
@@ -126,7 +125,7 @@ TEST(MemoryTable, SumsWhatItLists) {
                     {"constants", MemoryUse::Upload, false, 1, 24}};
     memory.scene = {{"textures", MemoryUse::Device, true, 3, 500},
                     {"poses on their way", MemoryUse::Upload, false, 1, 8}};
-    const base::Json json = toJson(memory);
+    const base::Json json = base::jsonOf(memory);
     EXPECT_EQ(json.at("frameBytes"), 1024);
     EXPECT_EQ(json.at("sceneBytes"), 508);
     EXPECT_EQ(json.at("bytes"), 1532);

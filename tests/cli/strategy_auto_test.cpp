@@ -180,7 +180,7 @@ TEST_F(StrategyAuto, ReportsOfDevicesFitTheirSchema) {
 
 TEST_F(StrategyAuto, BadDeviceFilesAreRefused) {
     const Json good = plantedDevice("uber");
-    expectRefused(Json::array(), "bad.json: error: is no device file");
+    expectRefused(Json::array(), "bad.json: error: is no JSON object");
     Json bad = good;
     bad["version"] = 2;
     expectRefused(bad, "bad.json#/version: error: is 2; this glint reads 1");

@@ -3,6 +3,10 @@
 #include "base/files.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
 
 namespace glint::base {
 
@@ -46,51 +50,64 @@ const Json* JsonReader::member(const Json& object, const std::string& pointer, c
     return &*found;
 }
 
-std::string JsonReader::text(const Json& object, const std::string& pointer, const char* name) {
-    const Json* value = member(object, pointer, name);
-    if (value != nullptr && !value->is_string()) {
-        fail(pointer + "/" + name, "is no string");
+std::string JsonReader::text(const Json& value, const std::string& place,
+                             std::span<const std::string_view> names) {
+    const std::string text = value.is_string() ? value.get<std::string>() : std::string();
+    if (!value.is_string()) {
+        fail(place, "is no string");
+    } else if (!names.empty() && std::ranges::find(names, text) == names.end()) {
+        fail(place, names.size() == 2 ? fmt::format("is neither \"{}\" nor \"{}\"", names[0], names[1])
+                                      : fmt::format("is none of {}", fmt::join(names, ", ")));
     }
-    return ok() ? value->get<std::string>() : std::string();
+    return ok() ? text : std::string();
 }
 
-bool JsonReader::flag(const Json& object, const std::string& pointer, const char* name) {
-    const Json* value = member(object, pointer, name);
-    if (value != nullptr && !value->is_boolean()) {
-        fail(pointer + "/" + name, "is neither true nor false");
+bool JsonReader::flag(const Json& value, const std::string& place) {
+    if (!value.is_boolean()) {
+        fail(place, "is neither true nor false");
     }
-    return ok() && value->get<bool>();
+    return ok() && value.get<bool>();
 }
 
-std::uint64_t JsonReader::count(const Json& object, const std::string& pointer, const char* name,
-                                std::uint64_t most) {
-    const Json* value = member(object, pointer, name);
-    if (value != nullptr && (!value->is_number_unsigned() || value->get<std::uint64_t>() > most)) {
-        fail(pointer + "/" + name, fmt::format("is no whole number from 0 to {}", most));
+std::uint64_t JsonReader::count(const Json& value, const std::string& place, std::uint64_t most) {
+    if (!value.is_number_unsigned() || value.get<std::uint64_t>() > most) {
+        fail(place, fmt::format("is no whole number from 0 to {}", most));
     }
-    return ok() ? value->get<std::uint64_t>() : 0;
+    return ok() ? value.get<std::uint64_t>() : 0;
 }
 
-double JsonReader::number(const Json& object, const std::string& pointer, const char* name, double least,
-                          double most) {
-    const Json* value = member(object, pointer, name);
-    if (value != nullptr &&
-        (!value->is_number() || value->get<double>() < least || value->get<double>() > most)) {
-        fail(pointer + "/" + name, fmt::format("is no number from {} to {}", least, most));
+double JsonReader::number(const Json& value, const std::string& place, std::optional<double> least,
+                          std::optional<double> most) {
+    const double number = value.is_number() ? value.get<double>() : std::nan("");
+    if (!(number >= least.value_or(number)) || !(number <= most.value_or(number))) {
+        fail(place, fmt::format("is no number{}{}", least ? fmt::format(" from {}", *least) : "",
+                                most ? fmt::format(" to {}", *most) : ""));
     }
-    return ok() ? value->get<double>() : 0.0;
+    return ok() ? number : 0.0;
 }
 
-std::vector<std::string> JsonReader::texts(const Json& object, const std::string& pointer, const char* name) {
-    std::vector<std::string> list;
-    each(object, pointer, name, [&](const Json& element, const std::string& place) {
-        if (!element.is_string()) {
-            fail(place, "is no string");
-            return;
+void JsonReader::each(const Json& list, const std::string& place,
+                      const std::function<void(const Json& element, const std::string& place)>& use) {
+    if (!list.is_array()) {
+        fail(place, "is no list");
+    }
+    for (std::size_t i = 0; ok() && i < list.size(); ++i) {
+        use(list[i], place + "/" + std::to_string(i));
+    }
+}
+
+void JsonReader::eachMember(
+    const Json& object, const std::string& place,
+    const std::function<void(const std::string& name, const Json& value, const std::string& place)>& use) {
+    if (!object.is_object()) {
+        fail(place, "is no JSON object");
+        return;
+    }
+    for (const auto& [name, value] : object.items()) {
+        if (ok()) {
+            use(name, value, place + "/" + name);
         }
-        list.push_back(element.get<std::string>());
-    });
-    return list;
+    }
 }
 
 bool nestsTooDeep(std::span<const std::uint8_t> json) {

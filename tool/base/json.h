@@ -7,11 +7,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
-#include <vector>
 
 namespace glint::base {
 
@@ -28,7 +29,7 @@ Json orNull(const std::optional<T>& value) {
 // Returns the text, or null if it is empty.
 Json textOrNull(const std::string& text);
 
-// Reads a file member by member and reports the place of the first member that is wrong. It keeps the first
+// Reads a file value by value and reports the place of the first member that is wrong. It keeps the first
 // error. Everything read after it is an empty value.
 class JsonReader {
 public:
@@ -50,24 +51,22 @@ public:
 
     // Returns null, and sets an error, if `object` lacks the member.
     const Json* member(const Json& object, const std::string& pointer, const char* name);
-    std::string text(const Json& object, const std::string& pointer, const char* name);
-    bool flag(const Json& object, const std::string& pointer, const char* name);
-    std::uint64_t count(const Json& object, const std::string& pointer, const char* name, std::uint64_t most);
-    double number(const Json& object, const std::string& pointer, const char* name, double least,
-                  double most);
-    std::vector<std::string> texts(const Json& object, const std::string& pointer, const char* name);
+    // Return an empty value, and set an error, if `value` is something else. `place` is its pointer.
+    // `names` are the texts that are allowed; empty: all of them.
+    std::string text(const Json& value, const std::string& place,
+                     std::span<const std::string_view> names = {});
+    bool flag(const Json& value, const std::string& place);
+    std::uint64_t count(const Json& value, const std::string& place, std::uint64_t most);
+    double number(const Json& value, const std::string& place, std::optional<double> least,
+                  std::optional<double> most);
 
-    // Calls use(element, its pointer) for each element until one fails.
-    template <typename Use>
-    void each(const Json& object, const std::string& pointer, const char* name, const Use& use) {
-        const Json* list = member(object, pointer, name);
-        if (list != nullptr && !list->is_array()) {
-            fail(pointer + "/" + name, "is no list");
-        }
-        for (std::size_t i = 0; ok() && i < list->size(); ++i) {
-            use((*list)[i], pointer + "/" + name + "/" + std::to_string(i));
-        }
-    }
+    // Calls use(element, its pointer) for each element of a list until one fails.
+    void each(const Json& list, const std::string& place,
+              const std::function<void(const Json& element, const std::string& place)>& use);
+    // Calls use(name, value, its pointer) for each member of an object until one fails.
+    void eachMember(
+        const Json& object, const std::string& place,
+        const std::function<void(const std::string& name, const Json& value, const std::string& place)>& use);
 
 private:
     std::string path_;

@@ -99,7 +99,7 @@ Result<int> calibrate(const Console& console, const BenchArguments& arguments) {
         return kExitFailed;
     }
     if (console.isJson()) {
-        console.result(measure::toJson(report));
+        console.result(base::jsonOf(report));
     } else {
         console.print(toText(report));
         console.print(fmt::format("\n{} has the same numbers.\n",
@@ -153,7 +153,7 @@ Result<int> run(const Console& console, const BenchArguments& arguments) {
     }
     GLINT_TRY_DO(measure::writeBench(report, arguments.output));
     if (console.isJson()) {
-        console.result(measure::toJson(report));
+        console.result(base::jsonOf(report));
     } else {
         console.print(toText(report));
         console.print(fmt::format("\n{}: open it in a browser; {} has the same numbers.\n",

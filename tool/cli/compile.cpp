@@ -132,7 +132,7 @@ base::Json shadersToJson(const Outcome& outcome) {
                                   {"always", featuresToJson(*outcome.plan.model, shader.always)},
                                   {"sometimes", featuresToJson(*outcome.plan.model, shader.sometimes)},
                                   {"keys", shader.keys.size()},
-                                  {"share", compiler::shareToJson(shader.share)},
+                                  {"share", compiler::roundedShare(shader.share)},
                                   {"reason", toString(shader.reason)},
                                   {"materials", materialsToJson(outcome.scenes, shader.materials)},
                                   {"stages", stagesToJson(outcome.package, shader.shaderId)}});
@@ -147,15 +147,11 @@ base::Json planToJson(const Outcome& outcome) {
                            : base::Json(nullptr);
 }
 
-base::Json choiceToJson(const std::optional<compiler::StrategyAdvice>& advice) {
-    return advice ? strategyChoiceToJson(*advice) : base::Json(nullptr);
-}
-
 base::Json scenesToJson(const gltf::SceneList& scenes) {
     base::Json list = base::Json::array();
     for (const gltf::Scene& scene : scenes.scenes()) {
         list.push_back(base::Json{{"file", scene.path},
-                                  {"sceneInFile", compiler::sceneInFileToJson(gltf::sceneInFile(scene))}});
+                                  {"sceneInFile", base::jsonOf(orNone(gltf::sceneInFile(scene)))}});
     }
     return list;
 }
@@ -166,7 +162,7 @@ base::Json toJson(const Outcome& outcome) {
     return {{"counts",
              {{"scenes", outcome.scenes.scenes().size()},
               {"materials", outcome.scenes.materials().size()},
-              {"keysPossible", compiler::countToJson(outcome.plan.keysPossible)},
+              {"keysPossible", base::jsonOf(compiler::wholeNumber(outcome.plan.keysPossible))},
               {"keysPresent", outcome.plan.keys.size()},
               {"cases", caseCount(outcome.plan)},
               {"uniqueSpirv", orNull([&] { return package->uniqueSpirv; })}}},
@@ -177,7 +173,7 @@ base::Json toJson(const Outcome& outcome) {
             {"upToDate", nullptr},
             {"scenes", scenesToJson(outcome.scenes)},
             {"variant", base::textOrNull(outcome.scenes.variant())},
-            {"strategyChoice", choiceToJson(outcome.build.settings.compile.strategyChoice)},
+            {"strategyChoice", base::jsonOf(outcome.build.settings.compile.strategyChoice)},
             {"shaders", shadersToJson(outcome)},
             {"dropped", droppedToJson(outcome.scenes, outcome.plan)},
             {"output", orNull([&] { return base::textOrNull(outcome.arguments.output); })},

@@ -170,13 +170,9 @@ base::Json moduleToJson(const inspect::DiffModule* module, std::optional<int> sh
     if (module == nullptr) {
         return nullptr;
     }
-    return {{"shaderId", shaderId ? base::Json(*shaderId) : base::Json(nullptr)},
-            {"file", module->file},
-            {"bytes", module->statistics.bytes},
-            {"instructions", module->statistics.instructions},
-            {"textureFetches", module->statistics.textureFetches},
-            {"rayQueries", module->statistics.rayQueries},
-            {"branches", module->statistics.branches}};
+    base::Json json{{"shaderId", base::orNull(shaderId)}, {"file", module->file}};
+    json.update(base::jsonOf(module->statistics));
+    return json;
 }
 
 base::Json modulesToJson(const inspect::PackageDiff& diff) {

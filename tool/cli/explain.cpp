@@ -332,7 +332,7 @@ base::Json toJson(const ExplainArguments& arguments, const compiler::Build& buil
     const gltf::Scene& scene = build.scenes->scenes().front();
     const compiler::PlanOptions& options = build.settings.compile.plan;
     base::Json result{{"scene", arguments.scene},
-                      {"sceneInFile", compiler::sceneInFileToJson(gltf::sceneInFile(scene))},
+                      {"sceneInFile", base::jsonOf(orNone(gltf::sceneInFile(scene)))},
                       {"scenesInFile", scenesInFileToJson(scene)},
                       {"merge", nameOf(options.merge)},
                       {"alpha", nameOf(options.keys.alpha)},
@@ -344,8 +344,8 @@ base::Json toJson(const ExplainArguments& arguments, const compiler::Build& buil
         return result;
     }
     result["sameImages"] = sameImagesToJson(scene);
-    result["effects"] = effectsToJson(build.plan.effects);
-    result["strategies"] = strategyChoiceToJson(*build.settings.compile.strategyChoice);
+    result["effects"] = base::jsonOf(build.plan.effects.decisions);
+    result["strategies"] = base::jsonOf(*build.settings.compile.strategyChoice);
     result["gpu"] = gpuToJson(costs, build.asked.precisionError);
     result["motion"] = motionToJson(scene);
     result["materials"] = base::Json::array();

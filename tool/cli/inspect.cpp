@@ -35,7 +35,7 @@ base::Json modulesToJson(const inspect::InspectedPackage& inspected) {
     base::Json list = base::Json::array();
     for (const inspect::InspectedModule& module : inspected.modules) {
         base::Json entry = describe(inspected, module);
-        entry.update(statisticsToJson(module.statistics));
+        entry.update(base::jsonOf(module.statistics));
         list.push_back(std::move(entry));
     }
     return list;
@@ -45,7 +45,7 @@ base::Json stagesOf(const inspect::InspectedPackage& inspected, std::uint32_t sh
     base::Json stages = base::Json::object();
     for (const inspect::InspectedModule* module : inspected.modulesOf(shaderId)) {
         base::Json entry{{"file", inspected.file(*module)}};
-        entry.update(statisticsToJson(module->statistics));
+        entry.update(base::jsonOf(module->statistics));
         stages[std::string(compiler::stageName(module->key()))] = std::move(entry);
     }
     return stages;
@@ -64,14 +64,13 @@ base::Json shadersToJson(const inspect::InspectedPackage& inspected) {
                                                {"name", inspected.materialName(material)}});
             }
         }
-        list.push_back(
-            base::Json{{"id", id},
-                       {"name", std::string(inspected.package.string(shader.name))},
-                       {"always", featuresToJson(inspected.manifest.features, shader.always)},
-                       {"sometimes", featuresToJson(inspected.manifest.features, shader.sometimes)},
-                       {"keys", shader.keyCount},
-                       {"materials", materials},
-                       {"stages", stagesOf(inspected, id)}});
+        list.push_back(base::Json{{"id", id},
+                                  {"name", std::string(inspected.package.string(shader.name))},
+                                  {"always", featuresToJson(inspected.manifest.model, shader.always)},
+                                  {"sometimes", featuresToJson(inspected.manifest.model, shader.sometimes)},
+                                  {"keys", shader.keyCount},
+                                  {"materials", materials},
+                                  {"stages", stagesOf(inspected, id)}});
         ++id;
     }
     return list;
@@ -143,8 +142,8 @@ std::string shaderTable(const inspect::InspectedPackage& inspected, Detail detai
     for (const package::CaseEntry& shader : inspected.package.cases()) {
         rows.push_back({shaderTitle(id, inspected.package.string(shader.name), detail),
                         fmt::format("{}", shader.keyCount),
-                        featuresText(inspected.manifest.features, shader.always, detail),
-                        featuresText(inspected.manifest.features, shader.sometimes, detail),
+                        featuresText(inspected.manifest.model, shader.always, detail),
+                        featuresText(inspected.manifest.model, shader.sometimes, detail),
                         materialsText(inspected, id)});
         ++id;
     }
@@ -177,7 +176,7 @@ std::string moduleTable(const inspect::InspectedPackage& inspected, Detail detai
 }
 
 std::string hitLobesText(const inspect::Manifest& manifest) {
-    return manifest.hitLobes.size() == manifest.features.names(manifest.features.lobes).size()
+    return manifest.hitLobes.size() == manifest.model.names(manifest.model.lobes).size()
                ? "all"
                : base::join(manifest.hitLobes);
 }
@@ -228,9 +227,9 @@ base::Json toJson(const inspect::InspectedPackage& inspected) {
           {"emissiveLights", package.emission() != nullptr},
           {"skyLight", package.skyLight()},
           {"sizedLights", package.sizedLights()},
-          {"energyCompensation", manifest.energyCompensation},
-          {"trustTextures", manifest.trustTextures},
-          {"textureLod", manifest.textureLod},
+          {"energyCompensation", manifest.setting("energyCompensation") == "on"},
+          {"trustTextures", manifest.setting("trustTextures") == "on"},
+          {"textureLod", std::string(manifest.setting("textureLod"))},
           {"textureLevels", package.textureLevels()},
           {"layers",
            package.layers().empty() ? "none" : fmt::format("{}", fmt::join(layerNames(package), ","))},
@@ -254,7 +253,7 @@ base::Json toJson(const inspect::InspectedPackage& inspected) {
           {"uniqueSpirv", inspected.uniqueFiles()}}},
         {"layers", layersToJson(package)},
         {"traffic",
-         package.passes() == package::Passes::Frame ? trafficToJson(package) : base::Json::array()},
+         package.passes() == package::Passes::Frame ? base::jsonOf(trafficOf(package)) : base::Json::array()},
         {"spirvBytes", inspected.spirvBytes()},
         {"shaders", shadersToJson(inspected)},
         {"modules", modulesToJson(inspected)}};
@@ -286,9 +285,9 @@ std::string toText(const inspect::InspectedPackage& inspected, Detail detail) {
          {"packs", manifest.packs.empty() ? "none" : base::join(manifest.packs)},
          {"hit lobes", hitLobesText(manifest)},
          {"lights of a surface", lightsOf(package)},
-         {"energy compensation", manifest.energyCompensation ? "on" : "off"},
-         {"trust textures", manifest.trustTextures ? "on" : "off"},
-         {"texture LOD", manifest.textureLod},
+         {"energy compensation", std::string(manifest.setting("energyCompensation"))},
+         {"trust textures", std::string(manifest.setting("trustTextures"))},
+         {"texture LOD", std::string(manifest.setting("textureLod"))},
          {"precision", fmt::format("{}", package::bitsOf(package.precision()))},
          {"layers", layersText(package)},
          {"bytes a material", fmt::format("{}", inspected.package.scene(0).materials.recordBytes)},

@@ -187,7 +187,7 @@ Status writeResults(const RenderArguments& arguments, const RenderReport& report
         GLINT_TRY_DO(writeImage(arguments.coverage, map));
     }
     return arguments.stats.empty() ? okStatus()
-                                   : base::writeFile(arguments.stats, base::toText(toJson(report)));
+                                   : base::writeFile(arguments.stats, base::toText(base::jsonOf(report)));
 }
 
 // Reads the scene's images in the formats of the device. Those that are compressed for it stay in the cache
@@ -257,8 +257,7 @@ Status render(const Console& console, const RenderArguments& arguments, scene_vi
     GLINT_TRY(const auto camera, chooseView(movement, arguments, scene, data, aspect));
     report.camera = camera.name;
     if (compiler::addsSun(arguments, scene)) {
-        report.sun = scene_view::sunLight();
-        report.sunAutomatic = arguments.sun == compiler::Sun::Auto;
+        report.sun = RenderReport::Sun{scene_view::sunLight(), arguments.sun == compiler::Sun::Auto};
     }
     report.sceneInFile = gltf::sceneInFile(scene);
     // This comes before the compilation, which takes longer than finding out that there is no device.
@@ -308,7 +307,7 @@ Status render(const Console& console, const RenderArguments& arguments, scene_vi
     pipelineCache.save();
     if (!pipelineCache.path().empty()) {
         report.pipelines.cache = {pipelineCache.path().string(), pipelineCache.loadedBytes(),
-                                  pipelineCache.savedBytes()};
+                                  pipelineCache.savedBytes(), report.pipelines.making.cacheHits};
     }
     if (console.refused()) {
         return okStatus();
@@ -364,7 +363,7 @@ int run(const Console& console, const RenderArguments& arguments) {
         return kExitFailed;
     }
     if (console.isJson()) {
-        console.result(toJson(report));
+        console.result(base::jsonOf(report));
     } else {
         console.print(toText(report, console.isVerbose() ? Detail::Whole : Detail::Short));
     }

@@ -11,6 +11,18 @@
 #include <array>
 #include <vector>
 
+namespace glint {
+
+static base::Fields fieldsOf(const TrafficRow*) {
+    using T = TrafficRow;
+    return {base::output<&T::pass>("pass", "The pass."),
+            base::output<&T::unit>("unit", "What it moves these bytes for."),
+            base::output<&T::read>("read", "Bytes read for each."),
+            base::output<&T::written>("written", "Bytes written for each.")};
+}
+
+}  // namespace glint
+
 namespace glint::cli {
 
 base::Json featuresToJson(const materials::MaterialModel& model, materials::FeatureMask mask) {
@@ -58,14 +70,6 @@ std::string droppedText(const compiler::Plan& plan) {
     return rows.empty() ? std::string() : "\ndropped\n" + formatFields(rows);
 }
 
-base::Json statisticsToJson(const compiler::SpirvStatistics& statistics) {
-    return {{"bytes", statistics.bytes},
-            {"instructions", statistics.instructions},
-            {"textureFetches", statistics.textureFetches},
-            {"rayQueries", statistics.rayQueries},
-            {"branches", statistics.branches}};
-}
-
 base::Json stagesToJson(const compiler::CompiledPackage* package, int shaderId) {
     base::Json stages = base::Json::object();
     if (package == nullptr) {
@@ -75,7 +79,7 @@ base::Json stagesToJson(const compiler::CompiledPackage* package, int shaderId) 
         const bool ofCase = package::findRole(module.key.role)->repeated == package::Repeated::ByCase;
         if (ofCase && module.key.index == static_cast<std::uint32_t>(shaderId)) {
             base::Json entry{{"file", module.file}};
-            entry.update(statisticsToJson(module.statistics));
+            entry.update(base::jsonOf(module.statistics));
             stages[std::string(compiler::stageName(module.key))] = std::move(entry);
         }
     }
@@ -94,11 +98,23 @@ std::string orderingName(const package::ModuleKey& key) {
 
 namespace {
 
-base::Json toJson(const TrafficRow& row) {
-    return {{"pass", std::string(row.pass)},
-            {"unit", std::string(nameOf(row.unit))},
-            {"read", row.read},
-            {"written", row.written}};
+// A row, and how many of its unit a frame had.
+struct CountedRow {
+    TrafficRow row;
+    double count = 0.0;
+};
+
+base::Fields fieldsOf(const CountedRow*) {
+    return {base::output<&CountedRow::row>("", ""),
+            base::output<&CountedRow::count>("count", "How many of them the last sample had.")};
+}
+
+std::vector<CountedRow> rowsOf(const TrafficReport& report) {
+    std::vector<CountedRow> rows;
+    for (const TrafficRow& row : trafficRows(report.shape)) {
+        rows.push_back({row, report.counts[row.unit]});
+    }
+    return rows;
 }
 
 // The shape of the frames that a program draws as they come: none adds to another.
@@ -133,19 +149,19 @@ void forEachStrategy(const Package& package, const Visit& visit) {
 
 }  // namespace
 
-base::Json toJson(const TrafficReport& report) {
-    const std::vector<TrafficRow> rows = trafficRows(report.shape);
-    const TrafficSum sum = sumTraffic(rows, report.counts);
-    base::Json passes = base::Json::array();
-    for (const TrafficRow& row : rows) {
-        base::Json entry = toJson(row);
-        entry["count"] = report.counts[row.unit];
-        passes.push_back(std::move(entry));
-    }
-    return {{"bytesPerPixel", bytesOfPixel(sum.read + sum.written, report.counts)},
-            {"read", sum.read},
-            {"written", sum.written},
-            {"passes", std::move(passes)}};
+base::Fields fieldsOf(const TrafficReport*) {
+    using T = TrafficReport;
+    using base::output;
+    return {output("bytesPerPixel", "Bytes read and written, for each pixel.",
+                   [](const T& it) {
+                       const TrafficSum sum = sumTraffic(trafficRows(it.shape), it.counts);
+                       return bytesOfPixel(sum.read + sum.written, it.counts);
+                   }),
+            output("read", "Bytes read.",
+                   [](const T& it) { return sumTraffic(trafficRows(it.shape), it.counts).read; }),
+            output("written", "Bytes written.",
+                   [](const T& it) { return sumTraffic(trafficRows(it.shape), it.counts).written; }),
+            output<rowsOf>("passes", "The bytes of each pass.")};
 }
 
 std::string toText(const TrafficReport& report) {
@@ -167,14 +183,15 @@ std::string summaryOf(const TrafficReport& report) {
                        bytesOfPixel(sum.written, report.counts));
 }
 
-base::Json trafficToJson(const Package& package) {
-    base::Json list = base::Json::array();
+base::Fields fieldsOf(const StrategyTraffic*) {
+    return {base::output<&StrategyTraffic::strategy>("strategy", "The strategy."),
+            base::output<&StrategyTraffic::passes>("passes", "The bytes of each pass.")};
+}
+
+std::vector<StrategyTraffic> trafficOf(const Package& package) {
+    std::vector<StrategyTraffic> list;
     forEachStrategy(package, [&](const package::StrategyInfo& info) {
-        base::Json passes = base::Json::array();
-        for (const TrafficRow& row : trafficRows(shapeOf(package, info.strategy))) {
-            passes.push_back(toJson(row));
-        }
-        list.push_back(base::Json{{"strategy", std::string(info.name)}, {"passes", std::move(passes)}});
+        list.push_back({info.name, trafficRows(shapeOf(package, info.strategy))});
     });
     return list;
 }

@@ -1,9 +1,10 @@
 // Output that several commands share, as JSON and as text.
 #pragma once
 
-#include "base/json.h"
+#include "base/fields.h"
 #include "cli/console.h"
 #include "emit/compile.h"
+#include "emit/package/json.h"
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
 
@@ -14,6 +15,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace glint::cli {
@@ -28,9 +30,6 @@ base::Json droppedToJson(const gltf::SceneList& scenes, const compiler::Plan& pl
 std::string featureList(const materials::MaterialModel& model, materials::FeatureMask mask);
 // Returns one line for each feature and reason, with the number of materials. Empty if nothing was dropped.
 std::string droppedText(const compiler::Plan& plan);
-
-// bytes, instructions, textureFetches, rayQueries, branches
-base::Json statisticsToJson(const compiler::SpirvStatistics& statistics);
 
 // Returns the case's own modules by stage, as in the manifest. Empty without a package, and for strategies
 // that have none.
@@ -47,13 +46,18 @@ struct TrafficReport {
     TrafficShape shape;
     TrafficCounts counts;
 };
-base::Json toJson(const TrafficReport& report);
+base::Fields fieldsOf(const TrafficReport*);
 std::string toText(const TrafficReport& report);
 // "X bytes a pixel moved".
 std::string summaryOf(const TrafficReport& report);
 
+struct StrategyTraffic {
+    std::string_view strategy;
+    std::vector<TrafficRow> passes;
+};
+base::Fields fieldsOf(const StrategyTraffic*);
 // The bytes that frames of a package move for each pixel, ray and hit, by strategy.
-base::Json trafficToJson(const Package& package);
+std::vector<StrategyTraffic> trafficOf(const Package& package);
 std::string trafficTable(const Package& package);
 
 }  // namespace glint::cli

@@ -1,14 +1,11 @@
 #include "inspect/diff.h"
 
-#include "base/files.h"
-#include "base/json.h"
 #include "base/text.h"
-#include "inspect/manifest_file.h"
+#include "emit/package/manifest.h"
 
 #include <glint/package.h>
 
 #include <algorithm>
-#include <exception>
 #include <iterator>
 #include <string_view>
 #include <tuple>
@@ -17,106 +14,102 @@ namespace glint::inspect {
 
 namespace {
 
-// Returns "a, b" for a list, "none" for an empty one or null, and otherwise the value as it is.
-std::string valueText(const base::Json& value) {
-    if (value.is_array()) {
-        std::vector<std::string> words;
-        for (const base::Json& element : value) {
-            words.push_back(valueText(element));
-        }
-        return words.empty() ? "none" : base::join(words);
-    }
-    return value.is_null() ? "none" : value.is_string() ? value.get<std::string>() : value.dump();
+// Returns "a, b", or "none" for an empty list.
+std::string listText(const std::vector<std::string>& words) {
+    return words.empty() ? "none" : base::join(words);
 }
 
-// Returns the settings with which the package was made. Throws if the manifest lacks one.
-std::vector<std::pair<std::string, std::string>> settingsOf(const base::Json& manifest) {
-    std::vector<std::pair<std::string, std::string>> settings;
-    for (const char* name : {"toolVersion", "strategies", "tracers", "merge", "maxShaders", "alpha"}) {
-        settings.emplace_back(name, valueText(manifest.at(name)));
+// Returns the settings with which the package was made.
+std::vector<std::pair<std::string, std::string>> settingsOf(const compiler::Manifest& manifest) {
+    std::vector<std::pair<std::string, std::string>> settings{
+        {"toolVersion", manifest.toolVersion},
+        {"strategies", listText(manifest.strategies)},
+        {"tracers", listText(manifest.tracers)},
+        {"merge", manifest.merge},
+        {"maxShaders", manifest.maxShaders ? std::to_string(*manifest.maxShaders) : "none"},
+        {"alpha", manifest.alpha},
+        {"host", listText(manifest.host)},
+        {"packs", listText(manifest.packs)},
+        {"hitLobes", listText(manifest.hitLobes)}};
+    for (const auto& [name, text] : manifest.settings) {
+        settings.emplace_back(name, text == "on" ? "true" : text == "off" ? "false" : text);
     }
-    for (const char* name : {"host", "packs"}) {
-        settings.emplace_back(name, valueText(manifest.value(name, base::Json::array())));
+    std::vector<std::string> variants;
+    for (const compiler::ManifestScene& scene : manifest.scenes) {
+        variants.push_back(scene.variant.empty() ? "none" : scene.variant);
     }
-    for (const auto& [name, value] : manifest.at("settings").items()) {
-        settings.emplace_back(name, valueText(value));
-    }
-    base::Json variants = base::Json::array();
-    for (const base::Json& scene : manifest.at("scenes")) {
-        variants.push_back(scene.at("variant"));
-    }
-    settings.emplace_back("variant", valueText(variants));
+    settings.emplace_back("variant", base::join(variants));
     return settings;
 }
 
-void readCases(const base::Json& manifest, DiffPackage& package) {
-    for (const base::Json& shader : manifest.at("shaders")) {
-        package.cases[shader.at("id").get<int>()].name = shader.at("name").get<std::string>();
+void readCases(const compiler::Manifest& manifest, DiffPackage& package) {
+    for (const compiler::ManifestCase& shader : manifest.shaders) {
+        package.cases[static_cast<int>(shader.id)].name = shader.name;
     }
-    for (const base::Json& key : manifest.at("keys")) {
-        package.cases[key.at("shaderId").get<int>()].keys.insert(
-            key.at("features").get<std::vector<std::string>>());
+    for (const compiler::ManifestKey& key : manifest.keys) {
+        package.cases[static_cast<int>(key.shaderId)].keys.insert(key.features);
     }
 }
 
-void readMaterials(const base::Json& manifest, DiffPackage& package) {
-    for (const base::Json& scene : manifest.at("scenes")) {
-        package.scenes.push_back(scene.at("name").get<std::string>());
+// Returns false if a shader has a material of a scene that is not there.
+bool readMaterials(const compiler::Manifest& manifest, DiffPackage& package) {
+    for (const compiler::ManifestScene& scene : manifest.scenes) {
+        package.scenes.push_back(scene.name);
     }
     struct Use {
         std::string name;
         std::set<int> shaderIds;
     };
-    std::map<std::pair<std::size_t, int>, Use> uses;  // by scene and index
-    for (const base::Json& shader : manifest.at("shaders")) {
-        for (const base::Json& material : shader.at("materials")) {
-            Use& use = uses[{material.at("scene").get<std::size_t>(), material.at("index").get<int>()}];
-            use.name = material.at("name").get<std::string>();
-            use.shaderIds.insert(shader.at("id").get<int>());
+    std::map<std::pair<std::size_t, std::uint32_t>, Use> uses;  // by scene and index
+    for (const compiler::ManifestCase& shader : manifest.shaders) {
+        for (const auto& [place, name] : shader.materials) {
+            if (place.scene >= package.scenes.size()) {
+                return false;
+            }
+            Use& use = uses[{place.scene, place.index}];
+            use.name = name;
+            use.shaderIds.insert(static_cast<int>(shader.id));
         }
     }
     for (auto& [place, use] : uses) {
-        DiffMaterial material{package.scenes.at(place.first), std::move(use.name)};
+        DiffMaterial material{package.scenes[place.first], std::move(use.name)};
         while (package.materials.contains(material)) {
             ++material.sameNamed;
         }
         package.materials[material] = std::move(use.shaderIds);
     }
+    return true;
 }
 
-void readTotals(const base::Json& manifest, DiffPackage& package) {
+void readTotals(const compiler::Manifest& manifest, DiffPackage& package) {
     std::uint64_t bytes = 0;
-    for (const base::Json& file : manifest.at("files")) {
-        bytes += file.at("bytes").get<std::uint64_t>();
-        if (file.at("file") == package::kTablesFile) {
-            package.tables = file.at("hash").get<std::string>();
+    for (const compiler::ManifestFile& file : manifest.files) {
+        bytes += file.bytes;
+        if (file.file == package::kTablesFile) {
+            package.tables = file.hash;
         }
     }
-    const base::Json& counts = manifest.at("counts");
-    const auto add = [&](const char* label, const char* name) {
-        package.totals.emplace_back(label, counts.at(name).get<std::uint64_t>());
-    };
-    add("materials", "materials");
-    add("keys", "keysPresent");
-    add("shaders", "cases");
-    add("modules", "modules");
-    add("unique SPIR-V", "uniqueSpirv");
-    add("SPIR-V bytes", "spirvBytes");
-    package.totals.emplace_back("package bytes", bytes);
+    const compiler::ManifestCounts& counts = manifest.counts;
+    package.totals = {{"materials", counts.materials},
+                      {"keys", counts.keysPresent},
+                      {"shaders", counts.cases},
+                      {"modules", counts.modules},
+                      {"unique SPIR-V", counts.uniqueSpirv},
+                      {"SPIR-V bytes", counts.spirvBytes},
+                      {"package bytes", bytes}};
 }
 
 Result<DiffPackage> readManifestPart(const std::filesystem::path& folder) {
-    GLINT_TRY(const auto manifest, readManifestFile(folder));
-    try {
-        DiffPackage package;
-        package.settings = settingsOf(manifest);
-        readCases(manifest, package);
-        readMaterials(manifest, package);
-        readTotals(manifest, package);
-        return package;
-    } catch (const std::exception& error) {
-        return manifestError(folder, error.what());
+    GLINT_TRY(const auto manifest, compiler::readManifest(folder));
+    DiffPackage package;
+    package.settings = settingsOf(manifest);
+    readCases(manifest, package);
+    if (!readMaterials(manifest, package)) {
+        return makeError("manifest-format", (folder / package::kManifestFile).string(),
+                         "has a material of a scene that it lacks", "compile the package again");
     }
+    readTotals(manifest, package);
+    return package;
 }
 
 using FeatureSet = std::vector<std::string>;

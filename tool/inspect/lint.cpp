@@ -1,7 +1,7 @@
 #include "inspect/lint.h"
 
 #include "base/files.h"
-#include "inspect/manifest_file.h"
+#include "base/json.h"
 
 #include <glint/package_format.h>
 
@@ -269,7 +269,9 @@ private:
 };
 
 Result<std::vector<LintFile>> filesOfPackage(const fs::path& folder) {
-    GLINT_TRY(const auto manifest, readManifestFile(folder));
+    constexpr std::uint64_t kMostBytes = 1ULL << 32;
+    base::JsonReader reader(folder / package::kManifestFile, "manifest-format", "compile the package again");
+    GLINT_TRY(const auto manifest, reader.read(kMostBytes));
     ManifestWalk walk(folder);
     // The list of all files comes after those that have a name.
     walk.visit(manifest, "");

@@ -2,7 +2,6 @@
 
 #include "base/files.h"
 #include "base/text.h"
-#include "inspect/manifest_file.h"
 #include "spirv/compiler.h"
 
 #include <glint/package_format.h>
@@ -11,7 +10,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <exception>
 #include <interop/scene.h>
 #include <string_view>
 
@@ -82,44 +80,24 @@ Diagnostic unknownModule(const InspectedPackage& inspected, const std::string& w
 }  // namespace
 
 Result<Manifest> readManifest(const std::filesystem::path& folder) {
-    GLINT_TRY(const auto file, readManifestFile(folder));
-    const base::Json& json = file;
-    try {
-        Manifest manifest;
-        manifest.toolVersion = json.at("toolVersion").get<std::string>();
-        manifest.merge = json.at("merge").get<std::string>();
-        for (const auto& scene : json.at("scenes")) {
-            const auto& variant = scene.at("variant");
-            manifest.variants.push_back(variant.is_null() ? "" : variant.get<std::string>());
-        }
-        const auto& settings = json.at("settings");
-        manifest.hitLobes = settings.at("hitLobes").get<std::vector<std::string>>();
-        manifest.energyCompensation = settings.at("energyCompensation").get<bool>();
-        manifest.trustTextures = settings.at("trustTextures").get<bool>();
-        manifest.textureLod = settings.at("textureLod").get<std::string>();
-        manifest.host = json.value("host", std::vector<std::string>());
-        manifest.packs = json.value("packs", std::vector<std::string>());
-        for (const auto& row : json.at("features")) {
-            materials::Feature& feature = manifest.features.features.emplace_back();
-            feature.name = row.at("name").get<std::string>();
-            feature.bit = std::clamp(row.at("bit").get<int>(), 0, materials::kFeatureBits - 1);
-            feature.isLobe = row.value("lobe", feature.bit < materials::kFirstInput);
-            manifest.features.lobes |= feature.isLobe ? feature.mask() : 0;
-        }
-        for (const auto& shader : json.at("shaders")) {
-            manifest.shares[shader.at("id").get<std::uint32_t>()] = shader.at("share").get<double>();
-            for (const auto& material : shader.at("materials")) {
-                const auto name = material.at("name").get<std::string>();
-                if (!name.empty()) {
-                    manifest.materialNames[{material.at("scene").get<std::uint32_t>(),
-                                            material.at("index").get<std::uint32_t>()}] = name;
-                }
+    GLINT_TRY(auto read, compiler::readManifest(folder));
+    Manifest manifest{std::move(read), {}, {}, {}};
+    for (const compiler::ManifestFeature& row : manifest.features) {
+        materials::Feature& feature = manifest.model.features.emplace_back();
+        feature.name = row.name;
+        feature.bit = row.bit;
+        feature.isLobe = row.lobe;
+        manifest.model.lobes |= feature.isLobe ? feature.mask() : 0;
+    }
+    for (const compiler::ManifestCase& shader : manifest.shaders) {
+        manifest.shares[shader.id] = shader.share;
+        for (const auto& [place, name] : shader.materials) {
+            if (!name.empty()) {
+                manifest.materialNames[{place.scene, place.index}] = name;
             }
         }
-        return manifest;
-    } catch (const std::exception& error) {
-        return manifestError(folder, error.what());
     }
+    return manifest;
 }
 
 std::size_t InspectedPackage::caseCount() const {
@@ -148,7 +126,7 @@ std::string InspectedPackage::file(const InspectedModule& module) const {
 }
 
 std::string InspectedPackage::variantOf(std::uint32_t scene) const {
-    return scene < manifest.variants.size() ? manifest.variants[scene] : std::string();
+    return scene < manifest.scenes.size() ? manifest.scenes[scene].variant : std::string();
 }
 
 std::size_t InspectedPackage::uniqueFiles() const {

@@ -1,6 +1,7 @@
 // The contents of a package: its modules with statistics, its materials, and its manifest.json.
 #pragma once
 
+#include "emit/package/manifest.h"
 #include "materials/material_model.h"
 #include "spirv/statistics.h"
 
@@ -17,24 +18,15 @@
 
 namespace glint::inspect {
 
-// The contents of manifest.json that tables.bin lacks.
-struct Manifest {
-    std::string toolVersion;
-    std::string merge;
-    std::vector<std::string> variants;  // by scene; empty: none
-    std::vector<std::string> hitLobes;
-    bool energyCompensation = true;
-    bool trustTextures = false;
-    std::string textureLod;
-    std::vector<std::string> host;      // files that --host replaced
-    std::vector<std::string> packs;     // declarations of packs
-    materials::MaterialModel features;  // names and bits of features alone
+// A manifest, and parts of it by their IDs.
+struct Manifest : compiler::Manifest {
+    materials::MaterialModel model;  // names and bits of features alone
     // Names by scene and index, for the materials that have one and that shaders list.
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::string> materialNames;
     std::map<std::uint32_t, double> shares;  // of the expected hits, by shader ID
 };
 
-// Has the errors of readFile(), and "manifest-format" if the file is not JSON or lacks a member.
+// Has the errors of compiler::readManifest().
 Result<Manifest> readManifest(const std::filesystem::path& folder);
 
 struct InspectedModule {

@@ -1,5 +1,6 @@
 #include "inspect/pipelines.h"
 
+#include "base/fields.h"
 #include "base/text.h"
 #include "emit/compile.h"
 #include "inspect/gpu_tables.h"
@@ -347,71 +348,23 @@ void sortPipelines(PipelineReport& report, const FactInfo* fact) {
 
 namespace {
 
-base::Json stagesToJson(VkShaderStageFlags stages) {
+// The names match the alternatives of PipelineStatistic::value.
+constexpr std::array<std::string_view, 4> kFormats{"bool", "int64", "uint64", "float64"};
+static_assert(kFormats.size() == std::variant_size_v<decltype(PipelineStatistic::value)>);
+
+std::vector<std::string_view> stagesOf(const PipelineExecutable& executable) {
     constexpr std::pair<VkShaderStageFlagBits, const char*> kNames[] = {
         {VK_SHADER_STAGE_VERTEX_BIT, "vertex"},       {VK_SHADER_STAGE_FRAGMENT_BIT, "fragment"},
         {VK_SHADER_STAGE_COMPUTE_BIT, "compute"},     {VK_SHADER_STAGE_RAYGEN_BIT_KHR, "ray-generation"},
         {VK_SHADER_STAGE_ANY_HIT_BIT_KHR, "any-hit"}, {VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR, "closest-hit"},
         {VK_SHADER_STAGE_MISS_BIT_KHR, "miss"}};
-    base::Json list = base::Json::array();
+    std::vector<std::string_view> stages;
     for (const auto& [bit, name] : kNames) {
-        if ((stages & bit) != 0) {
-            list.push_back(name);
+        if ((executable.stages & bit) != 0) {
+            stages.emplace_back(name);
         }
     }
-    return list;
-}
-
-// The names match the alternatives of PipelineStatistic::value.
-constexpr std::array kFormats{"bool", "int64", "uint64", "float64"};
-static_assert(kFormats.size() == std::variant_size_v<decltype(PipelineStatistic::value)>);
-
-base::Json toJson(const PipelineExecutable& executable) {
-    base::Json statistics = base::Json::array();
-    for (const PipelineStatistic& statistic : executable.statistics) {
-        statistics.push_back(
-            {{"name", statistic.name},
-             {"description", statistic.description},
-             {"format", kFormats[statistic.value.index()]},
-             {"value", std::visit([](auto value) { return base::Json(value); }, statistic.value)}});
-    }
-    return {{"name", executable.name},
-            {"description", executable.description},
-            {"stages", stagesToJson(executable.stages)},
-            {"subgroupSize", executable.subgroupSize},
-            {"statistics", std::move(statistics)}};
-}
-
-base::Json toJson(std::span<const PipelineExecutable> executables) {
-    base::Json list = base::Json::array();
-    for (const PipelineExecutable& executable : executables) {
-        list.push_back(toJson(executable));
-    }
-    return list;
-}
-
-base::Json toJson(const ReportedPipeline& pipeline, bool withExecutables) {
-    base::Json modules = base::Json::array();
-    for (const ReportedModule& module : pipeline.modules) {
-        modules.push_back({{"role", module.role},
-                           {"shaderId", base::orNull(module.shaderId)},
-                           {"file", module.file},
-                           {"share", module.share},
-                           {"instructions", module.instructions},
-                           {"textureFetches", module.textureFetches}});
-    }
-    base::Json json{{"name", pipeline.name},
-                    {"tracer", base::textOrNull(pipeline.tracer)},
-                    {"strategies", pipeline.strategies},
-                    {"modules", std::move(modules)},
-                    {"subgroupSize", pipeline.subgroupSize},
-                    {"creationMs", base::orNull(pipeline.creationMs)},
-                    {"failure", base::textOrNull(pipeline.failure)},
-                    {"facts", toJson(pipeline.facts)}};
-    if (withExecutables) {
-        json["executables"] = toJson(pipeline.executables);
-    }
-    return json;
+    return stages;
 }
 
 }  // namespace
@@ -420,33 +373,50 @@ std::string textOf(const PipelineStatistic& statistic) {
     return std::visit([](auto value) { return fmt::format("{}", value); }, statistic.value);
 }
 
-base::Json toJson(const PipelineStatistics& pipeline) {
-    return {{"name", pipeline.name},
-            {"creationMs", base::orNull(pipeline.creationMs)},
-            {"cacheHit", base::orNull(pipeline.cacheHit)},
-            {"executables", toJson(pipeline.executables)}};
+}  // namespace glint::inspect
+
+// The fields of the runtime's types stand in its namespace, where they are found.
+namespace glint {
+
+using base::field;
+using base::output;
+
+static base::Fields fieldsOf(const PipelineStatistic*) {
+    using T = PipelineStatistic;
+    return {output<&T::name>("name", "Name that the driver gives."),
+            output<&T::description>("description", "Description that the driver gives."),
+            output("format", "Format of the value.",
+                   [](const T& statistic) { return inspect::kFormats[statistic.value.index()]; },
+                   {.names = {inspect::kFormats.begin(), inspect::kFormats.end()}}),
+            output<&T::value>("value", "The value, in this format.")};
 }
 
-base::Json toJson(const PipelineFacts& facts) {
-    base::Json json = base::Json::object();
-    for (const FactInfo& info : kFacts) {
-        json[std::string(info.name)] = base::orNull(facts.*info.member);
-    }
-    return json;
+static base::Fields fieldsOf(const PipelineExecutable*) {
+    using T = PipelineExecutable;
+    return {output<&T::name>("name", "Name that the driver gives."),
+            output<&T::description>("description", "Description that the driver gives."),
+            output<inspect::stagesOf>("stages", "Stages of the pipeline."),
+            output<&T::subgroupSize>("subgroupSize", "Size of a subgroup; 0 if it varies or there is none."),
+            output<&T::statistics>("statistics", "The driver's statistics, under its names.")};
 }
+
+base::Fields fieldsOf(const PipelineStatistics*) {
+    using T = PipelineStatistics;
+    return {output<&T::name>("name", "The role of its module, and its case, effect or ordering."),
+            output<&T::creationMs>("creationMs", "Time by the driver's clock; null if it does not say."),
+            output<&T::cacheHit>("cacheHit", "Whether it was cached; null if the driver does not say."),
+            output<&T::executables>("executables", "The parts of its code on the device.")};
+}
+
+}  // namespace glint
+
+namespace glint::inspect {
 
 namespace {
 
-// The numbers of a ModuleCost by their names in reports; tables have those that choices read.
-constexpr std::pair<const char*, double compiler::ModuleCost::*> kModuleNumbers[] = {
-    {"cost", &compiler::ModuleCost::cost},
-    {"weight", &compiler::ModuleCost::weight},
-    {"occupancy", &compiler::ModuleCost::occupancy},
-    {"leastOccupancy", &compiler::ModuleCost::leastOccupancy},
-    {"registers", &compiler::ModuleCost::registers},
-    {"spills", &compiler::ModuleCost::spills},
-    {"scratchBytes", &compiler::ModuleCost::scratchBytes},
-    {"codeBytes", &compiler::ModuleCost::codeBytes}};
+constexpr double kMostOfFact = 1e15;
+constexpr double kMaxSubgroup = 1024;
+constexpr double kMaxShaderId = 1U << 24U;
 
 // The estimates are not accurate beyond four digits after the point.
 double rounded(double value) {
@@ -454,192 +424,147 @@ double rounded(double value) {
     return std::round(value * kDigits) / kDigits;
 }
 
-base::Json summaryToJson(const compiler::PackageCosts& costs) {
-    base::Json list = base::Json::array();
-    for (const compiler::ModuleCost& module : costs.modules) {
-        base::Json entry{
-            {"role", module.role}, {"tracer", base::textOrNull(module.tracer)}, {"modules", module.modules}};
-        for (const auto& [name, member] : kModuleNumbers) {
-            entry[name] = rounded(module.*member);
+std::vector<compiler::ModuleCost> summaryOf(const PipelineReport& report) {
+    std::vector<compiler::ModuleCost> modules = summarize(report).modules;
+    using Module = compiler::ModuleCost;
+    for (Module& module : modules) {
+        for (double Module::*member :
+             {&Module::cost, &Module::weight, &Module::occupancy, &Module::leastOccupancy, &Module::registers,
+              &Module::spills, &Module::scratchBytes, &Module::codeBytes}) {
+            module.*member = rounded(module.*member);
         }
-        list.push_back(std::move(entry));
     }
-    return list;
+    return modules;
 }
 
 }  // namespace
 
-base::Json toJson(const PipelineReport& report, bool withExecutables) {
-    base::Json pipelines = base::Json::array();
-    for (const ReportedPipeline& pipeline : report.pipelines) {
-        pipelines.push_back(toJson(pipeline, withExecutables));
-    }
-    return {{"format", "glint-pipelines"},
-            {"version", 1},
-            {"package", report.package},
-            {"merge", report.merge},
-            {"shadows", report.shadows},
-            {"precision", report.precision},
-            {"device",
-             {{"name", report.device},
-              {"driver", report.driver},
-              {"type", report.deviceType},
-              {"subgroupSize", report.subgroupSize},
-              {"statistics", report.hasStatistics}}},
-            {"summary", summaryToJson(summarize(report))},
-            {"pipelines", std::move(pipelines)}};
+static base::Fields fieldsOf(const ReportedModule*) {
+    using T = ReportedModule;
+    return {field<&T::role>("role", "Its role."),
+            field<&T::shaderId>("shaderId", "The shader, for the module of a case.", {.most = kMaxShaderId}),
+            field<&T::file>("file", "File relative to the package's folder."),
+            field<&T::share>("share", "Share of all hits.", {.least = 0, .most = 1}),
+            field<&T::instructions>("instructions", "SPIR-V instructions within functions.",
+                                    {.least = 0, .most = kMostOfFact}),
+            field<&T::textureFetches>("textureFetches", "SPIR-V instructions that read textures.",
+                                      {.least = 0, .most = kMostOfFact})};
 }
 
-namespace {
-
-constexpr std::uint64_t kMaxReportBytes = 1ULL << 28;
-constexpr double kMostOfFact = 1e15;
-constexpr std::uint64_t kMaxSubgroup = 1024;
-constexpr std::uint64_t kMaxShaderId = 1ULL << 24;
-
-std::string textOrEmpty(base::JsonReader& reader, const base::Json& object, const std::string& place,
-                        const char* name) {
-    const base::Json* const value = reader.member(object, place, name);
-    return value == nullptr || value->is_null() ? std::string() : reader.text(object, place, name);
+static base::Fields fieldsOf(const PipelineFacts*) {
+    using T = PipelineFacts;
+    const base::FieldTraits any{.least = 0, .most = kMostOfFact};
+    return {field<&T::registers>("registers", "32-bit registers of a lane, without uniform ones.", any),
+            field<&T::spills>("spills", "Registers that do not fit.", any),
+            field<&T::scratchBytes>("scratchBytes", "Memory of a lane for spills, arrays and stacks.", any),
+            field<&T::codeBytes>("codeBytes", "Machine code.", any),
+            field<&T::occupancy>("occupancy", "Share of the subgroups that fit; on Intel, of the lanes.",
+                                 {.least = 0, .most = 1}),
+            field<&T::cost>("cost", "Estimated cycles of a processor for 64 lanes.", any)};
 }
 
-PipelineFacts readFacts(base::JsonReader& reader, const base::Json& json, const std::string& place) {
-    PipelineFacts facts;
-    for (const FactInfo& info : kFacts) {
-        const std::string name(info.name);
-        const base::Json* const value = reader.member(json, place, name.c_str());
-        if (value != nullptr && !value->is_null()) {
-            facts.*info.member = reader.number(json, place, name.c_str(), 0.0, kMostOfFact);
-        }
-    }
-    return facts;
+static base::Fields fieldsOf(const ReportedPipeline*) {
+    using T = ReportedPipeline;
+    return {
+        field<&T::name>("name", "The role of its module, and its case, effect or ordering."),
+        field<&T::tracer>("tracer", "Its tracer; null if it traces nothing.", {.orNull = true}),
+        field<&T::strategies>("strategies", "Strategies that it is made for."),
+        field<&T::modules>("modules", "The modules that it was made for, which have the same code."),
+        field<&T::subgroupSize>("subgroupSize", "The largest of its code; 0 if the driver does not say.",
+                                {.most = kMaxSubgroup}),
+        output<&T::creationMs>("creationMs", "Time by the driver's clock; null if it does not say."),
+        field<&T::failure>("failure", "Why the driver did not make it; null if it did.", {.orNull = true}),
+        field<&T::facts>("facts",
+                         "What means the same on every device; null what the driver does not report."),
+        output<&T::executables>("executables", "The parts of its code on the device.", {.optional = true})};
 }
 
-ReportedModule readModule(base::JsonReader& reader, const base::Json& json, const std::string& place) {
-    ReportedModule module;
-    module.role = reader.text(json, place, "role");
-    const base::Json* const shaderId = reader.member(json, place, "shaderId");
-    if (shaderId != nullptr && !shaderId->is_null()) {
-        module.shaderId = static_cast<std::uint32_t>(reader.count(json, place, "shaderId", kMaxShaderId));
-    }
-    module.file = reader.text(json, place, "file");
-    module.share = reader.number(json, place, "share", 0.0, 1.0);
-    module.instructions = reader.number(json, place, "instructions", 0.0, kMostOfFact);
-    module.textureFetches = reader.number(json, place, "textureFetches", 0.0, kMostOfFact);
-    return module;
+}  // namespace glint::inspect
+
+namespace glint::compiler {
+
+static base::Fields fieldsOf(const ModuleCost*) {
+    using T = ModuleCost;
+    const base::FieldTraits any{.least = 0, .most = inspect::kMostOfFact};
+    // A table of a GPU lacks those that no choice reads.
+    const base::FieldTraits read{.least = 0, .most = inspect::kMostOfFact, .optional = true};
+    return {field<&T::role>("role", "Role of the module that names them."),
+            field<&T::tracer>("tracer", "Their tracer; null if they trace nothing.", {.orNull = true}),
+            field<&T::modules>("modules", "Number of pipelines.", {.most = inspect::kMaxShaderId}),
+            field<&T::cost>("cost", "Average of the estimated cycles; 0 if the driver does not report them.",
+                            any),
+            field<&T::weight>("weight", "Average of the SPIR-V instructions, 20 for a fetch.", any),
+            field<&T::occupancy>("occupancy", "Average occupancy; 0 if the driver does not report it.",
+                                 {.least = 0, .most = 1}),
+            field<&T::leastOccupancy>("leastOccupancy", "The least occupancy.",
+                                      {.least = 0, .most = 1, .optional = true}),
+            field<&T::registers>("registers", "The most registers of a lane.", read),
+            field<&T::spills>("spills", "All spills.", any),
+            field<&T::scratchBytes>("scratchBytes", "The most memory of a lane.", any),
+            field<&T::codeBytes>("codeBytes", "All machine code.", read)};
 }
 
-ReportedPipeline readPipeline(base::JsonReader& reader, const base::Json& json, const std::string& place) {
-    ReportedPipeline pipeline;
-    pipeline.name = reader.text(json, place, "name");
-    pipeline.tracer = textOrEmpty(reader, json, place, "tracer");
-    pipeline.strategies = reader.texts(json, place, "strategies");
-    reader.each(json, place, "modules", [&](const base::Json& module, const std::string& there) {
-        pipeline.modules.push_back(readModule(reader, module, there));
-    });
-    pipeline.subgroupSize =
-        static_cast<std::uint32_t>(reader.count(json, place, "subgroupSize", kMaxSubgroup));
-    pipeline.failure = textOrEmpty(reader, json, place, "failure");
-    const base::Json* const facts = reader.member(json, place, "facts");
-    if (facts != nullptr) {
-        pipeline.facts = readFacts(reader, *facts, place + "/facts");
-    }
-    return pipeline;
+static base::Fields fieldsOf(const PackageCosts*) {
+    using T = PackageCosts;
+    return {field<&T::package>("package", "Name of its folder."),
+            field<&T::merge>("merge", "Policy by which keys share cases."),
+            field<&T::shadows>("shadows", "Where the shadow rays of hits are traced.",
+                               {.names = {"inline", "deferred"}}),
+            field(
+                "precision", "Bits of shading.", [](const T& costs) { return costs.precision; },
+                [](T& costs, std::uint32_t bits, base::JsonReader& reader, const std::string& place) {
+                    costs.precision = bits;
+                    if (bits != 16 && bits != 32) {
+                        reader.fail(place, "is neither 16 nor 32");
+                    }
+                }),
+            field<&T::modules>("summary",
+                               "The modules by role and tracer. Averages are over the hits that the compiler "
+                               "expects.")};
 }
 
-base::JsonReader reportReader(const std::filesystem::path& file) {
-    return {file, "pipeline-report", "give a file that glint inspect --pipelines --json wrote"};
+base::Fields fieldsOf(const GpuCosts*) {
+    using T = GpuCosts;
+    return {base::constant("format", "Tells the file from others.", "glint-gpu"),
+            base::constant("version", "Version of the format.", 1),
+            field<&T::name>("name", "The name that --gpu takes."),
+            field<&T::device>("device", "Name of the device."),
+            field<&T::driver>("driver", "Name and version of the driver."),
+            field<&T::subgroupSize>("subgroupSize", "The device's usual subgroup.",
+                                    {.least = 1, .most = inspect::kMaxSubgroup}),
+            field<&T::packages>("packages", "First the package that others are compared with.",
+                                {.leastElements = 1})};
 }
 
-}  // namespace
+}  // namespace glint::compiler
 
-PipelineReport readPipelineReport(base::JsonReader& reader, const base::Json& json,
-                                  const std::string& place) {
-    PipelineReport report;
-    if (reader.text(json, place, "format") != "glint-pipelines" && reader.ok()) {
-        reader.fail(place + "/format", "is not \"glint-pipelines\"");
-    }
-    if (reader.count(json, place, "version", kMaxShaderId) != 1 && reader.ok()) {
-        reader.fail(place + "/version", "is not 1, which this glint reads");
-    }
-    report.package = reader.text(json, place, "package");
-    report.merge = reader.text(json, place, "merge");
-    report.shadows = reader.text(json, place, "shadows");
-    report.precision = static_cast<std::uint32_t>(reader.count(json, place, "precision", 32));
-    const base::Json* const device = reader.member(json, place, "device");
-    if (device != nullptr) {
-        const std::string there = place + "/device";
-        report.device = reader.text(*device, there, "name");
-        report.driver = reader.text(*device, there, "driver");
-        report.deviceType = reader.text(*device, there, "type");
-        report.subgroupSize =
-            static_cast<std::uint32_t>(reader.count(*device, there, "subgroupSize", kMaxSubgroup));
-        report.hasStatistics = reader.flag(*device, there, "statistics");
-    }
-    reader.each(json, place, "pipelines", [&](const base::Json& pipeline, const std::string& there) {
-        report.pipelines.push_back(readPipeline(reader, pipeline, there));
-    });
-    return report;
+namespace glint::inspect {
+
+base::Fields fieldsOf(const PipelineReport*) {
+    using T = PipelineReport;
+    return {
+        base::constant("format", "Tells the file from others.", "glint-pipelines"),
+        base::constant("version", "Version of the format.", 1),
+        field<&T::package>("package", "Folder of the package, as given on the command line."),
+        field<&T::merge>("merge", "Policy by which keys share cases."),
+        field<&T::shadows>("shadows", "Where the shadow rays of hits are traced."),
+        field<&T::precision>("precision", "Bits of shading.", {.most = 32}),
+        base::group(
+            "device", "The device that the pipelines were made for.",
+            {field<&T::device>("name", "Name of the device."),
+             field<&T::driver>("driver", "Name and version of the driver."),
+             field<&T::deviceType>("type", "Type of the device."),
+             field<&T::subgroupSize>("subgroupSize", "The device's usual subgroup.", {.most = kMaxSubgroup}),
+             field<&T::hasStatistics>("statistics", "Whether it reports statistics of pipelines.")}),
+        output<summaryOf>("summary", "The pipelines by role and tracer."),
+        field<&T::pipelines>("pipelines", "Every pipeline, in the order of the table.")};
 }
 
 Result<PipelineReport> readPipelineReport(const std::filesystem::path& file) {
-    base::JsonReader reader = reportReader(file);
-    GLINT_TRY(const auto json, reader.read(kMaxReportBytes));
-    PipelineReport report = readPipelineReport(reader, json, "");
-    return reader.ok() ? Result<PipelineReport>(std::move(report)) : Result<PipelineReport>(reader.error());
+    constexpr std::uint64_t kMaxBytes = 1ULL << 28;
+    constexpr const char* kHint = "give a file that glint inspect --pipelines --json wrote";
+    return base::readFileAs<PipelineReport>({file, "pipeline-report", kHint}, kMaxBytes);
 }
-
-namespace {
-
-compiler::PackageCosts readCosts(base::JsonReader& reader, const base::Json& json, const std::string& place) {
-    compiler::PackageCosts costs;
-    costs.package = reader.text(json, place, "package");
-    costs.merge = reader.text(json, place, "merge");
-    costs.shadows = reader.text(json, place, "shadows");
-    costs.precision = static_cast<std::uint32_t>(reader.count(json, place, "precision", 32));
-    if (reader.ok() && !valueNamed<package::ShadowPlacement>(costs.shadows)) {
-        reader.fail(place + "/shadows", "is neither \"inline\" nor \"deferred\"");
-    }
-    if (reader.ok() && costs.precision != 16 && costs.precision != 32) {
-        reader.fail(place + "/precision", "is neither 16 nor 32");
-    }
-    reader.each(json, place, "summary", [&](const base::Json& entry, const std::string& there) {
-        compiler::ModuleCost module;
-        module.role = reader.text(entry, there, "role");
-        module.tracer = textOrEmpty(reader, entry, there, "tracer");
-        module.modules = static_cast<std::uint32_t>(reader.count(entry, there, "modules", kMaxShaderId));
-        module.cost = reader.number(entry, there, "cost", 0.0, kMostOfFact);
-        module.weight = reader.number(entry, there, "weight", 0.0, kMostOfFact);
-        module.occupancy = reader.number(entry, there, "occupancy", 0.0, 1.0);
-        module.spills = reader.number(entry, there, "spills", 0.0, kMostOfFact);
-        module.scratchBytes = reader.number(entry, there, "scratchBytes", 0.0, kMostOfFact);
-        costs.modules.push_back(std::move(module));
-    });
-    return costs;
-}
-
-compiler::GpuCosts readGpu(base::JsonReader& reader, const base::Json& json) {
-    compiler::GpuCosts gpu;
-    if (reader.text(json, "", "format") != "glint-gpu" && reader.ok()) {
-        reader.fail("/format", "is not \"glint-gpu\"");
-    }
-    if (reader.count(json, "", "version", kMaxShaderId) != 1 && reader.ok()) {
-        reader.fail("/version", "is not 1, which this glint reads");
-    }
-    gpu.name = reader.text(json, "", "name");
-    gpu.device = reader.text(json, "", "device");
-    gpu.driver = reader.text(json, "", "driver");
-    gpu.subgroupSize = reader.number(json, "", "subgroupSize", 1.0, static_cast<double>(kMaxSubgroup));
-    reader.each(json, "", "packages", [&](const base::Json& entry, const std::string& place) {
-        gpu.packages.push_back(readCosts(reader, entry, place));
-    });
-    if (reader.ok() && gpu.packages.empty()) {
-        reader.fail("/packages", "is empty");
-    }
-    return gpu;
-}
-
-}  // namespace
 
 compiler::GpuCosts gpuOf(std::string name, std::span<const PipelineReport> reports) {
     compiler::GpuCosts gpu;
@@ -665,14 +590,9 @@ Result<compiler::GpuCosts> readGpuCosts(const std::string& nameOrFile) {
     base::JsonReader reader(
         nameOrFile, "gpu-table",
         "give a table that scripts/gpu_table.py wrote, or one of: " + base::join(builtInGpus()));
-    const auto read = [&reader](const base::Json& json) {
-        compiler::GpuCosts gpu = readGpu(reader, json);
-        return reader.ok() ? Result<compiler::GpuCosts>(std::move(gpu))
-                           : Result<compiler::GpuCosts>(reader.error());
-    };
     for (const base::BuiltinFile& file : gpuTables()) {
         if (file.name == nameOrFile + ".json") {
-            return read(base::Json::parse(file.text));
+            return base::readAs<compiler::GpuCosts>(reader, base::Json::parse(file.text));
         }
     }
     constexpr std::uint64_t kMaxTableBytes = 1ULL << 24;
@@ -683,8 +603,7 @@ Result<compiler::GpuCosts> readGpuCosts(const std::string& nameOrFile) {
                                      base::suggestion(nameOrFile, names)),
                          "the GPUs are: " + base::join(names));
     }
-    GLINT_TRY(const auto json, reader.read(kMaxTableBytes));
-    return read(json);
+    return base::readFileAs<compiler::GpuCosts>(reader, kMaxTableBytes);
 }
 
 const ReportedPipeline* findCounterpart(const PipelineReport& report, const ReportedPipeline& pipeline) {
@@ -722,21 +641,21 @@ bool fitsPattern(std::string_view text, std::string_view pattern) {
     return false;
 }
 
+// Other names are errors, because a budget with a misspelt name would hold nothing.
 PipelineBudget::Rule readRule(base::JsonReader& reader, const base::Json& json, const std::string& place) {
     PipelineBudget::Rule rule;
-    rule.pipelines = reader.text(json, place, "pipelines");
-    for (const auto& item : json.items()) {
-        const std::string& name = item.key();
-        const std::string pointer = place + "/" + name;
-        const auto* const fact = std::ranges::find(kFacts, name, &FactInfo::name);
-        if (fact != std::end(kFacts)) {
-            rule.limits.*fact->member = reader.number(json, place, name.c_str(), 0.0, kMostOfFact);
-        } else if (name == "device") {
-            rule.device = reader.text(json, place, "device");
-        } else if (name != "pipelines" && name != "reason") {
-            reader.fail(pointer, "is no member of a budget");
-        }
-    }
+    reader.member(json, place, "pipelines");
+    reader.eachMember(json, place,
+                      [&](const std::string& name, const base::Json& value, const std::string& there) {
+                          const auto* const fact = std::ranges::find(kFacts, name, &FactInfo::name);
+                          if (fact != std::end(kFacts)) {
+                              rule.limits.*fact->member = reader.number(value, there, 0.0, kMostOfFact);
+                          } else if (name == "pipelines" || name == "device") {
+                              (name == "device" ? rule.device : rule.pipelines) = reader.text(value, there);
+                          } else if (name != "reason") {
+                              reader.fail(there, "is no member of a budget");
+                          }
+                      });
     return rule;
 }
 
@@ -771,12 +690,16 @@ Result<PipelineBudget> readPipelineBudget(const std::filesystem::path& file) {
     GLINT_TRY(const auto json, reader.read(kMaxBudgetBytes));
     PipelineBudget budget;
     budget.file = file.string();
-    if (reader.text(json, "", "format") != "glint-pipeline-budget" && reader.ok()) {
+    const base::Json* const format = reader.member(json, "", "format");
+    if (format != nullptr && *format != "glint-pipeline-budget") {
         reader.fail("/format", "is not \"glint-pipeline-budget\"");
     }
-    reader.each(json, "", "budgets", [&](const base::Json& rule, const std::string& place) {
-        budget.rules.push_back(readRule(reader, rule, place));
-    });
+    const base::Json* const rules = reader.member(json, "", "budgets");
+    if (rules != nullptr) {
+        reader.each(*rules, "/budgets", [&](const base::Json& rule, const std::string& place) {
+            budget.rules.push_back(readRule(reader, rule, place));
+        });
+    }
     if (reader.ok() && budget.rules.empty()) {
         reader.fail("/budgets", "is empty");
     }

@@ -4,7 +4,7 @@
 // driver's name, and adds facts that mean the same on every device.
 #pragma once
 
-#include "base/json.h"
+#include "base/fields_fwd.h"
 #include "inspect/package.h"
 #include "plan/gpu_costs.h"
 
@@ -21,6 +21,18 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+namespace glint {
+
+base::Fields fieldsOf(const PipelineStatistics*);
+
+}  // namespace glint
+
+namespace glint::compiler {
+
+base::Fields fieldsOf(const GpuCosts*);
+
+}  // namespace glint::compiler
 
 namespace glint::inspect {
 
@@ -109,16 +121,11 @@ Result<compiler::GpuCosts> readGpuCosts(const std::string& nameOrFile);
 // Sorts by a fact, the worst first, or by name if it is null. Pipelines without the fact come last.
 void sortPipelines(PipelineReport& report, const FactInfo* fact);
 
-// `withExecutables` keeps the driver's own statistics.
-base::Json toJson(const PipelineReport& report, bool withExecutables = true);
-base::Json toJson(const PipelineFacts& facts);
-base::Json toJson(const PipelineStatistics& pipeline);
+base::Fields fieldsOf(const PipelineReport*);
 std::string textOf(const PipelineStatistic& statistic);
 
-// Reads a file that toJson() wrote. Errors: those of readFile(), "pipeline-report" (not such a file).
+// Reads the JSON of a report. Errors: those of readFile(), "pipeline-report" (not such a file).
 Result<PipelineReport> readPipelineReport(const std::filesystem::path& file);
-// Reads such a report from a part of another file.
-PipelineReport readPipelineReport(base::JsonReader& reader, const base::Json& json, const std::string& place);
 
 // Returns the pipeline of another report that corresponds to this one: that of the same name and tracer, or
 // the only one of that name. Null if there is none.

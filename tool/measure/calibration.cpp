@@ -192,7 +192,7 @@ private:
             return makeError("bench-folder", folder.string(), "can't be made: " + error.message(),
                              "give another -o");
         }
-        return base::writeFile(folder / kCalibrationFile, base::toText(toJson(report_)));
+        return base::writeFile(folder / kCalibrationFile, base::toText(base::jsonOf(report_)));
     }
 
     const Observer& observer_;

@@ -84,7 +84,7 @@ public:
                           {"date", utcNow()},
                           {"quick", settings_.quick},
                           {"rounds", settings_.rounds},
-                          {"machine", toJson(machineOf(*context_))},
+                          {"machine", base::jsonOf(machineOf(*context_))},
                           {"features", featuresToJson(settings_.render, *context_)},
                           {"scene", std::move(picture)},
                           {"generated", std::move(points_)},
@@ -98,7 +98,7 @@ private:
         inspect::Manifest manifest;
         manifest.merge = compiler::nameOf(compiler::MergePolicy::None);
         GLINT_TRY(const auto report, inspect::reportPipelines(*context_, package, manifest, name));
-        pipelines_.push_back(inspect::toJson(report));
+        pipelines_.push_back(base::jsonOf(report));
         return okStatus();
     }
 
@@ -124,7 +124,7 @@ private:
             options.rounds = settings_.rounds;
             options.seed = settings_.seed;
             GLINT_TRY(const auto entry, measurePoint(*context_, uploaded, scene, settings, options));
-            points_.push_back(toJson(entry));
+            points_.push_back(base::jsonOf(entry));
         }
         return addPipelines(*uploaded.package, name);
     }
@@ -164,8 +164,8 @@ private:
         GLINT_TRY_DO(addPipelines(mount->package(), "scene, " + strategy));
         return base::Json{{"strategy", strategy},
                           {"cases", mount->cases()},
-                          {"time", toJson(intervalOf(times))},
-                          {"hitTime", toJson(intervalOf(hits))}};
+                          {"time", base::jsonOf(intervalOf(times))},
+                          {"hitTime", base::jsonOf(intervalOf(hits))}};
     }
 
     const Observer& observer_;

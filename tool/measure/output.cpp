@@ -139,7 +139,7 @@ Status writeBench(const BenchReport& report, const fs::path& folder) {
         }
         GLINT_TRY_DO(base::writeFile(folder / kSettingsFile, settingsText(settings, report.command)));
     }
-    const base::Json json = toJson(report);
+    const base::Json json = base::jsonOf(report);
     GLINT_TRY_DO(base::writeFile(folder / kReportFile, base::toText(json)));
     GLINT_TRY_DO(base::writeFile(folder / kPageFile, makePage(json, pictures.ofPage)));
     removeOthers(folder, pictures.files);

@@ -1,7 +1,7 @@
 #include "resolve/profile.h"
 
+#include "base/fields.h"
 #include "base/files.h"
-#include "base/json.h"
 #include "base/text.h"
 
 #include <fmt/format.h>
@@ -14,14 +14,14 @@
 
 namespace glint::compiler {
 
+using base::field;
+
 namespace {
 
-constexpr const char* kProfileFormat = "glint-profile";
-constexpr int kProfileVersion = 1;
 // A key takes less than a kilobyte.
 constexpr std::uint64_t kMaxProfileBytes = 1ULL << 26;
 // With this limit, sums of 2^16 keys stay below 2^64.
-constexpr std::uint64_t kMaxHits = 1ULL << 48;
+constexpr double kMaxHits = 0x1p48;
 constexpr std::size_t kMaxKeys = std::size_t{1} << 16;
 
 std::vector<std::string> featureNames(const materials::MaterialModel& model, materials::FeatureMask mask) {
@@ -30,42 +30,6 @@ std::vector<std::string> featureNames(const materials::MaterialModel& model, mat
         names.emplace_back(name);
     }
     return names;
-}
-
-void readFormat(base::JsonReader& reader, const base::Json& json) {
-    if (!json.is_object()) {
-        reader.fail("", "is no JSON object");
-        return;
-    }
-    if (reader.text(json, "", "format") != kProfileFormat) {
-        reader.fail("/format", fmt::format("is not \"{}\"", kProfileFormat));
-    }
-    const std::uint64_t version = reader.count(json, "", "version", kMaxHits);
-    if (version != kProfileVersion) {
-        reader.fail("/version", fmt::format("is {}; this glint reads {}", version, kProfileVersion));
-    }
-}
-
-Profile readMembers(base::JsonReader& reader, const base::Json& json) {
-    Profile profile;
-    reader.each(json, "", "sources", [&](const base::Json& source, const std::string& place) {
-        profile.sources.push_back({reader.text(source, place, "file"), reader.text(source, place, "hash")});
-    });
-    const base::Json* variant = reader.ok() ? reader.member(json, "", "variant") : nullptr;
-    if (variant != nullptr && !variant->is_null()) {
-        profile.variant = reader.text(json, "", "variant");
-    }
-    profile.alpha = reader.text(json, "", "alpha");
-    profile.hitLobes = reader.texts(json, "", "hitLobes");
-    reader.each(json, "", "keys", [&](const base::Json& key, const std::string& place) {
-        if (profile.keys.size() == kMaxKeys) {
-            reader.fail("/keys", fmt::format("has more than {} elements", kMaxKeys));
-            return;
-        }
-        profile.keys.push_back({reader.texts(key, place, "features"), reader.texts(key, place, "materials"),
-                                reader.count(key, place, "hits", kMaxHits)});
-    });
-    return profile;
 }
 
 // Returns nothing if this version of Glint lacks one of the features.
@@ -153,32 +117,37 @@ Profile makeProfile(const gltf::SceneList& scenes, const Plan& plan, const mater
 
 }  // namespace
 
+static base::Fields fieldsOf(const ProfileSource*) {
+    return {
+        field<&ProfileSource::file>("file", "File of the scene, without its folder."),
+        field<&ProfileSource::hash>("hash", "XXH3 of the file, hexadecimal.", {.pattern = "^[0-9a-f]{16}$"})};
+}
+
+static base::Fields fieldsOf(const ProfileKey*) {
+    using T = ProfileKey;
+    return {field<&T::features>("features", "Names of its features, by bit."),
+            field<&T::materials>("materials", "Names of the materials that have it."),
+            field<&T::hits>("hits", "Number of its hits.", {.most = kMaxHits})};
+}
+
+base::Fields fieldsOf(const Profile*) {
+    using T = Profile;
+    return {base::constant("format", "Names the kind of file.", "glint-profile"),
+            base::constant("version", "Version of the format.", 1),
+            field<&T::sources>("sources", "The files whose materials were rendered."),
+            field<&T::variant>("variant", "The variant of the materials; null for none.", {.orNull = true}),
+            field<&T::alpha>("alpha", "What rays did with the alpha of what they hit."),
+            field<&T::hitLobes>("hitLobes", "Names of the lobes that hits kept."),
+            field<&T::keys>("keys", "The keys of the scene, by their mask.", {.mostElements = kMaxKeys})};
+}
+
 std::string toText(const Profile& profile) {
-    base::Json sources = base::Json::array();
-    for (const ProfileSource& source : profile.sources) {
-        sources.push_back(base::Json{{"file", source.file}, {"hash", source.hash}});
-    }
-    base::Json keys = base::Json::array();
-    for (const ProfileKey& key : profile.keys) {
-        keys.push_back(
-            base::Json{{"features", key.features}, {"materials", key.materials}, {"hits", key.hits}});
-    }
-    return base::toText(
-        base::Json{{"format", kProfileFormat},
-                   {"version", kProfileVersion},
-                   {"sources", sources},
-                   {"variant", profile.variant.empty() ? base::Json(nullptr) : base::Json(profile.variant)},
-                   {"alpha", profile.alpha},
-                   {"hitLobes", profile.hitLobes},
-                   {"keys", keys}});
+    return base::toText(base::jsonOf(profile));
 }
 
 Result<Profile> readProfile(const std::filesystem::path& path) {
-    base::JsonReader reader(path, "profile-format", "make the profile again with glint render --profile");
-    GLINT_TRY(const auto json, reader.read(kMaxProfileBytes));
-    readFormat(reader, json);
-    Profile profile = reader.ok() ? readMembers(reader, json) : Profile{};
-    return reader.ok() ? Result<Profile>(std::move(profile)) : Result<Profile>(reader.error());
+    constexpr const char* kHint = "make the profile again with glint render --profile";
+    return base::readFileAs<Profile>({path, "profile-format", kHint}, kMaxProfileBytes);
 }
 
 Result<std::map<materials::FeatureMask, std::uint64_t>> readHits(const std::string& file,

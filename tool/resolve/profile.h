@@ -2,6 +2,7 @@
 // `glint render --profile FILE` counts hits, and `--merge profile` reads them.
 #pragma once
 
+#include "base/fields_fwd.h"
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
 #include "resolve/build.h"
@@ -36,6 +37,8 @@ struct Profile {
     std::vector<std::string> hitLobes;
     std::vector<ProfileKey> keys;
 };
+
+base::Fields fieldsOf(const Profile*);
 
 // Returns JSON in the format of docs/schemas/profile.json.
 std::string toText(const Profile& profile);

@@ -62,7 +62,7 @@ TEST(CalibrationEntry, TakesStrategiesThatDidNotRun) {
     report.entries = {entryOf({measured("uber", 1.0), skipped}), entryOf({skipped})};
     EXPECT_EQ(report.entries[0].fastest, Names{"uber"});
     EXPECT_TRUE(report.entries[1].fastest.empty());
-    EXPECT_EQ(toJson(report).at("points")[0].at("strategies")[1].at("skipped"), "out of memory");
+    EXPECT_EQ(base::jsonOf(report).at("points")[0].at("strategies")[1].at("skipped"), "out of memory");
 }
 
 TEST(CalibrationPicture, HasAsManyPixelsAsRays) {

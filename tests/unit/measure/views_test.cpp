@@ -1,5 +1,6 @@
 // Views of values that are given: statistics, colours, legends.
 #include "image/text.h"
+#include "measure/report_json.h"
 
 #include <glint/measure/views.h>
 
@@ -81,7 +82,7 @@ TEST(ViewStatisticsOf, NumbersAreThoseOfOneSample) {
     for (const std::uint64_t pixels : statistics.histogram) {
         EXPECT_EQ(pixels, 2U);
     }
-    const auto json = toJson(raysView());
+    const auto json = base::jsonOf(raysView());
     EXPECT_EQ(json["name"], "rays");
     EXPECT_EQ(json["greatest"], 31.0);
     EXPECT_EQ(json["histogram"]["pixels"].size(), 16U);

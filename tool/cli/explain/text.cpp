@@ -181,7 +181,7 @@ base::Json keyToJson(const compiler::Build& build, const compiler::KeyCost& cost
     return {{"mask", fmt::format("0x{:016x}", key.mask)},
             {"features", featuresToJson(*build.plan.model, key.mask)},
             {"materials", materialsToJson(*build.scenes, key.materials)},
-            {"share", compiler::shareToJson(key.share)},
+            {"share", compiler::roundedShare(key.share)},
             {"own", {{"instructions", cost.own.instructions}, {"textureFetches", cost.own.fetches}}},
             {"leavingAdds", cost.leavingAdds}};
 }
@@ -195,7 +195,7 @@ base::Json caseToJson(const compiler::Build& build, const compiler::CaseCost& co
     base::Json branches = base::Json::array();
     for (const compiler::BranchCost& branch : cost.branches) {
         branches.push_back(base::Json{{"feature", branch.feature->name},
-                                      {"share", compiler::shareToJson(branch.share)},
+                                      {"share", compiler::roundedShare(branch.share)},
                                       {"inVain", branch.cost}});
     }
     base::Json nearest;
@@ -206,7 +206,7 @@ base::Json caseToJson(const compiler::Build& build, const compiler::CaseCost& co
     return {{"id", cost.shaderId},
             {"name", shaderCase.name},
             {"reason", toString(shaderCase.reason)},
-            {"share", compiler::shareToJson(shaderCase.share)},
+            {"share", compiler::roundedShare(shaderCase.share)},
             {"always", featuresToJson(*build.plan.model, shaderCase.always)},
             {"sometimes", featuresToJson(*build.plan.model, shaderCase.sometimes)},
             {"estimate", toJson(cost.code)},
@@ -382,12 +382,12 @@ base::Json materialToJson(const compiler::Build& build, int material) {
         keys.push_back(base::Json{{"mask", fmt::format("0x{:016x}", key->mask)},
                                   {"features", featuresToJson(*build.plan.model, key->mask)},
                                   {"onPrimarySurfaces", primaryToJson(build, *key, material)},
-                                  {"share", compiler::shareToJson(key->share)},
+                                  {"share", compiler::roundedShare(key->share)},
                                   {"case",
                                    {{"id", shader.shaderId},
                                     {"name", shader.name},
                                     {"keys", shader.keys.size()},
-                                    {"share", compiler::shareToJson(shader.share)},
+                                    {"share", compiler::roundedShare(shader.share)},
                                     {"reason", toString(shader.reason)},
                                     {"always", featuresToJson(*build.plan.model, shader.always)},
                                     {"sometimes", featuresToJson(*build.plan.model, shader.sometimes)}}},

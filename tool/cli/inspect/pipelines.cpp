@@ -215,8 +215,11 @@ Result<int> showPipelines(const Console& console, const Package& package, const 
     sortPipelines(report, factNamed(arguments.sort));
     const bool good = judge(console, report, budget);
     if (console.isJson()) {
-        base::Json json = toJson(report);
-        json["compared"] = other ? toJson(*other, false) : base::Json(nullptr);
+        base::Json json = base::jsonOf(report);
+        json["compared"] = other ? base::jsonOf(*other) : base::Json(nullptr);
+        for (base::Json& pipeline : other ? json["compared"]["pipelines"] : json["compared"]) {
+            pipeline.erase("executables");
+        }
         console.result(json);
     } else {
         console.print(toText(report, other ? &*other : nullptr, arguments.sort,

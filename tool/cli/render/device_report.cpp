@@ -30,39 +30,35 @@ const char* kindOf(const MemoryItem& item) {
     return item.isImage ? "image" : "buffer";
 }
 
-base::Json toJson(const std::vector<MemoryItem>& items) {
-    base::Json list = base::Json::array();
-    for (const MemoryItem& item : items) {
-        list.push_back({{"name", item.name},
-                        {"kind", kindOf(item)},
-                        {"use", nameOf(item.use)},
-                        {"count", item.count},
-                        {"bytes", item.bytes}});
-    }
-    return list;
-}
-
 }  // namespace
+}  // namespace glint::cli
 
-base::Json cacheToJson(const PipelineReport& report) {
-    if (!report.cache) {
-        return nullptr;
-    }
-    return {{"file", report.cache->file},
-            {"loadedBytes", report.cache->loadedBytes},
-            {"savedBytes", report.cache->savedBytes},
-            {"hits", base::orNull(report.making.cacheHits)}};
+namespace glint {
+
+static base::Fields fieldsOf(const MemoryItem*) {
+    using T = MemoryItem;
+    using base::output;
+    return {output<&T::name>("name", "What it holds."),
+            output<cli::kindOf>("kind", "Kind of resource.", {.names = {"image", "buffer"}}),
+            output("use", "Whether only the device uses it, or the host writes or reads it.",
+                   [](const T& item) { return cli::nameOf(item.use); },
+                   {.names = {"device", "upload", "shared", "readback"}}),
+            output<&T::count>("count", "Number of resources of this name."),
+            output<&T::bytes>("bytes", "Size of all of them.")};
 }
 
-base::Json statisticsToJson(const PipelineReport& report) {
-    if (!report.statistics) {
-        return nullptr;
-    }
-    base::Json list = base::Json::array();
-    for (const PipelineStatistics& pipeline : *report.statistics) {
-        list.push_back(inspect::toJson(pipeline));
-    }
-    return list;
+}  // namespace glint
+
+namespace glint::cli {
+
+using base::output;
+
+base::Fields fieldsOf(const PipelineCacheReport*) {
+    using T = PipelineCacheReport;
+    return {output<&T::file>("file", "The cache's file for this device and driver."),
+            output<&T::loadedBytes>("loadedBytes", "Size of the file before; 0 if there was nothing usable."),
+            output<&T::savedBytes>("savedBytes", "Size of the file after; 0 if it could not be written."),
+            output<&T::hits>("hits", "Pipelines found in it; null if the driver does not say.")};
 }
 
 std::string toText(const PipelineReport& report) {
@@ -79,10 +75,15 @@ std::string toText(const PipelineReport& report) {
     return text;
 }
 
-base::Json toJson(const StartReport& start) {
-    return {{"deviceMs", start.deviceMs},           {"texturesMs", start.texturesMs},
-            {"uploadMs", start.uploadMs},           {"rendererMs", start.rendererMs},
-            {"firstSampleMs", start.firstSampleMs}, {"totalMs", start.totalMs()}};
+base::Fields fieldsOf(const StartReport*) {
+    using T = StartReport;
+    return {
+        output<&T::deviceMs>("deviceMs", "Time of making instance, device and pipeline cache."),
+        output<&T::texturesMs>("texturesMs", "Time of reading, transcoding and compressing images."),
+        output<&T::uploadMs>("uploadMs", "Time of uploading the scene and building acceleration structures."),
+        output<&T::rendererMs>("rendererMs", "Time of making buffers, images and pipelines."),
+        output<&T::firstSampleMs>("firstSampleMs", "Time of the first sample until it is complete."),
+        output<&T::totalMs>("totalMs", "Sum of these times.")};
 }
 
 std::string toText(const StartReport& start) {
@@ -124,16 +125,17 @@ std::uint64_t bytesOf(const std::vector<MemoryItem>& items) {
                            [](std::uint64_t sum, const MemoryItem& item) { return sum + item.bytes; });
 }
 
-base::Json toJson(const MemoryReport& memory) {
-    const std::uint64_t frameBytes = bytesOf(memory.frame);
-    const std::uint64_t sceneBytes = bytesOf(memory.scene);
-    return {{"frame", toJson(memory.frame)},
-            {"frameBytes", frameBytes},
-            {"frameAllocatedBytes", memory.frameAllocatedBytes},
-            {"scene", toJson(memory.scene)},
-            {"sceneBytes", sceneBytes},
-            {"sceneAllocatedBytes", memory.sceneAllocatedBytes},
-            {"bytes", frameBytes + sceneBytes}};
+base::Fields fieldsOf(const MemoryReport*) {
+    using T = MemoryReport;
+    return {
+        output<&T::frame>("frame", "Every image and buffer of the footprint."),
+        output("frameBytes", "Sum of these sizes.", [](const T& memory) { return bytesOf(memory.frame); }),
+        output<&T::frameAllocatedBytes>("frameAllocatedBytes", "Size of the allocations that hold them."),
+        output<&T::scene>("scene", "Images and buffers of the scene."),
+        output("sceneBytes", "Sum of these sizes.", [](const T& memory) { return bytesOf(memory.scene); }),
+        output<&T::sceneAllocatedBytes>("sceneAllocatedBytes", "Size of the allocations that hold them."),
+        output("bytes", "Size of frame and scene.",
+               [](const T& memory) { return bytesOf(memory.frame) + bytesOf(memory.scene); })};
 }
 
 std::string toText(const MemoryReport& memory) {

@@ -21,7 +21,9 @@ struct PipelineCacheReport {
     std::string file;
     std::uint64_t loadedBytes = 0;  // 0: there was nothing of use
     std::uint64_t savedBytes = 0;
+    std::optional<std::uint32_t> hits;  // PipelineMaking::cacheHits
 };
+base::Fields fieldsOf(const PipelineCacheReport*);
 
 // The times from nothing to a picture, wall clock.
 struct StartReport {
@@ -43,13 +45,10 @@ struct PipelineReport {
     std::optional<std::vector<PipelineStatistics>> statistics;  // absent: not asked for, or not to be had
 };
 
-// Returns null if there is none.
-base::Json cacheToJson(const PipelineReport& report);
-base::Json statisticsToJson(const PipelineReport& report);
 // Returns "8 in 12.3 ms by 4 threads; cache of 1.2 MiB, 8 found in it".
 std::string toText(const PipelineReport& report);
 
-base::Json toJson(const StartReport& start);
+base::Fields fieldsOf(const StartReport*);
 std::string toText(const StartReport& start);
 
 // Returns a table with a row for each executable, and the facts that inspect::factsOf() finds.
@@ -66,7 +65,7 @@ struct MemoryReport {
 
 std::uint64_t bytesOf(const std::vector<MemoryItem>& items);
 
-base::Json toJson(const MemoryReport& memory);
+base::Fields fieldsOf(const MemoryReport*);
 std::string toText(const MemoryReport& memory);
 
 }  // namespace glint::cli

@@ -3,6 +3,7 @@
 #include "cli/report.h"
 #include "cli/table.h"
 #include "emit/package/json.h"
+#include "measure/report_json.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -15,38 +16,11 @@ namespace glint::cli {
 
 namespace {
 
-base::Json toJson(const std::optional<EnvironmentReport>& environment) {
-    if (!environment) {
-        return nullptr;
-    }
-    const Environment::Statistics& statistics = environment->statistics;
-    return {{"file", environment->file},         {"width", statistics.width},
-            {"height", statistics.height},       {"levels", statistics.levels},
-            {"halfFloat", statistics.halfFloat}, {"filterMs", statistics.filterMs}};
-}
-
-base::Json toJson(const std::optional<scene_view::SkyChoice>& sky) {
-    if (!sky) {
-        return nullptr;
-    }
-    return {{"scale", sky->scale},
-            {"automatic", sky->automatic},
-            {"luminance", scene_view::meanIlluminance(sky->sky()) / std::numbers::pi},
-            {"lightIlluminance", base::orNull(sky->lights)}};
-}
-
-base::Json sunToJson(const RenderReport& report) {
-    return report.sun ? base::Json{{"illuminance", report.sun->intensity},
-                                   {"direction", report.sun->direction},
-                                   {"automatic", report.sunAutomatic}}
-                      : base::Json(nullptr);
-}
-
 // Describes the added light in one line.
 std::string sunText(const RenderReport& report) {
-    const std::string lux = fmt::format("{:.3g} lux", report.sun->intensity[0]);
-    return lux + (report.sunAutomatic ? ", added because the scene has no light (--no-sun leaves it out)"
-                                      : " (--sun)");
+    const std::string lux = fmt::format("{:.3g} lux", report.sun->light.intensity[0]);
+    return lux + (report.sun->automatic ? ", added because the scene has no light (--no-sun leaves it out)"
+                                        : " (--sun)");
 }
 
 constexpr std::string_view nameOf(MotionStatistics::TopLevel action) {
@@ -58,27 +32,6 @@ constexpr std::string_view nameOf(MotionStatistics::TopLevel action) {
         default:
             return "kept";
     }
-}
-
-base::Json toJson(const std::vector<FrameReport>& frames) {
-    base::Json list = base::Json::array();
-    for (const FrameReport& frame : frames) {
-        list.push_back({{"frame", frame.frame},
-                        {"seconds", frame.seconds},
-                        {"image", frame.image},
-                        {"deformed", frame.motion.deformed},
-                        {"refits", frame.motion.refits},
-                        {"rebuilds", frame.motion.rebuilds},
-                        {"topLevel", nameOf(frame.motion.topLevel)},
-                        {"poseMs", frame.poseMs},
-                        {"updateMs", frame.updateMs},
-                        {"deformMs", frame.motion.deformMs},
-                        {"blasMs", frame.motion.blasMs},
-                        {"tlasMs", frame.motion.tlasMs},
-                        {"renderMs", frame.renderMs},
-                        {"deviceMs", frame.deviceMs}});
-    }
-    return list;
 }
 
 std::string tableOf(const std::vector<FrameReport>& frames) {
@@ -118,23 +71,12 @@ constexpr Gate kGates[] = {
     {"cone", &EffectCounters::skippedCone},
 };
 
-base::Json effectsToJson(const FrameCounters& counters) {
-    base::Json list = base::Json::array();
-    for (const EffectCounters& effect : counters.effects) {
-        base::Json skipped = base::Json::object();
-        for (const Gate& gate : kGates) {
-            skipped[gate.name] = effect.*gate.count;
-        }
-        list.push_back({{"name", effect.name},
-                        {"rays", effect.rays},
-                        {"hits", effect.hits},
-                        {"misses", effect.misses},
-                        {"segments", effect.segments},
-                        {"screenHits", effect.screenHits},
-                        {"skipped", skipped},
-                        {"buckets", effect.bucketCounts}});
+std::vector<std::pair<std::string_view, std::uint32_t>> skippedOf(const EffectCounters& effect) {
+    std::vector<std::pair<std::string_view, std::uint32_t>> skipped;
+    for (const Gate& gate : kGates) {
+        skipped.emplace_back(gate.name, effect.*gate.count);
     }
-    return list;
+    return skipped;
 }
 
 std::string effectText(const EffectCounters& effect) {
@@ -174,15 +116,6 @@ std::string toText(const scene_view::SkyChoice& choice) {
         return what + " (--sky)";
     }
     return choice.lights ? fmt::format("{}, for lights of {:.3g} lux", what, *choice.lights) : what;
-}
-
-base::Json toJson(const TextureReport& textures) {
-    base::Json levels = base::Json::array();
-    for (const std::optional<std::uint32_t>& level : textures.levels) {
-        levels.push_back(base::orNull(level));
-    }
-    return {{"images", textures.images}, {"formats", textures.formats}, {"texels", textures.texels},
-            {"bytes", textures.bytes},   {"found", textures.found},     {"levels", std::move(levels)}};
 }
 
 std::string toText(const TextureReport& textures) {
@@ -225,84 +158,207 @@ Status checkOrder(const RenderReport& report) {
         "this is a defect of Glint or of the driver: please report it, and try another --ordering");
 }
 
-base::Json toJson(const RenderReport& report) {
-    const GpuScene::Statistics& scene = report.sceneStatistics;
-    const FrameCounters& counters = report.counters;
-    base::Json passes = base::Json::array();
-    for (const PassTiming& pass : report.passes) {
-        passes.push_back(base::Json{
-            {"name", pass.name},
-            {"shaderId", pass.pass == Pass::ShadeCase ? base::Json(pass.shaderId) : base::Json(nullptr)},
-            {"milliseconds", pass.milliseconds}});
-    }
-    return {{"scene", report.scene},
-            {"sceneInFile", compiler::sceneInFileToJson(report.sceneInFile)},
-            {"image", report.image},
-            {"device", report.device},
-            {"driver", report.driver},
-            {"strategy", report.strategy},
-            {"strategyChoice",
-             report.strategyChoice ? strategyChoiceToJson(*report.strategyChoice) : base::Json(nullptr)},
-            {"tracer", report.tracer},
-            {"ordering", base::orNull(report.ordering)},
-            {"merge", base::orNull(report.merge)},
-            {"alpha", report.alpha},
-            {"width", report.width},
-            {"height", report.height},
-            {"spp", report.samples},
-            {"seed", report.seed},
-            {"camera", report.camera},
-            {"exposure", report.exposure},
-            {"exposureAutomatic", report.exposureAutomatic},
-            {"sky", toJson(report.sky)},
-            {"sun", sunToJson(report)},
-            {"cases", report.cases},
-            {"compileMs", base::orNull(report.compileMs)},
-            {"environment", toJson(report.environment)},
-            {"sceneStatistics",
-             {{"triangles", scene.triangles},
-              {"geometries", scene.geometries},
-              {"instances", scene.instances},
-              {"blasCount", scene.blasCount},
-              {"blasBytes", scene.blasBytes},
-              {"blasUncompactedBytes", scene.blasUncompactedBytes},
-              {"narrowedTextures", scene.narrowedTextures},
-              {"maskedTriangles", scene.maskedTriangles},
-              {"provedOpaque", scene.provedOpaque},
-              {"provedTransparent", scene.provedTransparent},
-              {"micromaps", scene.micromaps},
-              {"micromapBytes", scene.micromapBytes},
-              {"opacityMs", scene.opacityMs},
-              {"orderMs", scene.orderMs},
-              {"blasBuildMs", scene.blasBuildMs},
-              {"tlasBuildMs", scene.tlasBuildMs}}},
-            {"textures", toJson(report.textures)},
-            {"pipelineCreationMs", report.pipelines.making.milliseconds},
-            {"pipelineThreads", report.pipelines.making.threads},
-            {"pipelineCache", cacheToJson(report.pipelines)},
-            {"pipelineStatistics", statisticsToJson(report.pipelines)},
-            {"start", toJson(report.start)},
-            {"renderMs", report.renderMs},
-            {"frames", toJson(report.frames)},
-            {"passes", passes},
-            {"counters",
-             {{"rays", counters.rays},
-              {"raysOfBounces", counters.raysOfBounces},
-              {"shadowRays", counters.shadowRays},
-              {"orderErrors", counters.orderErrors},
-              {"unknownShader", counters.unknownShader},
-              {"alphaTests", counters.alphaTests},
-              {"nonFinite", counters.nonFinite},
-              {"buckets", counters.bucketCounts}}},
-            {"view", report.view ? measure::toJson(*report.view) : base::Json(nullptr)},
-            {"effects", effectsToJson(counters)},
-            {"footprint",
-             {{"pipelines", report.footprint.pipelines},
-              {"images", report.footprint.images},
-              {"buffers", report.footprint.buffers},
-              {"bytes", report.footprint.bytes}}},
-            {"memory", toJson(report.memory)},
-            {"traffic", toJson(report.traffic)}};
+}  // namespace glint::cli
+
+namespace glint::scene_view {
+
+static base::Fields fieldsOf(const SkyChoice*) {
+    using T = SkyChoice;
+    return {base::output<&T::scale>("scale", "Factor of the default sky's radiance."),
+            base::output<&T::automatic>("automatic", "Whether the lights chose the factor."),
+            base::output("luminance", "Mean luminance over all directions, in cd/m².",
+                         [](const T& sky) { return meanIlluminance(sky.sky()) / std::numbers::pi; }),
+            base::output<&T::lights>("lightIlluminance",
+                                     "Log-average of the lights' illuminance in lux; null without lights.")};
+}
+
+}  // namespace glint::scene_view
+
+namespace glint {
+
+static base::Fields fieldsOf(const PassTiming*) {
+    using T = PassTiming;
+    return {base::output<&T::name>("name", "Name of the pass."),
+            base::output("shaderId", "The case, for a pass that shades one; null for other passes.",
+                         [](const T& pass) {
+                             return pass.pass == Pass::ShadeCase ? std::optional(pass.shaderId)
+                                                                 : std::nullopt;
+                         }),
+            base::output<&T::milliseconds>("milliseconds", "Device time of the pass.")};
+}
+
+static base::Fields fieldsOf(const EffectCounters*) {
+    using T = EffectCounters;
+    using base::output;
+    return {output<&T::name>("name", "Name of the effect."),
+            output<&T::rays>("rays",
+                             "Rays traced to their end; those to lights and occluders with --stats only."),
+            output<&T::hits>("hits", "Rays that hit something."),
+            output<&T::misses>("misses", "Rays that met nothing."),
+            output<&T::segments>("segments", "Rays from one interface to the next, for refraction."),
+            output<&T::screenHits>("screenHits", "Hits that were found in screen space instead of by a ray."),
+            output<cli::skippedOf>(
+                "skipped",
+                "Rays that were not sent, by pixel, or by light and pixel: no surface (sky), unlit, "
+                "above --max-roughness (rough), no light or into the surface (black), no such lobe "
+                "(absent), below --skip-below (faint), and surfaces that face away from a light "
+                "(facing), beyond its range or outside its cone."),
+            output<&T::bucketCounts>("buckets",
+                                     "Misses, then hits by shader ID; empty if not ordered by effect.")};
+}
+
+}  // namespace glint
+
+namespace glint::cli {
+
+using base::output;
+
+static base::Fields fieldsOf(const EnvironmentReport*) {
+    using T = EnvironmentReport;
+    using Statistics = Environment::Statistics;
+    return {output<&T::file>("file", "Path as given on the command line."),
+            output<&T::statistics, &Statistics::width>("width", "Width of the filtered map."),
+            output<&T::statistics, &Statistics::height>("height", "Height of the filtered map."),
+            output<&T::statistics, &Statistics::levels>("levels", "Number of levels of roughness."),
+            output<&T::statistics, &Statistics::halfFloat>("halfFloat", "Whether 16 bits a channel hold it."),
+            output<&T::statistics, &Statistics::filterMs>("filterMs", "Wall-clock time of filtering.")};
+}
+
+static base::Fields fieldsOf(const FrameReport*) {
+    using T = FrameReport;
+    using Motion = MotionStatistics;
+    return {output<&T::frame>("frame", "Number of the picture."),
+            output<&T::seconds>("seconds", "Time of the animation in seconds."),
+            output<&T::image>("image", "File of the picture."),
+            output<&T::motion, &Motion::deformed>("deformed", "Instances whose vertices moved."),
+            output<&T::motion, &Motion::refits>("refits", "Number of BLASes that were refitted."),
+            output<&T::motion, &Motion::rebuilds>("rebuilds", "Number of BLASes that were rebuilt."),
+            output("topLevel", "What was done with the TLAS.",
+                   [](const T& it) { return nameOf(it.motion.topLevel); },
+                   {.names = {"kept", "updated", "rebuilt"}}),
+            output<&T::poseMs>("poseMs", "Wall-clock time of computing nodes, joints and weights."),
+            output<&T::updateMs>("updateMs", "Wall-clock time of updating the scene on the device."),
+            output<&T::motion, &Motion::deformMs>("deformMs", "Device time of deforming vertices."),
+            output<&T::motion, &Motion::blasMs>("blasMs", "Device time of updating BLASes."),
+            output<&T::motion, &Motion::tlasMs>("tlasMs", "Device time of updating the TLAS."),
+            output<&T::renderMs>("renderMs", "Wall-clock time of all samples."),
+            output<&T::deviceMs>("deviceMs", "Device time of the passes of the last sample.")};
+}
+
+static base::Fields fieldsOf(const TextureReport*) {
+    using T = TextureReport;
+    return {output<&T::images>("images", "Number of images."),
+            output<&T::formats>("formats", "How many images have a format, by its name."),
+            output<&T::texels>("texels", "Texels of the first levels."),
+            output<&T::bytes>("bytes", "Size of all levels."),
+            output<&T::found>("found", "Number of compressed images that came from the cache."),
+            output<&T::levels>("levels",
+                               "With --texture-levels: the finest level read of each texture, or null.")};
+}
+
+static base::Fields fieldsOf(const RenderReport::Sun*) {
+    using T = RenderReport::Sun;
+    return {output<&T::light, &LightView::intensity>("illuminance", "Red, green and blue, in lux."),
+            output<&T::light, &LightView::direction>("direction", "In which its light travels."),
+            output<&T::automatic>("automatic", "Whether it was added because the scene has no light.")};
+}
+
+namespace {
+
+std::vector<base::Field> sceneStatistics() {
+    using S = GpuScene::Statistics;
+    constexpr auto kAt = &RenderReport::sceneStatistics;
+    return {
+        output<kAt, &S::triangles>("triangles", "Number of triangles of all instances."),
+        output<kAt, &S::geometries>("geometries", "Number of geometries of all instances."),
+        output<kAt, &S::instances>("instances", "Number of instances in the acceleration structure."),
+        output<kAt, &S::blasCount>("blasCount", "Number of bottom-level structures."),
+        output<kAt, &S::blasBytes>("blasBytes", "Size of the bottom-level structures after compaction."),
+        output<kAt, &S::blasUncompactedBytes>("blasUncompactedBytes", "Their size before compaction."),
+        output<kAt, &S::narrowedTextures>("narrowedTextures", "16-bit textures read with 8 bits."),
+        output<kAt, &S::maskedTriangles>("maskedTriangles", "Triangles whose alpha rays would test."),
+        output<kAt, &S::provedOpaque>("provedOpaque", "Those that are proved opaque."),
+        output<kAt, &S::provedTransparent>("provedTransparent", "Those that are proved transparent."),
+        output<kAt, &S::micromaps>("micromaps", "Opacity micromaps of the others."),
+        output<kAt, &S::micromapBytes>("micromapBytes", "Their bytes on the device."),
+        output<kAt, &S::opacityMs>("opacityMs", "Wall-clock time of the proofs and of the micromaps."),
+        output<kAt, &S::orderMs>("orderMs", "Wall-clock time of ordering triangles."),
+        output<kAt, &S::blasBuildMs>("blasBuildMs", "Device time of building the bottom-level structures."),
+        output<kAt, &S::tlasBuildMs>("tlasBuildMs", "Device time of building the top-level structure.")};
+}
+
+std::vector<base::Field> counters() {
+    using C = FrameCounters;
+    constexpr auto kAt = &RenderReport::counters;
+    return {output<kAt, &C::rays>("rays", "Number of rays of all effects whose hits are shaded."),
+            output<kAt, &C::raysOfBounces>("raysOfBounces", "Rays by bounce, those of the effects first."),
+            output<kAt, &C::shadowRays>("shadowRays", "Number of deferred shadow rays of hits."),
+            output<kAt, &C::orderErrors>("orderErrors", "Hits lost, doubled or misplaced."),
+            output<kAt, &C::unknownShader>("unknownShader", "Number of hits whose shader no case has."),
+            output<kAt, &C::alphaTests>("alphaTests", "Candidates of rays whose alpha was tested."),
+            output<kAt, &C::nonFinite>("nonFinite", "Samples that were NaN or infinite."),
+            output<kAt, &C::bucketCounts>("buckets", "Misses, then hits by shader ID.")};
+}
+
+}  // namespace
+
+base::Fields fieldsOf(const RenderReport*) {
+    using T = RenderReport;
+    using Pipelines = PipelineReport;
+    using Footprint = Renderer::Footprint;
+    return {
+        output<&T::scene>("scene", "Path as given on the command line."),
+        output("sceneInFile", "The scene that was read (--scene); null if there are none.",
+               [](const T& report) { return orNone(report.sceneInFile); }),
+        output<&T::image>("image", "Path as given on the command line."),
+        output<&T::device>("device", "Name of the GPU."),
+        output<&T::driver>("driver", "Name of its driver."),
+        output<&T::strategy>("strategy", "How hits were shaded.", {.names = compiler::strategyWords()}),
+        output<&T::strategyChoice>("strategyChoice", "How --strategy auto chose; null without it."),
+        output<&T::tracer>("tracer", "The tracer.", {.names = base::wordsFor<package::Tracer>()}),
+        output<&T::ordering>("ordering", "How hits were ordered; null where the strategy orders none."),
+        output<&T::merge>("merge", "Policy of the package that was compiled; null with --package."),
+        output<&T::alpha>("alpha", "What rays do with the alpha of what they hit.",
+                          {.names = base::wordsFor<package::AlphaPolicy>()}),
+        output<&T::width>("width", "Width in pixels."),
+        output<&T::height>("height", "Height in pixels."),
+        output<&T::samples>("spp", "Samples of each pixel."),
+        output<&T::seed>("seed", "Seed of the random numbers."),
+        output<&T::camera>("camera", "Name or number of the camera, or auto."),
+        output<&T::exposure>("exposure", "Exposure in stops."),
+        output<&T::exposureAutomatic>("exposureAutomatic", "Whether the first picture chose the exposure."),
+        output<&T::sky>("sky", "The sky, a gradient; null with --environment."),
+        output<&T::sun>("sun", "The directional light that --sun adds; null where there is none."),
+        output<&T::cases>("cases", "Number of shaders."),
+        output<&T::compileMs>("compileMs", "Time of compilation; null with --package."),
+        output<&T::environment>("environment", "The environment map; null without --environment."),
+        base::group("sceneStatistics", "Statistics of the scene on the device.", sceneStatistics()),
+        output<&T::textures>("textures", "The images of the scene as the device reads them."),
+        output<&T::pipelines, &Pipelines::making, &Renderer::PipelineMaking::milliseconds>(
+            "pipelineCreationMs", "Wall-clock time of the driver's compilation."),
+        output<&T::pipelines, &Pipelines::making, &Renderer::PipelineMaking::threads>(
+            "pipelineThreads", "Number of threads that created the pipelines."),
+        output<&T::pipelines, &Pipelines::cache>("pipelineCache",
+                                                 "The pipeline cache; null if none is kept."),
+        output<&T::pipelines, &Pipelines::statistics>(
+            "pipelineStatistics",
+            "The report of --pipeline-statistics; null without it, or if the device has none."),
+        output<&T::start>("start", "Wall-clock time to the first sample, without compiling."),
+        output<&T::renderMs>("renderMs", "Wall-clock time of all samples and of reading back."),
+        output<&T::frames>("frames", "Pictures of --frames. `passes` and `counters` are of the last."),
+        output<&T::passes>("passes", "Passes of the last sample, in order."),
+        base::group("counters", "Counters of the last sample.", counters()),
+        output<&T::view>("view", "The debug picture of the last frame; null without --view."),
+        output<&T::counters, &FrameCounters::effects>(
+            "effects", "The package's effects in a fixed order, with what each did in the last sample."),
+        base::group(
+            "footprint", "Resources that the renderer holds for a frame.",
+            {output<&T::footprint, &Footprint::pipelines>("pipelines", "Number of pipelines."),
+             output<&T::footprint, &Footprint::images>("images", "Number of images, including depth."),
+             output<&T::footprint, &Footprint::buffers>("buffers", "Number of buffers."),
+             output<&T::footprint, &Footprint::bytes>("bytes", "Memory of images and buffers.")}),
+        output<&T::memory>("memory", "Memory on the device, by name."),
+        output<&T::traffic>("traffic", "The bytes that the last sample's passes moved between each other.")};
 }
 
 TextureReport textureReport(std::span<const ImageView> images) {

@@ -73,8 +73,11 @@ struct RenderReport {
     double exposure = 0.0;           // stops
     bool exposureAutomatic = false;  // chosen by the first picture
     // The light of --sun, if it was added, and whether it was because the scene has none.
-    std::optional<LightView> sun;
-    bool sunAutomatic = false;
+    struct Sun {
+        LightView light;
+        bool automatic = false;
+    };
+    std::optional<Sun> sun;
     std::optional<scene_view::SkyChoice> sky;  // absent: an environment map lights the scene
     std::optional<double> compileMs;           // absent: a package was given
     std::uint32_t cases = 0;
@@ -104,7 +107,7 @@ struct RenderReport {
 // these.
 Status checkOrder(const RenderReport& report);
 
-base::Json toJson(const RenderReport& report);
+base::Fields fieldsOf(const RenderReport*);
 std::string toText(const RenderReport& report, Detail detail);
 
 }  // namespace glint::cli

@@ -1,6 +1,6 @@
 #include "emit/package/manifest.h"
 
-#include "base/json.h"
+#include "base/fields.h"
 #include "emit/context.h"
 #include "emit/package/json.h"
 #include "resolve/host.h"
@@ -8,7 +8,6 @@
 #include "settings/descriptor.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
@@ -17,7 +16,8 @@
 
 namespace glint::compiler {
 
-using ManifestJson = nlohmann::ordered_json;
+using base::field;
+using base::output;
 
 namespace {
 
@@ -30,27 +30,13 @@ std::string relativeName(const std::string& path, const std::string& scenePath) 
     return (isBelow ? relative : file.filename()).generic_string();
 }
 
-ManifestJson sources(const gltf::Scene& scene) {
-    ManifestJson list = ManifestJson::array();
-    for (const gltf::SourceFile& file : scene.files) {
-        list.push_back({{"file", relativeName(file.path, scene.path)},
-                        {"bytes", file.bytes},
-                        {"hash", base::hexHash(file.hash)}});
-    }
-    return list;
+ManifestFile fileOf(std::string name, std::uint64_t bytes, std::uint64_t hash) {
+    return {std::move(name), bytes, base::hexHash(hash)};
 }
 
-ManifestJson features(const materials::MaterialModel& model) {
-    ManifestJson list = ManifestJson::array();
-    for (const materials::Feature& feature : model.features) {
-        list.push_back({{"name", feature.name},
-                        {"bit", feature.bit},
-                        {"lobe", feature.isLobe},
-                        {"macro", feature.macro},
-                        {"gltf", feature.gltf},
-                        {"neutral", feature.neutralText()}});
-    }
-    return list;
+std::vector<std::string> namesOf(const materials::MaterialModel& model, materials::FeatureMask mask) {
+    const std::vector<std::string_view> names = model.names(mask);
+    return {names.begin(), names.end()};
 }
 
 // Returns "textureLod" for "texture-lod".
@@ -65,182 +51,190 @@ std::string memberName(std::string_view setting) {
     return name;
 }
 
-// Returns what a setting is written as: switches as booleans, numbers as numbers.
-ManifestJson valueOf(const std::string& text) {
-    if (text == "on" || text == "off") {
-        return text == "on";
-    }
-    const ManifestJson number = ManifestJson::parse(text, nullptr, false);
-    return number.is_number() ? number : ManifestJson(text);
-}
-
-ManifestJson settingsOf(const materials::MaterialModel& model, const CompileSettings& compile) {
+// The settings that the table records, and the sky.
+std::vector<std::pair<std::string, std::string>> settingsOf(const CompileSettings& compile) {
     Settings settings;
     settings.compile = compile;
-    ManifestJson object{{"hitLobes", model.names(compile.plan.keys.keptLobes & model.lobes)}};
+    std::vector<std::pair<std::string, std::string>> list;
     for (const Descriptor& row : settingsTable()) {
         if (row.recorded) {
-            object[memberName(row.name)] = valueOf(row.values.text(settings));
+            list.emplace_back(memberName(row.name), row.values.text(settings));
         }
     }
-    object["sky"] = compile.environmentMap ? "map" : "gradient";
-    return object;
+    list.emplace_back("sky", compile.environmentMap ? "map" : "gradient");
+    return list;
 }
 
-// The files were read when the modules were made, so they are there.
-ManifestJson hostNames(const CompileSettings& settings) {
-    const Result<std::vector<std::string>> names = replacedHostFiles(settings.host);
-    return names ? ManifestJson(*names) : ManifestJson::array();
+// Returns the JSON of settings: switches as booleans, numbers as numbers.
+std::vector<std::pair<std::string, base::Json>> settingsJson(const Manifest& manifest) {
+    std::vector<std::pair<std::string, base::Json>> list{{"hitLobes", base::jsonOf(manifest.hitLobes)}};
+    for (const auto& [name, text] : manifest.settings) {
+        base::Json number = base::Json::parse(text, nullptr, false);
+        const bool isSwitch = text == "on" || text == "off";
+        list.emplace_back(name, isSwitch             ? base::Json(text == "on")
+                                : number.is_number() ? std::move(number)
+                                                     : base::Json(text));
+    }
+    return list;
+}
+
+void setSettings(Manifest& manifest, const std::vector<std::pair<std::string, base::Json>>& settings,
+                 base::JsonReader& reader, const std::string& place) {
+    for (const auto& [name, value] : settings) {
+        if (name == "hitLobes") {
+            reader.each(value, place + "/hitLobes", [&](const base::Json& lobe, const std::string& there) {
+                manifest.hitLobes.push_back(reader.text(lobe, there));
+            });
+        } else {
+            manifest.settings.emplace_back(name, value.is_boolean()  ? (value.get<bool>() ? "on" : "off")
+                                                 : value.is_string() ? value.get<std::string>()
+                                                                     : value.dump());
+        }
+    }
 }
 
 // Returns the names of the declarations of packs.
-ManifestJson packNames(const materials::MaterialModel& model) {
+std::vector<std::string> packNames(const materials::MaterialModel& model) {
     std::set<std::string> names;
     for (const materials::FeatureCode& code : model.code) {
         if (code.isOfPack) {
             names.insert(code.name);
         }
     }
-    return names;
+    return {names.begin(), names.end()};
 }
 
-// Returns the budget of cases, or null if there is none.
-ManifestJson maxShadersOf(const PlanOptions& options) {
-    const int budget = budgetOf(options);
-    return budget > 0 ? ManifestJson(budget) : ManifestJson(nullptr);
-}
-
-ManifestJson materialsToJson(const gltf::SceneList& scenes, const std::vector<int>& materials) {
-    ManifestJson list = ManifestJson::array();
+std::vector<ManifestPlace> placesOf(const gltf::SceneList& scenes, const std::vector<int>& materials) {
+    std::vector<ManifestPlace> places;
     for (const int material : materials) {
         const gltf::SceneList::Place place = scenes.place(material);
-        list.push_back({{"scene", place.scene},
-                        {"index", place.index},
-                        {"name", scenes.materials()[static_cast<std::size_t>(material)].name}});
+        places.push_back({static_cast<std::uint32_t>(place.scene), static_cast<std::uint32_t>(place.index)});
     }
-    return list;
+    return places;
 }
 
-// The places have no names; shaders[] has those.
-ManifestJson materialPlaces(const gltf::SceneList& scenes, const std::vector<int>& materials) {
-    ManifestJson list = ManifestJson::array();
-    for (const int material : materials) {
-        const gltf::SceneList::Place place = scenes.place(material);
-        list.push_back({{"scene", place.scene}, {"index", place.index}});
-    }
-    return list;
-}
-
-ManifestJson sceneList(const gltf::SceneList& scenes) {
-    ManifestJson list = ManifestJson::array();
+std::vector<ManifestScene> scenesOf(const gltf::SceneList& scenes) {
+    std::vector<ManifestScene> list;
     for (std::size_t i = 0; i < scenes.scenes().size(); ++i) {
         const gltf::Scene& scene = scenes.scenes()[i];
-        list.push_back(
-            {{"name", scenes.name(i)},
-             {"source", std::filesystem::path(scene.path).filename().string()},
-             {"variant", scene.variant.empty() ? ManifestJson(nullptr) : ManifestJson(scene.variant)},
-             {"materials", scene.materials.size()},
-             {"primitives", scenes.primitivesOf(i).count},
-             {"sources", sources(scene)}});
+        list.push_back({scenes.name(i),
+                        std::filesystem::path(scene.path).filename().string(),
+                        scene.variant,
+                        scene.materials.size(),
+                        scenes.primitivesOf(i).count,
+                        {}});
+        for (const gltf::SourceFile& file : scene.files) {
+            list.back().sources.push_back(fileOf(relativeName(file.path, scene.path), file.bytes, file.hash));
+        }
     }
     return list;
 }
 
-ManifestJson moduleEntry(const CompiledModule& module) {
-    return {{"name", module.name},
-            {"file", module.file},
-            {"bytes", module.statistics.bytes},
-            {"instructions", module.statistics.instructions},
-            {"textureFetches", module.statistics.textureFetches},
-            {"rayQueries", module.statistics.rayQueries},
-            {"branches", module.statistics.branches},
-            {"features", package::featuresOf(module.spirv)},
-            {"hash", base::hexHash(module.hash)}};
+ManifestModule moduleOf(const CompiledModule& module) {
+    return {module.name, module.file, module.statistics, package::featuresOf(module.spirv),
+            base::hexHash(module.hash)};
 }
 
 // Lists a case's own modules by strategy. In the uber shader a case is a function, which is listed under
 // passes.
-ManifestJson stages(const CompiledPackage& package, int shaderId) {
-    ManifestJson object = ManifestJson::object();
-    for (const CompiledModule& module : package.modules) {
-        const bool ofCase = package::findRole(module.key.role)->repeated == package::Repeated::ByCase;
-        if (ofCase && module.key.index == static_cast<std::uint32_t>(shaderId)) {
-            object[std::string(stageName(module.key))] = moduleEntry(module);
-        }
-    }
-    return object;
-}
-
-ManifestJson shaders(const gltf::SceneList& scenes, const CompiledPackage& package) {
-    ManifestJson list = ManifestJson::array();
+std::vector<ManifestCase> casesOf(const gltf::SceneList& scenes, const CompiledPackage& package) {
+    std::vector<ManifestCase> list;
     for (const Case& shaderCase : package.plan.cases) {
         if (shaderCase.isRetired()) {
             continue;
         }
-        list.push_back({{"id", shaderCase.shaderId},
-                        {"name", shaderCase.name},
-                        {"always", package.plan.model->names(shaderCase.always)},
-                        {"sometimes", package.plan.model->names(shaderCase.sometimes)},
-                        {"keys", shaderCase.keys.size()},
-                        {"share", shareToJson(shaderCase.share)},
-                        {"reason", toString(shaderCase.reason)},
-                        {"materials", materialsToJson(scenes, shaderCase.materials)},
-                        {"stages", stages(package, shaderCase.shaderId)}});
-    }
-    return list;
-}
-
-ManifestJson passes(const CompiledPackage& package) {
-    ManifestJson list = ManifestJson::array();
-    for (const CompiledModule& module : package.modules) {
-        if (package::findRole(module.key.role)->repeated != package::Repeated::ByCase) {
-            ManifestJson entry = {{"role", package::roleName(module.key.role)}};
-            entry.update(moduleEntry(module));
-            list.push_back(std::move(entry));
+        ManifestCase& entry = list.emplace_back();
+        entry.id = static_cast<std::uint32_t>(shaderCase.shaderId);
+        entry.name = shaderCase.name;
+        entry.always = namesOf(*package.plan.model, shaderCase.always);
+        entry.sometimes = namesOf(*package.plan.model, shaderCase.sometimes);
+        entry.keys = shaderCase.keys.size();
+        entry.share = roundedShare(shaderCase.share);
+        entry.reason = toString(shaderCase.reason);
+        const std::vector<ManifestPlace> places = placesOf(scenes, shaderCase.materials);
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const auto material = static_cast<std::size_t>(shaderCase.materials[i]);
+            entry.materials.push_back({places[i], scenes.materials()[material].name});
+        }
+        for (const CompiledModule& module : package.modules) {
+            const bool ofCase = package::findRole(module.key.role)->repeated == package::Repeated::ByCase;
+            if (ofCase && module.key.index == entry.id) {
+                entry.stages.emplace_back(stageName(module.key), moduleOf(module));
+            }
         }
     }
     return list;
 }
 
-ManifestJson keys(const gltf::SceneList& scenes, const CompiledPackage& package) {
-    ManifestJson list = ManifestJson::array();
-    for (const Key& key : package.plan.keys) {
-        list.push_back({{"features", package.plan.model->names(key.mask)},
-                        {"mask", fmt::format("{:#018x}", key.mask)},
-                        {"primitives", key.primitives.size()},
-                        {"materials", materialPlaces(scenes, key.materials)},
-                        {"share", shareToJson(key.share)},
-                        {"shaderId", key.shaderId}});
+// The attributes of packs that shaders read, in the order of their values.
+std::vector<ManifestAttribute> attributesOf(const Plan& plan) {
+    const materials::FeatureMask used =
+        plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
+    std::vector<ManifestAttribute> list;
+    for (const materials::VertexAttribute& attribute : plan.model->attributes) {
+        const materials::Feature& feature = plan.model->features[static_cast<std::size_t>(attribute.feature)];
+        if ((feature.mask() & used) == 0) {
+            continue;
+        }
+        list.push_back({attribute.name, attribute.gltf, feature.name, attribute.channels, {}});
+        if (attribute.fallback) {
+            list.back().fallback.emplace(attribute.fallback->begin(),
+                                         attribute.fallback->begin() + attribute.channels);
+        }
     }
     return list;
 }
 
-ManifestJson dropped(const gltf::SceneList& scenes, const CompiledPackage& package) {
-    ManifestJson list = ManifestJson::array();
-    for (const DroppedFeature& feature : package.plan.dropped) {
-        list.push_back({{"feature", feature.feature},
-                        {"materials", materialPlaces(scenes, feature.materials)},
-                        {"reason", feature.reason}});
+Manifest manifestOf(const gltf::SceneList& scenes, const CompiledPackage& package,
+                    const CompileSettings& settings) {
+    const Plan& plan = package.plan;
+    const materials::MaterialModel& model = *plan.model;
+    Manifest manifest;
+    manifest.toolVersion = toolVersion();
+    manifest.scenes = scenesOf(scenes);
+    manifest.strategies = strategyNames(settings.strategies);
+    manifest.strategyChoice = settings.strategyChoice;
+    manifest.tracers = tracerNames(settings.tracers);
+    manifest.merge = nameOf(settings.plan.merge);
+    const int budget = budgetOf(settings.plan);
+    manifest.maxShaders = budget > 0 ? std::optional(budget) : std::nullopt;
+    manifest.alpha = nameOf(settings.plan.keys.alpha);
+    // The files were read when the modules were made, so they are there.
+    if (const Result<std::vector<std::string>> host = replacedHostFiles(settings.host)) {
+        manifest.host = *host;
     }
-    return list;
-}
-
-ManifestJson counts(const gltf::SceneList& scenes, const CompiledPackage& package) {
-    return {
-        {"materials", scenes.materials().size()},  {"keysPossible", countToJson(package.plan.keysPossible)},
-        {"keysPresent", package.plan.keys.size()}, {"cases", caseCount(package.plan)},
-        {"modules", package.modules.size()},       {"uniqueSpirv", package.uniqueSpirv},
-        {"spirvBytes", package.spirvBytes}};
-}
-
-ManifestJson files(const CompiledPackage& package) {
-    ManifestJson list = ManifestJson::array();
+    manifest.packs = packNames(model);
+    manifest.hitLobes = namesOf(model, settings.plan.keys.keptLobes & model.lobes);
+    manifest.settings = settingsOf(settings);
+    manifest.counts = {scenes.materials().size(), plan.keysPossible,
+                       plan.keys.size(),          static_cast<std::size_t>(caseCount(plan)),
+                       package.modules.size(),    static_cast<std::size_t>(package.uniqueSpirv),
+                       package.spirvBytes};
+    manifest.buckets = 1 + plan.cases.size();
+    manifest.effects = plan.effects;
+    for (const materials::Feature& feature : model.features) {
+        manifest.features.push_back(
+            {feature.name, feature.bit, feature.isLobe, feature.macro, feature.gltf, feature.neutralText()});
+    }
+    manifest.vertexAttributes = attributesOf(plan);
+    manifest.shaders = casesOf(scenes, package);
+    for (const CompiledModule& module : package.modules) {
+        if (package::findRole(module.key.role)->repeated != package::Repeated::ByCase) {
+            manifest.passes.push_back({std::string(package::roleName(module.key.role)), moduleOf(module)});
+        }
+    }
+    for (const Key& key : plan.keys) {
+        manifest.keys.push_back({namesOf(model, key.mask), fmt::format("{:#018x}", key.mask),
+                                 key.primitives.size(), placesOf(scenes, key.materials),
+                                 roundedShare(key.share), static_cast<std::uint32_t>(key.shaderId)});
+    }
+    for (const DroppedFeature& feature : plan.dropped) {
+        manifest.dropped.push_back({feature.feature, placesOf(scenes, feature.materials), feature.reason});
+    }
     for (const PackageFile& file : package.files) {
-        list.push_back({{"file", file.name},
-                        {"bytes", file.bytes.size()},
-                        {"hash", base::hexHash(base::hashBytes(file.bytes))}});
+        manifest.files.push_back(fileOf(file.name, file.bytes.size(), base::hashBytes(file.bytes)));
     }
-    return list;
+    return manifest;
 }
 
 // The manifest may come from anywhere, so its names must not lead out of the package's folder.
@@ -253,77 +247,180 @@ bool staysInside(const std::filesystem::path& name) {
 
 }  // namespace
 
-namespace {
-
-// The attributes of packs that shaders read, in the order of their values.
-ManifestJson vertexAttributes(const Plan& plan) {
-    const materials::FeatureMask used =
-        plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
-    ManifestJson list = ManifestJson::array();
-    for (const materials::VertexAttribute& attribute : plan.model->attributes) {
-        const materials::Feature& feature = plan.model->features[static_cast<std::size_t>(attribute.feature)];
-        if ((feature.mask() & used) == 0) {
-            continue;
-        }
-        ManifestJson fallback = nullptr;
-        if (attribute.fallback) {
-            fallback = std::vector<float>(attribute.fallback->begin(),
-                                          attribute.fallback->begin() + attribute.channels);
-        }
-        list.push_back(ManifestJson{{"name", attribute.name},
-                                    {"gltf", attribute.gltf},
-                                    {"feature", feature.name},
-                                    {"channels", attribute.channels},
-                                    {"default", fallback}});
-    }
-    return list;
+static base::Fields fieldsOf(const ManifestPlace*) {
+    return {field<&ManifestPlace::scene>("scene", "Number of the scene, from 0."),
+            field<&ManifestPlace::index>("index", "Number of the material in its scene, from 0.")};
 }
 
-}  // namespace
+static base::Fields fieldsOf(const ManifestMaterial*) {
+    return {field<&ManifestMaterial::place>("", ""),
+            field<&ManifestMaterial::name>("name", "Name in the file; may be empty.")};
+}
+
+static base::Fields fieldsOf(const ManifestFile*) {
+    using T = ManifestFile;
+    return {field<&T::file>("file", "File relative to the folder of the package, or of the scene."),
+            field<&T::bytes>("bytes", "Size of the file."),
+            field<&T::hash>("hash", "XXH3, 64 bits, hexadecimal.", {.pattern = "^[0-9a-f]{16}$"})};
+}
+
+static base::Fields fieldsOf(const ManifestScene*) {
+    using T = ManifestScene;
+    return {field<&T::name>("name", "The name by which programs find the scene."),
+            output<&T::source>("source", "File name."),
+            field<&T::variant>("variant", "The variant whose materials the scene has.", {.orNull = true}),
+            output<&T::materials>("materials", "Number of materials."),
+            output<&T::primitives>("primitives", "Number of primitives."),
+            output<&T::sources>("sources", "Files of the scene that were read.")};
+}
+
+static base::Fields fieldsOf(const ManifestFeature*) {
+    using T = ManifestFeature;
+    return {field<&T::name>("name", "Name of the feature."),
+            field<&T::bit>("bit", "The feature's bit in masks.", {.most = materials::kFeatureBits - 1}),
+            field<&T::lobe>("lobe", "Whether it is a lobe; else it is an input."),
+            output<&T::macro>("macro", "Name of the GLSL macro."),
+            output<&T::gltf>("gltf", "Property of glTF that holds it."),
+            output<&T::neutral>("neutral", "Value that changes nothing.")};
+}
+
+static base::Fields fieldsOf(const ManifestAttribute*) {
+    using T = ManifestAttribute;
+    return {output<&T::name>("name", "The name in GLSL."), output<&T::gltf>("gltf", "The name in glTF."),
+            output<&T::feature>("feature", "The feature whose code reads it."),
+            output<&T::channels>("channels", "Floats of a vertex.", {.least = 1, .most = 4}),
+            output<&T::fallback>("default", "Its value where it is missing; null: no feature there.")};
+}
+
+static base::Fields fieldsOf(const ManifestModule*) {
+    using T = ManifestModule;
+    return {
+        output<&T::name>("name", "Name of the entry point in messages and captures."),
+        output<&T::file>("file", "File relative to the package's folder."), output<&T::statistics>("", ""),
+        output<&T::features>("features",
+                             "What the module demands of a device beyond Vulkan 1.3 and scalarBlockLayout: "
+                             "names of features and of subgroup operations."),
+        output<&T::hash>("hash", "XXH3, 64 bits, hexadecimal.", {.pattern = "^[0-9a-f]{16}$"})};
+}
+
+static base::Fields fieldsOf(const ManifestPass*) {
+    return {output<&ManifestPass::role>("role", "Role of the module."),
+            output<&ManifestPass::module>("", "")};
+}
+
+static base::Fields fieldsOf(const ManifestCase*) {
+    using T = ManifestCase;
+    return {field<&T::id>("id", "Shader ID."),
+            field<&T::name>("name", "Name of the shader."),
+            output<&T::always>("always", "Names of features, by bit."),
+            output<&T::sometimes>("sometimes", "Names of features, by bit."),
+            output<&T::keys>("keys", "How many keys share it."),
+            field<&T::share>("share", "Share of all hits.", {.least = 0, .most = 1}),
+            output<&T::reason>("reason", "Why the keys of a case share it."),
+            field<&T::materials>("materials", "Materials that it shades."),
+            output<&T::stages>("stages", "Its modules by purpose.")};
+}
+
+static base::Fields fieldsOf(const ManifestKey*) {
+    using T = ManifestKey;
+    return {field<&T::features>("features", "Names of features, by bit."),
+            output<&T::mask>("mask", "Bits of features, hexadecimal.", {.pattern = "^0x[0-9a-f]{16}$"}),
+            output<&T::primitives>("primitives", "Number of primitives that have the key."),
+            output<&T::materials>("materials", "Materials that have the key."),
+            output<&T::share>("share", "Share of all hits.", {.least = 0, .most = 1}),
+            field<&T::shaderId>("shaderId", "Shader ID of the case that shades it.")};
+}
+
+static base::Fields fieldsOf(const ManifestDrop*) {
+    using T = ManifestDrop;
+    return {output<&T::feature>("feature", "Name of the feature."),
+            output<&T::materials>("materials", "Materials whose shaders leave it out."),
+            output<&T::reason>("reason", "The reason.")};
+}
+
+static base::Fields fieldsOf(const ManifestCounts*) {
+    using T = ManifestCounts;
+    return {field<&T::materials>("materials", "Number of materials of all scenes."),
+            output("keysPossible", "Permutations that files may have.",
+                   [](const T& counts) { return wholeNumber(counts.keysPossible); }),
+            field<&T::keysPresent>("keysPresent", "Permutations that the scenes have."),
+            field<&T::cases>("cases", "Number of shaders."),
+            field<&T::modules>("modules", "SPIR-V modules."),
+            field<&T::uniqueSpirv>("uniqueSpirv", "SPIR-V files."),
+            field<&T::spirvBytes>("spirvBytes", "Size of these files.")};
+}
+
+base::Fields fieldsOf(const Manifest*) {
+    using T = Manifest;
+    base::Field settings = field(
+        "settings", "Further choices of the compilation.", [](const T& it) { return settingsJson(it); },
+        [](T& it, const std::vector<std::pair<std::string, base::Json>>& list, base::JsonReader& reader,
+           const std::string& place) { setSettings(it, list, reader, place); });
+    settings.schema = [](const base::FieldTraits&) -> base::Json {
+        return {{"$ref", "common.json#/definitions/settings"}};
+    };
+    return {
+        base::constant("format", "Names the kind of file.", std::string(kManifestFormat)),
+        output("version", "Version of the format.", [](const T&) { return package::kVersion; }),
+        field<&T::toolVersion>("toolVersion", "Version of the glint that made it."),
+        field<&T::scenes>("scenes", "The scenes, in the order of the command line.", {.leastElements = 1}),
+        field<&T::strategies>("strategies", "Strategies that the package can run.",
+                              {.names = strategyWords()}),
+        output<&T::strategyChoice>("strategyChoice",
+                                   "How --strategy auto chose; null where strategies were named."),
+        field<&T::tracers>("tracers", "Tracers that the package can use.",
+                           {.names = base::wordsFor<package::Tracer>()}),
+        field<&T::merge>("merge", "Policy by which keys share cases.",
+                         {.names = base::wordsFor<MergePolicy>()}),
+        field<&T::maxShaders>("maxShaders", "The budget of cases; null for none."),
+        field<&T::alpha>("alpha", "What rays do with the alpha of what they hit.",
+                         {.names = base::wordsFor<package::AlphaPolicy>()}),
+        field<&T::host>("host", "Files of shaders/host that --host replaced."),
+        field<&T::packs>("packs", "Names of the declarations that packs of materials brought."),
+        settings,
+        field<&T::counts>("counts", "Counts."),
+        output<&T::buckets>("buckets", "Buckets of hits: one for misses, and one for each shader ID."),
+        output<&T::effects, &EffectPlan::decisions>(
+            "effects", "Every effect that there is, and whether the package has it."),
+        field<&T::features>("features", "Every feature that there is, by bit."),
+        output<&T::vertexAttributes>("vertexAttributes",
+                                     "The attributes of vertices that shaders read beside those of glTF's "
+                                     "core, in the order of their values."),
+        field<&T::shaders>("shaders", "The cases, by ID."),
+        output<&T::passes>("passes", "All other modules."),
+        field<&T::keys>("keys", "The permutations."),
+        output<&T::dropped>("dropped", "Features that files ask for and shaders leave out."),
+        field<&T::files>("files", "All files in the folder except this one.")};
+}
+
+std::string_view Manifest::setting(std::string_view name) const {
+    const auto found = std::ranges::find(settings, name, &std::pair<std::string, std::string>::first);
+    return found != settings.end() ? std::string_view(found->second) : std::string_view();
+}
 
 std::string makeManifest(const gltf::SceneList& scenes, const CompiledPackage& package,
                          const CompileSettings& settings) {
-    ManifestJson manifest;
-    manifest["format"] = kManifestFormat;
-    manifest["version"] = package::kVersion;
-    manifest["toolVersion"] = toolVersion();
-    manifest["scenes"] = sceneList(scenes);
-    manifest["strategies"] = strategyNames(settings.strategies);
-    manifest["strategyChoice"] =
-        settings.strategyChoice ? strategyChoiceToJson(*settings.strategyChoice) : ManifestJson(nullptr);
-    manifest["tracers"] = tracerNames(settings.tracers);
-    manifest["merge"] = nameOf(settings.plan.merge);
-    manifest["maxShaders"] = maxShadersOf(settings.plan);
-    manifest["alpha"] = nameOf(settings.plan.keys.alpha);
-    manifest["host"] = hostNames(settings);
-    manifest["packs"] = packNames(*package.plan.model);
-    manifest["settings"] = settingsOf(*package.plan.model, settings);
-    manifest["counts"] = counts(scenes, package);
-    manifest["buckets"] = 1 + package.plan.cases.size();
-    manifest["effects"] = effectsToJson(package.plan.effects);
-    manifest["features"] = features(*package.plan.model);
-    manifest["vertexAttributes"] = vertexAttributes(package.plan);
-    manifest["shaders"] = shaders(scenes, package);
-    manifest["passes"] = passes(package);
-    manifest["keys"] = keys(scenes, package);
-    manifest["dropped"] = dropped(scenes, package);
-    manifest["files"] = files(package);
-    // Names come from the scene. Bytes that are not UTF-8 are replaced rather than refused.
-    return manifest.dump(2, ' ', false, ManifestJson::error_handler_t::replace) + "\n";
+    return base::toText(base::jsonOf(manifestOf(scenes, package, settings)));
+}
+
+Result<Manifest> readManifest(const std::filesystem::path& folder) {
+    constexpr std::uint64_t kMostBytes = 1ULL << 32;
+    return base::readFileAs<Manifest>(
+        {folder / package::kManifestFile, "manifest-format", "compile the package again"}, kMostBytes);
 }
 
 std::set<std::string, std::less<>> manifestFiles(std::string_view text) {
     if (base::nestsTooDeep({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()})) {
         return {};
     }
-    const ManifestJson manifest = ManifestJson::parse(text, nullptr, false);
-    if (!manifest.is_object() || manifest.value("format", ManifestJson()) != ManifestJson(kManifestFormat)) {
+    const base::Json manifest = base::Json::parse(text, nullptr, false);
+    if (!manifest.is_object() || manifest.value("format", base::Json()) != base::Json(kManifestFormat)) {
         return {};
     }
     std::set<std::string, std::less<>> names{package::kManifestFile, package::kTablesFile};
-    const ManifestJson list = manifest.value("files", ManifestJson::array());
-    for (const ManifestJson& file : list) {
-        const ManifestJson name = file.is_object() ? file.value("file", ManifestJson()) : ManifestJson();
+    const base::Json list = manifest.value("files", base::Json::array());
+    for (const base::Json& file : list) {
+        const base::Json name = file.is_object() ? file.value("file", base::Json()) : base::Json();
         if (name.is_string() && staysInside(name.get<std::string>())) {
             names.insert(name.get<std::string>());
         }

@@ -1,6 +1,6 @@
 // Makes views of a renderer's frames.
-#include "base/json.h"
 #include "image/text.h"
+#include "measure/report_json.h"
 #include "settings/compile_settings.h"
 
 #include <glint/measure/views.h>
@@ -13,6 +13,8 @@
 #include <utility>
 
 namespace glint::measure {
+
+using base::output;
 
 namespace {
 
@@ -241,34 +243,60 @@ Result<View> makeView(const ViewChoice& choice, Renderer& renderer, ViewInput in
     return colorView(choice, input, range);
 }
 
-base::Json toJson(const View& view) {
-    const ViewStatistics& statistics = view.statistics;
-    const auto orNone = [&](double value) {
-        return statistics.numbers > 0 ? base::Json(value) : base::Json(nullptr);
-    };
-    base::Json categories = base::Json::array();
-    for (const ViewStatistics::Category& one : statistics.categories) {
-        const image::Color8& color = one.category.color;
-        categories.push_back({{"name", one.category.name},
-                              {"color", fmt::format("#{:02x}{:02x}{:02x}", color[0], color[1], color[2])},
-                              {"pixels", one.pixels}});
-    }
-    constexpr std::string_view kScales[] = {"categories", "linear", "linear", "linear", "logarithmic"};
-    return {{"name", view.choice.name()},
-            {"what", std::string(view.choice.info->what)},
-            {"unit", std::string(view.choice.info->unit)},
-            {"scale", std::string(kScales[static_cast<std::size_t>(view.choice.info->scale)])},
-            {"numbers", statistics.numbers},
-            {"least", orNone(statistics.least)},
-            {"greatest", orNone(statistics.greatest)},
-            {"mean", orNone(statistics.mean)},
-            {"median", orNone(statistics.median)},
-            {"percentile99", orNone(statistics.percentile99)},
-            {"histogram",
-             {{"from", orNone(statistics.scale[0])},
-              {"to", orNone(statistics.scale[1])},
-              {"pixels", statistics.histogram}}},
-            {"categories", categories}};
+static base::Fields fieldsOf(const ViewStatistics::Category*) {
+    using T = ViewStatistics::Category;
+    return {output<&T::category, &ViewCategory::name>("name", "As the legend has it."),
+            output("color", "In the picture, sRGB, hexadecimal.",
+                   [](const T& one) {
+                       const image::Color8& color = one.category.color;
+                       return fmt::format("#{:02x}{:02x}{:02x}", color[0], color[1], color[2]);
+                   }),
+            output<&T::pixels>("pixels", "How many pixels are of it.")};
+}
+
+namespace {
+
+// Returns nothing if no pixel has a number.
+template <double ViewStatistics::*Member>
+std::optional<double> number(const View& view) {
+    return view.statistics.numbers > 0 ? std::optional(view.statistics.*Member) : std::nullopt;
+}
+template <std::size_t End>
+std::optional<double> histogramEnd(const View& view) {
+    return view.statistics.numbers > 0 ? std::optional(view.statistics.scale[End]) : std::nullopt;
+}
+
+}  // namespace
+
+base::Fields fieldsOf(const View*) {
+    using T = View;
+    using Statistics = ViewStatistics;
+    return {
+        output("name", "As --view names it.", [](const T& view) { return view.choice.name(); }),
+        output("what", "What it shows.", [](const T& view) { return view.choice.info->what; }),
+        output("unit", "Of the numbers, or what a category is.",
+               [](const T& view) { return view.choice.info->unit; }),
+        output("scale", "How numbers become colours.",
+               [](const T& view) {
+                   constexpr std::string_view kScales[] = {"categories", "linear", "linear", "linear",
+                                                           "logarithmic"};
+                   return kScales[static_cast<std::size_t>(view.choice.info->scale)];
+               },
+               {.names = {"categories", "linear", "logarithmic"}}),
+        output<&T::statistics, &Statistics::numbers>(
+            "numbers", "How many pixels have a number; if none has, the next five are null."),
+        output<number<&Statistics::least>>("least", "Least number."),
+        output<number<&Statistics::greatest>>("greatest", "Greatest number."),
+        output<number<&Statistics::mean>>("mean", "Mean of the numbers."),
+        output<number<&Statistics::median>>("median", "Half of the pixels have no more."),
+        output<number<&Statistics::percentile99>>("percentile99", "99 % of the pixels have no more."),
+        base::group(
+            "histogram", "Pixels in steps of equal length, of their logarithm if the scale is logarithmic.",
+            {output<histogramEnd<0>>("from", "Where the first step begins; null without numbers."),
+             output<histogramEnd<1>>("to", "Where the last step ends; null without numbers."),
+             output<&T::statistics, &Statistics::histogram>("pixels", "By step; empty for categories.")}),
+        output<&T::statistics, &Statistics::categories>(
+            "categories", "Kinds of pixels, the most frequent first. Pixels with a number are of none.")};
 }
 
 }  // namespace glint::measure

@@ -1,11 +1,11 @@
 // The window's measurements and files: exposure, differences, screenshots and reports.
 #include "base/files.h"
-#include "base/json.h"
 #include "base/text.h"
 #include "image/compare.h"
 #include "image/flip.h"
 #include "image/image_file.h"
 #include "image/tone.h"
+#include "measure/report_json.h"
 #include "settings/descriptor.h"
 #include "view/shot_command.h"
 #include "view/window/window.h"
@@ -193,7 +193,7 @@ Status Window::writeReport(const std::string& file) {
         {"passes", passes},
         {"look", look_.name()},
         {"looks", looks},
-        {"view", view_ ? measure::toJson(*view_) : base::Json(nullptr)},
+        {"view", base::jsonOf(view_)},
         {"lookNote", lookNote_},
         {"pick", picked},
         {"error", error_ ? base::Json(toString(*error_)) : base::Json(nullptr)},

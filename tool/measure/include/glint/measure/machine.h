@@ -3,6 +3,7 @@
 
 #include <glint/context.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct BenchMachine {
     std::string processor;
     unsigned cores = 0;
     std::string system;
+    std::optional<double> subgroupSize{};  // lanes; only files that scripts made have it
 };
 
 // Describes the context's device and the host.

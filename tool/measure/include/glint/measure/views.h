@@ -13,8 +13,6 @@
 #include <glint/renderer.h>
 #include <glint/result.h>
 
-#include <nlohmann/json_fwd.hpp>
-
 #include <array>
 #include <cstdint>
 #include <map>
@@ -150,8 +148,5 @@ View colorView(const ViewChoice& choice, const ViewInput& input,
 image::DisplayImage makeLegend(const View& view, std::uint32_t width);
 // Returns the picture with the legend below it.
 image::DisplayImage withLegend(const View& view);
-
-// Returns the member "view" of render --stats.
-nlohmann::ordered_json toJson(const View& view);
 
 }  // namespace glint::measure
