@@ -4,7 +4,7 @@
 #include "context/commands.h"
 #include "context/resources.h"
 
-#include <glint/texel_format.h>
+#include <glint/scene_view.h>
 
 #include <cstddef>
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include <glint/layers.h>
+#include <glint/package_modules.h>
 
 #include <algorithm>
 

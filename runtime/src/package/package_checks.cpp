@@ -1,6 +1,5 @@
 // Checks that the elements of tables.bin agree with each other.
-#include "package/package_state.h"
-#include "scene/material_table.h"
+#include "package/package.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,11 @@
 #include "renderer/pass_state.h"
 
-#include "context/readback.h"
-
 namespace glint {
+
+Diagnostic frameNotRecorded() {
+    return makeError("frame-not-recorded", "", "no frame has been recorded",
+                     "record a frame, submit it and wait for it first");
+}
 
 Result<std::vector<PassTiming>> passTimings(PassState& state) {
     if (!state.recorded) {

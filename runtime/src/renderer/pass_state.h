@@ -1,11 +1,11 @@
 // The state that recordings of passes work on, of renderers and of RaySteps.
 #pragma once
 
-#include "context/timer.h"
+#include "context/commands.h"
 #include "frame/frame_resources.h"
 #include "renderer/pipelines.h"
 
-#include <glint/pass_timing.h>
+#include <glint/renderer_options.h>
 
 #include <cstdint>
 #include <string>
@@ -42,5 +42,8 @@ struct PassState {
 
 // Returns the times of the last recording. Errors: "frame-not-recorded", and those of reading device times.
 Result<std::vector<PassTiming>> passTimings(PassState& state);
+
+// Makes the error "frame-not-recorded".
+Diagnostic frameNotRecorded();
 
 }  // namespace glint

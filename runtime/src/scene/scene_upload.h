@@ -2,16 +2,19 @@
 // follows.
 #pragma once
 
-#include "context/timer.h"
+#include "context/commands.h"
 #include "context/upload.h"
-#include "motion/deformer.h"
-#include "scene/acceleration.h"
+#include "data/acceleration.h"
+#include "data/deformer.h"
+#include "data/opacity_micromap.h"
 
-#include <glint/scene_edit.h>
+#include <glint/scene.h>
 
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -80,5 +83,30 @@ struct SceneUpload {
     std::unique_ptr<Compaction> compaction;  // null if there is no BLAS to compact
     std::uint64_t frame = 0;                 // frame of the commands
 };
+
+// --- Structures ---
+
+struct BlasStatistics {
+    std::uint64_t bytes = 0;  // before compaction
+};
+// Creates a BLAS for each input, and queues their builds in the upload. They are in the memory of the
+// upload's Compaction, which is made here, and stay at their full size until it is recorded. Errors: those of
+// memory and Vulkan's calls.
+Result<std::vector<AccelerationStructure>> addBlases(SceneUpload& upload, std::span<const BlasInput> inputs,
+                                                     BlasStatistics& statistics);
+
+// Creates a TLAS in memory of `pool`, and queues its build in the upload. `instances` may be empty. Error
+// "tlas-limit".
+Result<AccelerationStructure> addTlas(SceneUpload& upload, MemoryPool& pool,
+                                      std::span<const VkAccelerationStructureInstanceKHR> instances);
+
+// Returns the highest level that the device takes, at most opacity::kMaxLevel; 0 without the extension.
+std::uint32_t micromapLevel(const Context::State& context);
+
+// Creates a micromap for each array, and queues their builds in the upload. Requires
+// DeviceHandles::opacityMicromaps, and arrays within micromapLevel(). `pool` must outlive the result. Errors:
+// those of memory and Vulkan's calls.
+Result<std::vector<DeviceMicromap>> addMicromaps(SceneUpload& upload, MemoryPool& pool,
+                                                 std::span<const opacity::MicromapArray> arrays);
 
 }  // namespace glint

@@ -1,6 +1,6 @@
 #include "scene/texture_stream.h"
 
-#include "edit/editor_state.h"
+#include "scene/scene_editor.h"
 
 #include <algorithm>
 #include <string>

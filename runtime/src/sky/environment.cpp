@@ -1,11 +1,10 @@
 // Environment: the map and its levels of roughness on the device.
+#include "sky/environment.h"
+
 #include "context/upload.h"
-#include "context/vulkan_error.h"
-#include "scene/half_float.h"
-#include "sky/environment_state.h"
+#include "context/vulkan_table.h"
 #include "sky/map_filter.h"
 #include "sky/radiance_map.h"
-#include "sky/sky_counts.h"
 
 #include <algorithm>
 #include <chrono>

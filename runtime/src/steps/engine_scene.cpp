@@ -1,11 +1,12 @@
+#include "steps/engine_scene.h"
+
+#include "context/commands.h"
 #include "context/upload.h"
+#include "data/instance_math.h"
+#include "data/materials.h"
+#include "data/scene_checks.h"
 #include "interop/frame.h"
-#include "renderer/pass_dependencies.h"
 #include "scene/gpu_scene_state.h"
-#include "scene/instance_math.h"
-#include "scene/scene_checks.h"
-#include "scene/textures.h"
-#include "steps/engine_scene_state.h"
 
 #include <algorithm>
 #include <array>
