@@ -11,32 +11,24 @@ Result<CommandRunner> CommandRunner::create(Context::State& context) {
     VkCommandPoolCreateInfo poolInfo{};
     poolInfo.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
     poolInfo.queueFamilyIndex = context.handles.queueFamily;
-    VkCommandPool pool = VK_NULL_HANDLE;
-    const VkDevice device = context.handles.device;
-    VkResult result = context.vk.CreateCommandPool(device, &poolInfo, nullptr, &pool);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateCommandPool", result);
-    }
-    runner.pool_ = UniqueCommandPool(context, pool);
+    GLINT_TRY(runner.pool_, createHandle<UniqueCommandPool>(context, context.vk.CreateCommandPool,
+                                                            "vkCreateCommandPool", poolInfo));
 
     VkCommandBufferAllocateInfo bufferInfo{};
     bufferInfo.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-    bufferInfo.commandPool = pool;
+    bufferInfo.commandPool = runner.pool_.get();
     bufferInfo.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
     bufferInfo.commandBufferCount = 1;
-    result = context.vk.AllocateCommandBuffers(device, &bufferInfo, &runner.commands_);
+    const VkResult result =
+        context.vk.AllocateCommandBuffers(context.handles.device, &bufferInfo, &runner.commands_);
     if (result != VK_SUCCESS) {
         return vulkanError("vkAllocateCommandBuffers", result);
     }
 
     VkFenceCreateInfo fenceInfo{};
     fenceInfo.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
-    VkFence fence = VK_NULL_HANDLE;
-    result = context.vk.CreateFence(device, &fenceInfo, nullptr, &fence);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateFence", result);
-    }
-    runner.fence_ = UniqueFence(context, fence);
+    GLINT_TRY(runner.fence_,
+              createHandle<UniqueFence>(context, context.vk.CreateFence, "vkCreateFence", fenceInfo));
     return runner;
 }
 

@@ -81,20 +81,17 @@ Result<MemoryPool::Block> MemoryPool::makeBlock(std::uint32_t type, Tiling tilin
     info.pNext = tiling == Tiling::Optimal ? nullptr : &flags;
     info.allocationSize = bytes;
     info.memoryTypeIndex = type;
-    VkDeviceMemory memory = VK_NULL_HANDLE;
-    VkResult result = context_->vk.AllocateMemory(context_->handles.device, &info, nullptr, &memory);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkAllocateMemory", result);
-    }
     Block block;
-    block.memory = UniqueMemory(*context_, memory);
+    GLINT_TRY(block.memory,
+              createHandle<UniqueMemory>(*context_, context_->vk.AllocateMemory, "vkAllocateMemory", info));
     block.type = type;
     block.tiling = tiling;
     block.bytes = bytes;
     block.free.push_back({0, bytes});
     if (map) {
         void* mapped = nullptr;
-        result = context_->vk.MapMemory(context_->handles.device, memory, 0, VK_WHOLE_SIZE, 0, &mapped);
+        const VkResult result = context_->vk.MapMemory(context_->handles.device, block.memory.get(), 0,
+                                                       VK_WHOLE_SIZE, 0, &mapped);
         if (result != VK_SUCCESS) {
             return vulkanError("vkMapMemory", result);
         }
@@ -201,14 +198,11 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
     info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
     info.size = buffer.bytes;
     info.usage = usage | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
-    VkBuffer handle = VK_NULL_HANDLE;
-    const VkDevice device = context.handles.device;
-    VkResult result = context.vk.CreateBuffer(device, &info, nullptr, &handle);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateBuffer", result);
-    }
-    buffer.handle = UniqueBuffer(context, handle);
+    GLINT_TRY(buffer.handle,
+              createHandle<UniqueBuffer>(context, context.vk.CreateBuffer, "vkCreateBuffer", info));
 
+    const VkDevice device = context.handles.device;
+    const VkBuffer handle = buffer.handle.get();
     VkMemoryRequirements requirements{};
     context.vk.GetBufferMemoryRequirements(device, handle, &requirements);
     Result<Allocation> memory = Allocation{};
@@ -218,7 +212,7 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
     if (!memory) {
         return memory.error();
     }
-    result = context.vk.BindBufferMemory(device, handle, memory->memory, memory->offset);
+    const VkResult result = context.vk.BindBufferMemory(device, handle, memory->memory, memory->offset);
     if (result != VK_SUCCESS) {
         return vulkanError("vkBindBufferMemory", result);
     }
@@ -262,19 +256,16 @@ Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const
     create.samples = VK_SAMPLE_COUNT_1_BIT;
     create.tiling = VK_IMAGE_TILING_OPTIMAL;
     create.usage = info.usage;
-    VkImage handle = VK_NULL_HANDLE;
-    const VkDevice device = context.handles.device;
-    VkResult result = context.vk.CreateImage(device, &create, nullptr, &handle);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateImage", result);
-    }
-    image.handle = UniqueImage(context, handle);
+    GLINT_TRY(image.handle,
+              createHandle<UniqueImage>(context, context.vk.CreateImage, "vkCreateImage", create));
 
+    const VkDevice device = context.handles.device;
+    const VkImage handle = image.handle.get();
     VkMemoryRequirements requirements{};
     context.vk.GetImageMemoryRequirements(device, handle, &requirements);
     image.bytes = requirements.size;
     GLINT_TRY(auto memory, pool.allocate(requirements, MemoryUse::Device, tiling));
-    result = context.vk.BindImageMemory(device, handle, memory.memory, memory.offset);
+    const VkResult result = context.vk.BindImageMemory(device, handle, memory.memory, memory.offset);
     if (result != VK_SUCCESS) {
         return vulkanError("vkBindImageMemory", result);
     }

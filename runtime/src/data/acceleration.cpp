@@ -20,17 +20,13 @@ Result<AccelerationStructure> createStructure(Context::State& context, MemoryPoo
     info.buffer = structure.buffer.handle.get();
     info.size = bytes;
     info.type = type;
-    VkAccelerationStructureKHR handle = VK_NULL_HANDLE;
-    const VkDevice device = context.handles.device;
-    const VkResult result = context.vk.CreateAccelerationStructureKHR(device, &info, nullptr, &handle);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateAccelerationStructureKHR", result);
-    }
-    structure.handle = UniqueAccelerationStructure(context, handle);
+    GLINT_TRY(structure.handle,
+              createHandle<UniqueAccelerationStructure>(context, context.vk.CreateAccelerationStructureKHR,
+                                                        "vkCreateAccelerationStructureKHR", info));
     VkAccelerationStructureDeviceAddressInfoKHR address{};
     address.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR;
-    address.accelerationStructure = handle;
-    structure.address = context.vk.GetAccelerationStructureDeviceAddressKHR(device, &address);
+    address.accelerationStructure = structure.handle.get();
+    structure.address = context.vk.GetAccelerationStructureDeviceAddressKHR(context.handles.device, &address);
     return structure;
 }
 
@@ -100,11 +96,15 @@ Result<PreparedTlas> prepareTlas(Context::State& context, MemoryPool& pool,
 }
 
 void recordTlasBuild(const Context::State& context, VkCommandBuffer commands, const PreparedTlas& prepared,
-                     VkAccelerationStructureKHR target) {
+                     VkAccelerationStructureKHR target, bool refit) {
     VkAccelerationStructureBuildGeometryInfoKHR info = prepared.build.info;
     info.pGeometries = &prepared.build.geometry;
     info.dstAccelerationStructure = target;
     info.scratchData.deviceAddress = prepared.scratch;
+    if (refit) {
+        info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR;
+        info.srcAccelerationStructure = target;
+    }
     VkAccelerationStructureBuildRangeInfoKHR range{};
     range.primitiveCount = prepared.count;
     const VkAccelerationStructureBuildRangeInfoKHR* ranges = &range;
@@ -191,17 +191,17 @@ BlasBuild describeBuild(const Context::State& context, const BlasInput& input) {
         context.limits.accelerationStructure.minAccelerationStructureScratchOffsetAlignment;
     build.structureBytes = sizes.accelerationStructureSize;
     const auto rounded = [&](VkDeviceSize bytes) { return (bytes + alignment - 1) / alignment * alignment; };
-    build.scratchBytes = rounded(sizes.buildScratchSize);
-    build.updateScratchBytes = input.updatable ? rounded(sizes.updateScratchSize) : 0;
+    build.scratchBytes = rounded(input.updatable ? std::max(sizes.buildScratchSize, sizes.updateScratchSize)
+                                                 : sizes.buildScratchSize);
     return build;
 }
 
-VkDeviceSize scratchBytesOf(const Context::State& context, std::span<const BlasBuild* const> builds) {
+VkDeviceSize scratchBytesOf(const Context::State& context, std::span<const BlasWork> works) {
     VkDeviceSize most = 0;
     VkDeviceSize sum = 0;
-    for (const BlasBuild* const build : builds) {
-        sum += build->scratchBytes;
-        most = std::max(most, build->scratchBytes);
+    for (const BlasWork& work : works) {
+        sum += work.build->scratchBytes;
+        most = std::max(most, work.build->scratchBytes);
     }
     // Some drivers bind scratch as a storage buffer, so it must respect the limit of those.
     const VkDeviceSize limit =
@@ -209,8 +209,8 @@ VkDeviceSize scratchBytesOf(const Context::State& context, std::span<const BlasB
     return std::max(most, std::min(sum, limit));
 }
 
-void recordBuilds(const Context::State& context, VkCommandBuffer commands,
-                  std::span<const BlasBuild* const> builds, const ScratchRange& scratch) {
+void recordBuilds(const Context::State& context, VkCommandBuffer commands, std::span<const BlasWork> works,
+                  const ScratchRange& scratch) {
     std::vector<VkAccelerationStructureBuildGeometryInfoKHR> infos;
     std::vector<const VkAccelerationStructureBuildRangeInfoKHR*> ranges;
     VkDeviceSize used = 0;
@@ -223,13 +223,17 @@ void recordBuilds(const Context::State& context, VkCommandBuffer commands,
         ranges.clear();
         used = 0;
     };
-    for (const BlasBuild* const build : builds) {
+    for (const auto [build, refit] : works) {
         if (used + build->scratchBytes > scratch.bytes) {
             flush();
             recordDependency(context, commands, kBuildsInOrder);
         }
         VkAccelerationStructureBuildGeometryInfoKHR info = build->info;
         info.scratchData.deviceAddress = scratch.address + used;
+        if (refit) {
+            info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR;
+            info.srcAccelerationStructure = info.dstAccelerationStructure;
+        }
         used += build->scratchBytes;
         infos.push_back(info);
         ranges.push_back(build->ranges.data());

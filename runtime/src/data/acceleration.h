@@ -86,8 +86,9 @@ struct PreparedTlas {
 Result<PreparedTlas> prepareTlas(Context::State& context, MemoryPool& pool,
                                  std::span<const VkAccelerationStructureInstanceKHR> instances,
                                  bool updatable, std::vector<Buffer>& kept);
+// Records the build, or a refit of what was built in `target`.
 void recordTlasBuild(const Context::State& context, VkCommandBuffer commands, const PreparedTlas& prepared,
-                     VkAccelerationStructureKHR target);
+                     VkAccelerationStructureKHR target, bool refit = false);
 
 // An input in Vulkan's terms. `info` points into `geometries`, and these into `micromaps`. Both stay in place
 // when a BlasBuild moves, since they are vectors.
@@ -97,8 +98,7 @@ struct BlasBuild {
     std::vector<VkAccelerationStructureBuildRangeInfoKHR> ranges;
     VkAccelerationStructureBuildGeometryInfoKHR info{};
     VkDeviceSize structureBytes = 0;
-    VkDeviceSize scratchBytes = 0;        // rounded up to the alignment of scratch
-    VkDeviceSize updateScratchBytes = 0;  // rounded up too; 0 if it can't be updated
+    VkDeviceSize scratchBytes = 0;  // of a build or a refit, rounded up to the alignment of scratch
 };
 
 // Describes a build except for its destination and its scratch memory.
@@ -111,17 +111,23 @@ inline constexpr MemoryDependency kBuildsInOrder{
     VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
     VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR | VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR};
 
-// Builds with destinations that share scratch memory: a build that does not fit beside the earlier ones waits
-// for them. No dependency is recorded before the first build or after the last. Requires scratchBytesOf()
-// bytes.
 struct ScratchRange {
     VkDeviceAddress address = 0;
     VkDeviceSize bytes = 0;
 };
-void recordBuilds(const Context::State& context, VkCommandBuffer commands,
-                  std::span<const BlasBuild* const> builds, const ScratchRange& scratch);
+
+// A build with its destination, or a refit of what was built there.
+struct BlasWork {
+    const BlasBuild* build = nullptr;
+    bool refit = false;
+};
+// Records builds and refits that share scratch memory: a build that does not fit beside the earlier ones
+// waits for them. No dependency is recorded before the first build or after the last. Requires
+// scratchBytesOf() bytes.
+void recordBuilds(const Context::State& context, VkCommandBuffer commands, std::span<const BlasWork> works,
+                  const ScratchRange& scratch);
 // Returns the size of that memory: as much as all builds need, and at most 64 MiB unless one build needs
 // more.
-VkDeviceSize scratchBytesOf(const Context::State& context, std::span<const BlasBuild* const> builds);
+VkDeviceSize scratchBytesOf(const Context::State& context, std::span<const BlasWork> works);
 
 }  // namespace glint

@@ -4,6 +4,7 @@
 #include "data/vertex_format.h"
 
 #include <algorithm>
+#include <cstring>
 #include <map>
 #include <set>
 
@@ -164,21 +165,9 @@ Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, 
 
 gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, const GpuPrimitive& primitive,
                                        std::uint32_t firstTriangle, std::uint32_t instance) {
-    gpu::GeometryRecord record{};
-    record.shaderId = entry.shaderId;
-    record.materialIndex = entry.materialIndex;
-    record.featureLobes = entry.featureLobes;
-    record.featureInputs = entry.featureInputs;
-    record.instanceIndex = instance;
-    record.flags = entry.geometryFlags | primitive.forms;
+    gpu::GeometryRecord record = recordOf(entry, primitive, instance);
+    record.flags |= primitive.forms;
     record.indices = indicesFrom(primitive, firstTriangle);
-    record.positions = primitive.positions;
-    record.normals = primitive.normals;
-    record.tangents = primitive.tangents;
-    record.texCoords0 = primitive.texCoords0;
-    record.texCoords1 = primitive.texCoords1;
-    record.colors = primitive.colors;
-    record.attributes = primitive.attributes;
     return record;
 }
 

@@ -91,6 +91,28 @@ Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, Memo
                                                    const PrimitiveUpload& how,
                                                    std::span<const std::vector<std::uint32_t>> ordered = {});
 
+// Makes the record of a geometry whose addresses `source` has: a primitive, or the view of a host's geometry.
+template <typename Source>
+gpu::GeometryRecord recordOf(const package::PrimitiveEntry& entry, const Source& source,
+                             std::uint32_t instance) {
+    gpu::GeometryRecord record{};
+    record.shaderId = entry.shaderId;
+    record.materialIndex = entry.materialIndex;
+    record.featureLobes = entry.featureLobes;
+    record.featureInputs = entry.featureInputs;
+    record.instanceIndex = instance;
+    record.flags = entry.geometryFlags;
+    record.indices = source.indices;
+    record.positions = source.positions;
+    record.normals = source.normals;
+    record.tangents = source.tangents;
+    record.texCoords0 = source.texCoords0;
+    record.texCoords1 = source.texCoords1;
+    record.colors = source.colors;
+    record.attributes = source.attributes;
+    return record;
+}
+
 // Makes the record of a geometry: triangles of `primitive` from `firstTriangle` on.
 gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, const GpuPrimitive& primitive,
                                        std::uint32_t firstTriangle, std::uint32_t instance);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 
 namespace glint {
 namespace {
@@ -76,6 +77,13 @@ gpu::LightRecord makeLightRecord(const LightView& light) {
     record.spotOffset = static_cast<float>(-cosOuter * scale);
     record.size = light.type == LightView::Type::Directional ? std::sin(light.size) : light.size;
     return record;
+}
+
+std::vector<gpu::LightRecord> makeLightRecords(std::span<const LightView> lights) {
+    std::vector<gpu::LightRecord> records;
+    records.reserve(lights.size());
+    std::ranges::transform(lights, std::back_inserter(records), makeLightRecord);
+    return records;
 }
 
 }  // namespace glint

@@ -6,6 +6,8 @@
 #include <glint/scene_view.h>
 
 #include <array>
+#include <span>
+#include <vector>
 
 namespace glint {
 
@@ -25,5 +27,6 @@ gpu::InstanceRecord makeInstanceRecord(const Rows& objectToWorld);
 
 // Uses the scale and offset that KHR_lights_punctual recommends in "Inner and Outer Cone Angles".
 gpu::LightRecord makeLightRecord(const LightView& light);
+std::vector<gpu::LightRecord> makeLightRecords(std::span<const LightView> lights);
 
 }  // namespace glint

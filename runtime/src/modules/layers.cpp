@@ -1,4 +1,4 @@
-#include <glint/package_modules.h>
+#include <glint/layers.h>
 
 #include <algorithm>
 

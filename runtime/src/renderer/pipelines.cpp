@@ -53,29 +53,6 @@ bool runsFallback(const PipelineChoice& choice, package::ModuleRole role) {
            info.over != package::Over::Nothing;
 }
 
-// Returns the name of a pipeline for reports: the role of its module, and its case, effect or ordering.
-std::string pipelineName(const Package& package, const package::ModuleKey& key) {
-    const package::RoleInfo& info = *package::findRole(key.role);
-    std::string name(info.name);
-    switch (info.repeated) {
-        case package::Repeated::Once:
-            return name;
-        case package::Repeated::ByCase:
-            return name + " " + std::string(package.string(package.cases()[key.index].name));
-        case package::Repeated::ByOrdering:
-            return name + " " + std::string(nameOf(static_cast<package::Ordering>(key.index)));
-        case package::Repeated::ByEffect:
-        case package::Repeated::ByWalk:
-            for (const package::EffectInfo& effect : package.effects()) {
-                if (package::effectNumber(effect.effect) == key.index) {
-                    return name + " " + std::string(effect.name);
-                }
-            }
-            break;
-    }
-    return name;
-}
-
 SpirvWords rayWords(const Package& package, ModuleRole role, std::uint32_t index = 0) {
     return package.spirv({role, index, package::kTracerRayPipeline});
 }
@@ -524,6 +501,28 @@ void Pipelines::add(const package::ModuleKey& key, const PassPipeline& pass) {
     } else {
         passes[key.role] = pass;
     }
+}
+
+std::string pipelineName(const Package& package, const package::ModuleKey& key) {
+    const package::RoleInfo& info = *package::findRole(key.role);
+    std::string name(info.name);
+    switch (info.repeated) {
+        case package::Repeated::Once:
+            return name;
+        case package::Repeated::ByCase:
+            return name + " " + std::string(package.string(package.cases()[key.index].name));
+        case package::Repeated::ByOrdering:
+            return name + " " + std::string(nameOf(static_cast<package::Ordering>(key.index)));
+        case package::Repeated::ByEffect:
+        case package::Repeated::ByWalk:
+            for (const package::EffectInfo& effect : package.effects()) {
+                if (package::effectNumber(effect.effect) == key.index) {
+                    return name + " " + std::string(effect.name);
+                }
+            }
+            break;
+    }
+    return name;
 }
 
 Result<UniquePipelineLayout> createPassLayout(Context::State& context,

@@ -106,6 +106,9 @@ Result<UniquePipelineLayout> createPassLayout(Context::State& context,
                                               std::span<const VkDescriptorSetLayout> sets,
                                               std::uint32_t pushBytes);
 
+// Returns the name of a pipeline for reports: the role of its module, and its case, effect or ordering.
+std::string pipelineName(const Package& package, const package::ModuleKey& key);
+
 // Makes all pipelines of the choice, or starts threads that make some of them later, which read `package`.
 // `shaderIds` are those of the hit records of strategies with a pipeline of their own, in their order.
 // Errors: those of buffers, "vulkan-call".

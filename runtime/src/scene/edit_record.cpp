@@ -342,10 +342,10 @@ private:
         }
     }
 
-    std::vector<const BlasBuild*> pendingBuilds() const {
-        std::vector<const BlasBuild*> builds;
+    std::vector<BlasWork> pendingBuilds() const {
+        std::vector<BlasWork> builds;
         for (const SceneEditor::State::PendingBuild& pending : state_.builds) {
-            builds.push_back(&pending.build);
+            builds.push_back({&pending.build});
         }
         return builds;
     }
@@ -363,15 +363,11 @@ private:
         if (!placed_.empty()) {
             std::memcpy(prepared_.staging.mapped + slack, placed_.data(), placed_.size() * sizeof(Placed));
         }
-        TlasBuild& build = prepared_.build;
-        build.geometry.geometry.instances.data.deviceAddress = prepared_.staging.address + slack;
-        build.info.pGeometries = &build.geometry;
-        build.info.dstAccelerationStructure = scene_.tlas.handle.get();
-        build.info.scratchData.deviceAddress = state_.tlasScratch.address;
-        VkAccelerationStructureBuildRangeInfoKHR range{};
-        range.primitiveCount = static_cast<std::uint32_t>(placed_.size());
-        const VkAccelerationStructureBuildRangeInfoKHR* ranges = &range;
-        context_.vk.CmdBuildAccelerationStructuresKHR(commands_, 1, &build.info, &ranges);
+        prepared_.build.geometry.geometry.instances.data.deviceAddress = prepared_.staging.address + slack;
+        recordTlasBuild(
+            context_, commands_,
+            {prepared_.build, state_.tlasScratch.address, static_cast<std::uint32_t>(placed_.size())},
+            scene_.tlas.handle.get());
     }
 
     // Takes over everything that was prepared, and notes that nothing is pending.

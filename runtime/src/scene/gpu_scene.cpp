@@ -158,10 +158,7 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
                 {geometry.positions, deforms ? state.primitives[primitive].vertexCount : 0});
         }
     }
-    std::vector<gpu::LightRecord> lights;
-    for (const LightView& light : scene.lights) {
-        lights.push_back(makeLightRecord(light));
-    }
+    const std::vector<gpu::LightRecord> lights = makeLightRecords(scene.lights);
     state.lightCount = static_cast<std::uint32_t>(lights.size());
 
     using Geometries = std::span<const gpu::GeometryRecord>;

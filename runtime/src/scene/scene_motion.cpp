@@ -46,82 +46,34 @@ void stage(GpuScene::State& state, std::span<const InstanceView> instances,
 // Records all the work of the device, with the dependencies before and after it.
 void recordAll(GpuScene::State& state, VkCommandBuffer commands, const Decisions& decisions);
 
-namespace {
-
-// The size of shared scratch, unless a single build needs more.
-constexpr VkDeviceSize kScratchBytes = VkDeviceSize{64} << 20;
-
-// After it, scratch is free again and the built structures may be read.
-constexpr MemoryDependency kBuildToRefit{
-    VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
-    VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR | VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR,
-    VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
-    VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR | VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR};
-
-VkDeviceSize scratchOf(const BlasBuild& build) {
-    return std::max(build.scratchBytes, build.updateScratchBytes);
-}
-
-}  // namespace
-
 Result<RefittedBlases> RefittedBlases::create(Context::State& context, MemoryPool& pool,
                                               std::span<const BlasInput> inputs) {
     RefittedBlases blases(context);
-    VkDeviceSize all = 0;
-    VkDeviceSize largest = 0;
     for (const BlasInput& input : inputs) {
         BlasBuild build = describeBuild(context, input);
         GLINT_TRY(auto structure, createStructure(context, pool, build.structureBytes,
                                                   VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR));
         build.info.dstAccelerationStructure = structure.handle.get();
-        all += scratchOf(build);
-        largest = std::max(largest, scratchOf(build));
         blases.structures_.push_back(std::move(structure));
         blases.builds_.push_back(std::move(build));
     }
-    blases.scratchBytes_ = std::max(largest, std::min(all, kScratchBytes));
+    std::vector<BlasWork> works;
+    for (const BlasBuild& build : blases.builds_) {
+        works.push_back({&build});
+    }
+    blases.scratchBytes_ = scratchBytesOf(context, works);
     GLINT_TRY(blases.scratch_, createScratch(context, pool, blases.scratchBytes_));
     return blases;
 }
 
 void RefittedBlases::record(VkCommandBuffer commands, std::span<const BuildAction> actions) const {
-    std::vector<VkAccelerationStructureBuildGeometryInfoKHR> infos;
-    std::vector<const VkAccelerationStructureBuildRangeInfoKHR*> ranges;
-    VkDeviceSize used = 0;
-    bool isFirst = true;
-    const auto flush = [&] {
-        if (infos.empty()) {
-            return;
-        }
-        if (!isFirst) {
-            recordDependency(*context_, commands, kBuildToRefit);
-        }
-        context_->vk.CmdBuildAccelerationStructuresKHR(commands, static_cast<std::uint32_t>(infos.size()),
-                                                       infos.data(), ranges.data());
-        infos.clear();
-        ranges.clear();
-        used = 0;
-        isFirst = false;
-    };
+    std::vector<BlasWork> works;
     for (std::size_t i = 0; i < builds_.size(); ++i) {
-        if (actions[i] == BuildAction::Keep) {
-            continue;
+        if (actions[i] != BuildAction::Keep) {
+            works.push_back({&builds_[i], actions[i] == BuildAction::Refit});
         }
-        const BlasBuild& build = builds_[i];
-        if (used + scratchOf(build) > scratchBytes_) {
-            flush();
-        }
-        VkAccelerationStructureBuildGeometryInfoKHR info = build.info;
-        info.scratchData.deviceAddress = scratch_.address + used;
-        if (actions[i] == BuildAction::Refit) {
-            info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR;
-            info.srcAccelerationStructure = info.dstAccelerationStructure;
-        }
-        infos.push_back(info);
-        ranges.push_back(build.ranges.data());
-        used += scratchOf(build);
     }
-    flush();
+    recordBuilds(*context_, commands, works, {scratch_.address, scratchBytes_});
 }
 
 VkDeviceSize RefittedBlases::bytes() const {
@@ -189,16 +141,8 @@ void recordTlas(const GpuScene::State& state, VkCommandBuffer commands, BuildAct
     if (action == BuildAction::Keep) {
         return;
     }
-    VkAccelerationStructureBuildGeometryInfoKHR info = motion.tlasBuild.info;
-    info.pGeometries = &motion.tlasBuild.geometry;
-    if (action == BuildAction::Refit) {
-        info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR;
-        info.srcAccelerationStructure = info.dstAccelerationStructure;
-    }
-    VkAccelerationStructureBuildRangeInfoKHR range{};
-    range.primitiveCount = static_cast<std::uint32_t>(motion.placed.size());
-    const VkAccelerationStructureBuildRangeInfoKHR* ranges = &range;
-    state.context.vk.CmdBuildAccelerationStructuresKHR(commands, 1, &info, &ranges);
+    recordTlasBuild(state.context, commands, motion.tlas, state.tlas.handle.get(),
+                    action == BuildAction::Refit);
 }
 
 BuildAction chosen(BuildAction byRule, MotionView::Builds builds) {
@@ -329,9 +273,7 @@ void stage(GpuScene::State& state, std::span<const InstanceView> instances,
         const gpu::InstanceRecord record = makeInstanceRecord(instances[i].objectToWorld);
         std::memcpy(bytes + i * sizeof(record), &record, sizeof(record));
     }
-    std::vector<gpu::LightRecord> records;
-    records.reserve(lights.size());
-    std::ranges::transform(lights, std::back_inserter(records), makeLightRecord);
+    const std::vector<gpu::LightRecord> records = makeLightRecords(lights);
     if (!records.empty()) {
         std::memcpy(bytes + motion.lightOffset, records.data(), records.size() * sizeof(gpu::LightRecord));
     }
@@ -478,15 +420,15 @@ Status createBuffers(GpuScene::State& state, std::size_t lights) {
 
 Status createTlas(GpuScene::State& state) {
     SceneMotion& motion = *state.motion;
-    TlasBuild& build = motion.tlasBuild;
+    TlasBuild& build = motion.tlas.build;
     GLINT_TRY_DO(describeTlas(state.context, motion.placedBuffer.address, motion.placed.size(), true, build));
     GLINT_TRY(state.tlas, createStructure(state.context, state.pool, build.sizes.accelerationStructureSize,
                                           VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR));
     GLINT_TRY(motion.tlasScratch,
               createScratch(state.context, motion.pool,
                             std::max(build.sizes.buildScratchSize, build.sizes.updateScratchSize)));
-    build.info.dstAccelerationStructure = state.tlas.handle.get();
-    build.info.scratchData.deviceAddress = motion.tlasScratch.address;
+    motion.tlas.scratch = motion.tlasScratch.address;
+    motion.tlas.count = static_cast<std::uint32_t>(motion.placed.size());
     return okStatus();
 }
 

@@ -62,7 +62,7 @@ struct SceneMotion {
     std::vector<PartInstance> partInstances;                 // instances of the TLAS, in their order
     std::vector<VkAccelerationStructureInstanceKHR> placed;  // the same, as last sent to the device
     Buffer placedBuffer;
-    TlasBuild tlasBuild;
+    PreparedTlas tlas;
     Scratch tlasScratch;
     TlasHistory tlasHistory;
 

@@ -24,12 +24,12 @@ struct Builds {
     ScratchRange scratch;
     VkQueryPool sizes = VK_NULL_HANDLE;
 
-    std::vector<const BlasBuild*> pointers() const {
-        std::vector<const BlasBuild*> pointers;
+    std::vector<BlasWork> works() const {
+        std::vector<BlasWork> works;
         for (const BlasBuild& build : all) {
-            pointers.push_back(&build);
+            works.push_back({&build});
         }
-        return pointers;
+        return works;
     }
 };
 
@@ -38,17 +38,14 @@ Result<UniqueQueryPool> createSizes(Context::State& context, std::uint32_t count
     info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
     info.queryType = VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR;
     info.queryCount = count;
-    VkQueryPool queries = VK_NULL_HANDLE;
-    const VkResult result = context.vk.CreateQueryPool(context.handles.device, &info, nullptr, &queries);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateQueryPool", result);
-    }
-    context.vk.ResetQueryPool(context.handles.device, queries, 0, count);
-    return UniqueQueryPool(context, queries);
+    GLINT_TRY(auto queries,
+              createHandle<UniqueQueryPool>(context, context.vk.CreateQueryPool, "vkCreateQueryPool", info));
+    context.vk.ResetQueryPool(context.handles.device, queries.get(), 0, count);
+    return queries;
 }
 
 void record(const Context::State& context, const Builds& builds, VkCommandBuffer commands) {
-    recordBuilds(context, commands, builds.pointers(), builds.scratch);
+    recordBuilds(context, commands, builds.works(), builds.scratch);
     recordDependency(context, commands, kBuildToQuery);
     context.vk.CmdWriteAccelerationStructuresPropertiesKHR(
         commands, static_cast<std::uint32_t>(builds.handles.size()), builds.handles.data(),
@@ -78,7 +75,7 @@ Result<std::vector<AccelerationStructure>> addBlases(SceneUpload& upload, std::s
         builds->all.push_back(std::move(build));
         structures.push_back(std::move(structure));
     }
-    builds->scratch.bytes = scratchBytesOf(context, builds->pointers());
+    builds->scratch.bytes = scratchBytesOf(context, builds->works());
     GLINT_TRY(auto scratch, createScratch(context, upload.pool, builds->scratch.bytes));
     builds->scratch.address = scratch.address;
     upload.keep(std::move(scratch.buffer));
@@ -218,14 +215,9 @@ private:
         creation.buffer = made.buffer.handle.get();
         creation.size = sizes.micromapSize;
         creation.type = VK_MICROMAP_TYPE_OPACITY_MICROMAP_EXT;
-        VkMicromapEXT handle = VK_NULL_HANDLE;
-        const VkResult result =
-            context_.vk.CreateMicromapEXT(context_.handles.device, &creation, nullptr, &handle);
-        if (result != VK_SUCCESS) {
-            return vulkanError("vkCreateMicromapEXT", result);
-        }
-        made.handle = UniqueMicromap(context_, handle);
-        info.dstMicromap = handle;
+        GLINT_TRY(made.handle, createHandle<UniqueMicromap>(context_, context_.vk.CreateMicromapEXT,
+                                                            "vkCreateMicromapEXT", creation));
+        info.dstMicromap = made.handle.get();
         GLINT_TRY(pending.scratch, createScratch(context_, upload_.pool, sizes.buildScratchSize));
         info.scratchData.deviceAddress = pending.scratch.address;
         return okStatus();

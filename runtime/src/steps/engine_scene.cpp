@@ -75,21 +75,8 @@ Result<std::vector<gpu::GeometryRecord>> makeGeometries(const PackageScene& know
             return outOfRange(geometryPlace(i), "instance", view.instance, scene.instances.size());
         }
         GLINT_TRY_DO(checkAddresses(view, *entry, geometryPlace(i)));
-        gpu::GeometryRecord record{};
-        record.shaderId = entry->shaderId;
-        record.materialIndex = entry->materialIndex;
-        record.featureLobes = entry->featureLobes;
-        record.featureInputs = entry->featureInputs;
-        record.instanceIndex = view.instance;
-        record.flags = entry->geometryFlags | std::uint32_t{view.hostFlags} << gpu::kGeometryHostFlagsShift;
-        record.indices = view.indices;
-        record.positions = view.positions;
-        record.normals = view.normals;
-        record.tangents = view.tangents;
-        record.texCoords0 = view.texCoords0;
-        record.texCoords1 = view.texCoords1;
-        record.colors = view.colors;
-        record.attributes = view.attributes;
+        gpu::GeometryRecord record = recordOf(*entry, view, view.instance);
+        record.flags |= std::uint32_t{view.hostFlags} << gpu::kGeometryHostFlagsShift;
         records.push_back(record);
     }
     return records;
@@ -119,11 +106,7 @@ std::vector<Rows> movedBack(std::vector<Rows> instances, const std::array<double
 
 Result<std::vector<gpu::LightRecord>> makeLights(std::span<const LightView> lights) {
     GLINT_TRY_DO(checkLights(lights));
-    std::vector<gpu::LightRecord> records;
-    for (const LightView& light : lights) {
-        records.push_back(makeLightRecord(light));
-    }
-    return records;
+    return makeLightRecords(lights);
 }
 
 // The package's materials, with the host's numbers of textures and samplers.
