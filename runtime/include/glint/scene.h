@@ -17,6 +17,8 @@
 
 namespace glint {
 
+// --- Edits of a scene that is on the device and drawn (docs/live.md, "Editing a scene") ---
+
 // Names something in a scene. A handle stays valid until the thing that it names is removed. Its index may
 // then be used again, with another generation, so an old handle names nothing. The initial value names
 // nothing.

@@ -1,4 +1,10 @@
-// The storage of an image's texels: as they are, or in blocks that GPUs read without unpacking them.
+// A scene as the runtime takes it. Its spans refer to the caller's memory; upload reads them and does not
+// keep them.
+//
+// A scene has an origin: the point of the world from which places in single precision are counted. Transforms
+// of instances, joints and lights are relative to it, and all that shaders compute is, too. So a scene a
+// million metres away is as exact as one that is close. A camera has its place in the world, in double
+// precision. The difference of the two is all that a frame needs.
 #pragma once
 
 #include <glint/result.h>
@@ -11,6 +17,8 @@
 #include <string_view>
 
 namespace glint {
+
+// --- The storage of an image's texels: as they are, or in blocks that GPUs read without unpacking them ---
 
 // Values are within [0, 1]. Sources of the block formats: Khronos Data Format Specification 1.3, sections 18
 // (BC1 to BC5), 19 (BC7), 21 (ETC2 and EAC) and 23 (ASTC).
@@ -128,13 +136,7 @@ using TexelChannels = std::array<TexelChannel, 4>;
 inline constexpr TexelChannels kChannelsAsStored{TexelChannel::R, TexelChannel::G, TexelChannel::B,
                                                  TexelChannel::A};
 
-// A scene as the runtime takes it. Its spans refer to the caller's memory; upload reads them and does not
-// keep them.
-//
-// A scene has an origin: the point of the world from which places in single precision are counted. Transforms
-// of instances, joints and lights are relative to it, and all that shaders compute is, too. So a scene a
-// million metres away is as exact as one that is close. A camera has its place in the world, in double
-// precision. The difference of the two is all that a frame needs.
+// --- The scene ---
 
 // Differences to the attributes of a primitive. Each span is empty or as long as the primitive's positions.
 struct MorphTargetView {

@@ -1,4 +1,5 @@
-// A scene that a host keeps on the device by itself: its vertex buffers, acceleration structures, textures
+// Traces, orders and shades the rays of a host, in the host's command buffer, with the host's bindings, over
+// a scene that the host keeps on the device by itself: its vertex buffers, acceleration structures, textures
 // and samplers stay where they are. docs/engine.md shows how to use it.
 #pragma once
 
@@ -19,6 +20,8 @@
 #include <vector>
 
 namespace glint {
+
+// --- The scene of a host ---
 
 // One geometry of one instance, which a ray can hit. Addresses are device addresses in the formats that the
 // package's shaders read; by default they are tightly packed: three uint32 a triangle, three floats a
@@ -125,8 +128,7 @@ private:
     std::unique_ptr<State> state_;
 };
 
-// Traces, orders and shades the rays of a host, in the host's command buffer, with the host's bindings.
-// docs/engine.md shows how to use it.
+// --- The steps ---
 
 // A ray of the host's list.
 struct EngineRay {

@@ -6,7 +6,7 @@
 #include "frame/frame_resources.h"
 #include "frame/motion_history.h"
 #include "renderer/background_pipelines.h"
-#include "renderer/pass_state.h"
+#include "renderer/hit_passes.h"
 #include "renderer/pipelines.h"
 #include "scene/gpu_scene_state.h"
 #include "scene/scene_package.h"
