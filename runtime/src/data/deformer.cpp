@@ -225,12 +225,7 @@ Status Deformer::createRecords(const SceneView& scene, std::span<const GpuPrimit
             dispatches_.push_back({slot.instance, record.vertexCount});
         }
     }
-    GLINT_TRY(
-        auto buffer,
-        createBuffer(*context_, pool_, std::max(records.size(), std::size_t{1}) * sizeof(gpu::DeformRecord),
-                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT));
-    records_ = std::move(buffer);
-    return uploader.copyToBuffer(bytesOf(std::span<const gpu::DeformRecord>(records)), records_);
+    return uploadRecords(*context_, pool_, uploader, std::span<const gpu::DeformRecord>(records), records_);
 }
 
 std::vector<bool> Deformer::setPose(std::span<const InstanceView> instances) {

@@ -27,14 +27,11 @@ double millisecondsSince(Clock::time_point begin) {
     return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-// Uploads an array of records that shaders reach by address. The buffer is never empty, so that its address
-// is valid.
+// Uploads records that a replacement may copy from.
 template <typename T>
 Status uploadRecords(GpuScene::State& state, Uploader& uploader, std::span<const T> records, Buffer& target) {
-    GLINT_TRY(target, createBuffer(state.context, state.pool, std::max(records.size_bytes(), sizeof(T)),
-                                   VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-                                       VK_BUFFER_USAGE_TRANSFER_SRC_BIT));
-    return uploader.copyToBuffer(bytesOf(records), target);
+    return glint::uploadRecords(state.context, state.pool, uploader, records, target,
+                                VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
 }
 
 // Makes the hierarchy over lights and emissive triangles, and the records of the triangles, in packages that

@@ -53,12 +53,9 @@ void completeCompaction(GpuScene::State& state, std::uint64_t frame);
 
 // --- The upload ---
 
-struct SceneUpload {
-    // `mostStaged` is as in Uploader::createDeferred().
-    SceneUpload(Context::State& contextState, VkDeviceSize mostStaged)
-        : context(contextState),
-          pool(contextState),
-          uploader(Uploader::createDeferred(contextState, pool, mostStaged)) {}
+// Its pool holds scratch and the inputs of acceleration structures, too.
+struct SceneUpload : StagedCopies {
+    using StagedCopies::StagedCopies;
 
     // Keeps a buffer of `pool`, if there is one, until the upload is complete.
     void keep(Buffer&& buffer) {
@@ -71,17 +68,10 @@ struct SceneUpload {
     static constexpr std::uint32_t kBlasStretch = 0;
     static constexpr std::uint32_t kTlasStretch = 1;
 
-    Context::State& context;
-    // It holds staging, scratch, and the inputs of acceleration structures. Members are destroyed in reverse
-    // order: the pool's memory last.
-    MemoryPool pool;
-    std::vector<Buffer> kept;
-    std::unique_ptr<Uploader> uploader;  // all commands of the upload, in their order
     std::unique_ptr<Deformer> deformer;  // of a scene that does not move and is not in its rest pose
     std::optional<Timer> timer;
     std::uint32_t stretches = 0;             // recorded ones
     std::unique_ptr<Compaction> compaction;  // null if there is no BLAS to compact
-    std::uint64_t frame = 0;                 // frame of the commands
 };
 
 // --- Structures ---

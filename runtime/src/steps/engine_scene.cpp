@@ -170,14 +170,11 @@ Status findShaderIds(std::span<const gpu::GeometryRecord> geometries,
     return okStatus();
 }
 
-// The buffer is never empty, so that its address is valid.
 template <typename T>
-Status upload(EngineScene::State& state, Uploader& uploader, const std::vector<T>& records,
-              VkBufferUsageFlags usage, Buffer& target) {
-    GLINT_TRY(target,
-              createBuffer(state.context, state.pool, std::max(records.size(), std::size_t{1}) * sizeof(T),
-                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | usage));
-    return uploader.copyToBuffer(bytesOf(std::span<const T>(records)), target);
+Status upload(EngineScene::State& state, const std::vector<T>& records, VkBufferUsageFlags usage,
+              Buffer& target) {
+    return uploadRecords(state.context, state.pool, *state.upload->uploader, std::span<const T>(records),
+                         target, usage);
 }
 
 // Records new contents of a buffer. The bytes travel in the command buffer.
@@ -219,15 +216,13 @@ Result<std::unique_ptr<EngineScene>> EngineScene::record(Context& context, const
     state->lightCount = state->lightCapacity = static_cast<std::uint32_t>(lights.size());
     state->recordsBy = scene.recordsBy;
     state->upload = std::make_unique<StagedCopies>(context.state());
-    Uploader& uploader = *state->upload->uploader;
     const std::vector<std::uint32_t> firstRecords(scene.firstRecords.begin(), scene.firstRecords.end());
     for (const Status& status :
-         {upload(*state, uploader, geometries, 0, state->geometries),
-          upload(*state, uploader, instances, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, state->instances),
-          upload(*state, uploader, instances, 0, state->previousInstances),
-          upload(*state, uploader, lights, 0, state->lights),
-          upload(*state, uploader, materials, 0, state->materials),
-          upload(*state, uploader, firstRecords, 0, state->firstRecords)}) {
+         {upload(*state, geometries, 0, state->geometries),
+          upload(*state, instances, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, state->instances),
+          upload(*state, instances, 0, state->previousInstances), upload(*state, lights, 0, state->lights),
+          upload(*state, materials, 0, state->materials),
+          upload(*state, firstRecords, 0, state->firstRecords)}) {
         if (!status) {
             return status.error();
         }
