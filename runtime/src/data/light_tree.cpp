@@ -1,12 +1,13 @@
 #include "data/light_tree.h"
 
+#include "context/parallel.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <future>
 #include <limits>
 #include <numbers>
-#include <thread>
 #include <utility>
 
 namespace glint {
@@ -386,8 +387,7 @@ LightTree buildLightTree(std::span<const gpu::LightRecord> lights, std::span<con
         tree.treeNodes = static_cast<std::uint32_t>(2 * count - 1);
         tree.nodes.resize(tree.treeNodes);
         LightTreeBuilder(std::move(members), tree.nodes)
-            .build(0, count, 0, 0,
-                   static_cast<int>(std::clamp(std::thread::hardware_concurrency(), 1U, 16U)));
+            .build(0, count, 0, 0, static_cast<int>(std::min(threadsOfMachine(), 16U)));
     }
     tree.nodes.insert(tree.nodes.end(), apart.begin(), apart.end());
     return tree;

@@ -5,7 +5,6 @@
 // space-filling curve, least significant bits first, with 1 bit (two states) or 2 bits (four states) each.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>

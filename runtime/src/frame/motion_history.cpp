@@ -4,7 +4,6 @@
 #include "context/resources.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace glint {
 namespace {

@@ -6,7 +6,6 @@
 #include <array>
 #include <charconv>
 #include <fstream>
-#include <system_error>
 #include <tuple>
 #include <utility>
 

@@ -10,7 +10,6 @@
 #include <glint/pipeline_statistics.h>
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <optional>
 #include <utility>

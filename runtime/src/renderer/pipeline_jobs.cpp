@@ -1,5 +1,6 @@
 #include "renderer/pipeline_jobs.h"
 
+#include "context/parallel.h"
 #include "context/resources.h"
 #include "context/vulkan_table.h"
 #include "package/package.h"
@@ -8,12 +9,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstring>
 #include <numeric>
 #include <optional>
-#include <system_error>
-#include <thread>
 #include <utility>
 
 namespace glint {
@@ -224,7 +222,7 @@ PipelineIdentity identify(const Package& package, const RayPipelineSource& sourc
 }
 
 std::uint32_t pipelineThreads(std::uint32_t wanted, std::size_t jobCount) {
-    const std::uint32_t most = wanted > 0 ? wanted : std::max(std::thread::hardware_concurrency(), 1U);
+    const std::uint32_t most = wanted > 0 ? wanted : threadsOfMachine();
     return static_cast<std::uint32_t>(std::clamp<std::size_t>(jobCount, 1, most));
 }
 
@@ -237,25 +235,13 @@ std::vector<Result<MadePipeline>> tryPipelines(std::span<const PipelineJob> jobs
 
     std::vector<std::optional<Result<UniquePipeline>>> results(jobs.size());
     std::vector<PipelineCreation> creations(jobs.size(), PipelineCreation{flags, {}});
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-        for (std::size_t taken = next++; taken < order.size(); taken = next++) {
+    forEach(
+        order.size(),
+        [&](std::size_t taken) {
             const std::size_t job = order[taken];
             results[job].emplace(jobs[job].make(creations[job]));
-        }
-    };
-    std::vector<std::thread> helpers;
-    for (std::uint32_t i = 1; i < threads; ++i) {
-        try {
-            helpers.emplace_back(work);
-        } catch (const std::system_error&) {
-            break;  // no more threads: the existing ones do all the work
-        }
-    }
-    work();
-    for (std::thread& helper : helpers) {
-        helper.join();
-    }
+        },
+        threads);
 
     std::vector<Result<MadePipeline>> made;
     made.reserve(jobs.size());

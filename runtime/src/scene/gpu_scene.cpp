@@ -15,7 +15,6 @@
 #include "scene/texture_stream.h"
 
 #include <chrono>
-#include <cstring>
 #include <utility>
 
 namespace glint {

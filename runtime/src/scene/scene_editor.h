@@ -16,11 +16,9 @@
 #include <glint/result.h>
 #include <glint/scene.h>
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <optional>
 #include <set>
 #include <span>
 #include <string>

@@ -9,12 +9,9 @@
 #include <glint/package.h>
 #include <glint/scene.h>
 
-#include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 namespace glint {

@@ -1,13 +1,12 @@
 #include "sky/map_filter.h"
 
+#include "context/parallel.h"
+
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <numbers>
 #include <span>
-#include <system_error>
-#include <thread>
 
 namespace glint {
 namespace {
@@ -77,7 +76,6 @@ constexpr std::uint32_t kMinSamples = 32;
 constexpr std::uint32_t kMaxSamples = 1024;
 // The number of map samples, which all texels share. A lamp that has a tenth of the light gets 100.
 constexpr std::uint32_t kMapSamples = 1024;
-constexpr std::uint32_t kRowsAtOnce = 4;
 constexpr std::uint32_t kMaxThreads = 64;
 
 struct Vec3 {
@@ -280,45 +278,25 @@ Radiance lobeMean(const Source& source, const Lobe& lobe, const std::vector<Vec3
     return mean.value();
 }
 
-// Calls `work` for each row from several threads.
-template <typename Work>
-void forEachRow(std::uint32_t rows, const Work& work) {
-    std::atomic<std::uint32_t> next{0};
-    const auto loop = [&] {
-        for (std::uint32_t first = next.fetch_add(kRowsAtOnce); first < rows;
-             first = next.fetch_add(kRowsAtOnce)) {
-            for (std::uint32_t row = first; row < std::min(first + kRowsAtOnce, rows); ++row) {
-                work(row);
-            }
-        }
-    };
-    const std::uint32_t threads = std::clamp(std::thread::hardware_concurrency(), 1U, kMaxThreads);
-    std::vector<std::jthread> helpers;
-    for (std::uint32_t i = 1; i < threads; ++i) {
-        try {
-            helpers.emplace_back(loop);
-        } catch (const std::system_error&) {
-            break;  // the threads that exist do the work
-        }
-    }
-    loop();
-}
-
 RadianceMap filterLevel(const Source& source, double roughness, std::uint32_t width, std::uint32_t height) {
     const Lobe lobe(roughness);
     const std::vector<Vec3> samples =
         sampleLobe(lobe, std::clamp(kLevelSamples / (width * height), kMinSamples, kMaxSamples));
     RadianceMap level{width, height, {}};
     level.texels.resize(std::size_t{width} * height);
-    forEachRow(height, [&](std::uint32_t row) {
-        for (std::uint32_t x = 0; x < width; ++x) {
-            // The additive recurrence of the plastic number fills the plane evenly (Roberts 2018).
-            const double turn = 0.7548776662466927 * x + 0.5698402909980532 * row;
-            level.texels[std::size_t{row} * width + x] =
-                lobeMean(source, lobe, samples, std::numbers::pi * (row + 0.5) / height,
-                         2.0 * std::numbers::pi * ((x + 0.5) / width - 0.5), 2.0 * std::numbers::pi * turn);
-        }
-    });
+    forEach(
+        height,
+        [&](std::size_t index) {
+            const auto row = static_cast<std::uint32_t>(index);
+            for (std::uint32_t x = 0; x < width; ++x) {
+                // The additive recurrence of the plastic number fills the plane evenly (Roberts 2018).
+                const double turn = 0.7548776662466927 * x + 0.5698402909980532 * row;
+                level.texels[std::size_t{row} * width + x] = lobeMean(
+                    source, lobe, samples, std::numbers::pi * (row + 0.5) / height,
+                    2.0 * std::numbers::pi * ((x + 0.5) / width - 0.5), 2.0 * std::numbers::pi * turn);
+            }
+        },
+        std::min(threadsOfMachine(), kMaxThreads));
     return level;
 }
 

@@ -6,7 +6,6 @@
 #include <glint/result.h>
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
