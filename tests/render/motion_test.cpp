@@ -5,7 +5,7 @@
 #include "render/harness.h"
 #include "render/moving_scenes.h"
 #include "render/scene_builder.h"
-#include "scene/gpu_scene_state.h"
+#include "scene/scene_motion.h"
 #include "support/halved_tree.h"
 
 #include <glint/scene_view/camera.h>
