@@ -2,7 +2,7 @@
 #include "resolve/resolve.h"
 #include "scene/deformed.h"
 
-#include <glint/package_format.h>
+#include <glint/embedded_file.h>
 #include <glint/scene_view/package.h>
 
 #include <fmt/format.h>

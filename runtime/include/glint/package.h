@@ -1,8 +1,8 @@
 // A compiled package, read and checked. It needs no Vulkan device.
 #pragma once
 
+#include <glint/embedded_file.h>
 #include <glint/layers.h>
-#include <glint/package_format.h>
 #include <glint/package_modules.h>
 #include <glint/result.h>
 

@@ -10,7 +10,6 @@
 
 #include <bit>
 #include <cstdint>
-#include <span>
 #include <string_view>
 
 namespace glint::package {
@@ -434,12 +433,5 @@ static_assert(sizeof(EffectEntry) == 24);
 static_assert(sizeof(EmissionEntry) == 48);
 static_assert(sizeof(FeatureEntry) == 16);
 static_assert(sizeof(OpacityEntry) == 40);
-
-// A file of a package in memory. `glint compile --embed` makes such files, and Package::load() reads them.
-
-struct EmbeddedFile {
-    std::string_view name;                // file name in the package's folder: "tables.bin", "uber.spv"
-    std::span<const std::uint8_t> bytes;  // any alignment; not owned
-};
 
 }  // namespace glint::package

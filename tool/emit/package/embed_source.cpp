@@ -57,7 +57,7 @@ std::string firstLine(const gltf::SceneList& scenes) {
 std::string makeHeaderText(const gltf::SceneList& scenes, const std::string& scope) {
     return firstLine(scenes) + fmt::format(
                                    "#pragma once\n\n"
-                                   "#include <glint/package_format.h>\n\n"
+                                   "#include <glint/embedded_file.h>\n\n"
                                    "#include <span>\n\n"
                                    "namespace glint::{} {{\n\n"
                                    "// The package, for Package::load(). Static storage.\n"
