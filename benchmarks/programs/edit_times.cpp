@@ -4,7 +4,7 @@
 #include "context/commands.h"
 #include "gltf/scene.h"
 
-#include <glint/scene_edit.h>
+#include <glint/scene.h>
 #include <glint/scene_view/session.h>
 
 #include <CLI/CLI.hpp>

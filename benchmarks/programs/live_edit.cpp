@@ -6,7 +6,7 @@
 #include "gltf/import.h"
 #include "materials/declarations.h"
 
-#include <glint/package_watch.h>
+#include <glint/package.h>
 #include <glint/scene_view/camera.h>
 #include <glint/scene_view/session.h>
 

@@ -8,7 +8,6 @@
 #include <glint/scene_view/camera.h>
 #include <glint/scene_view/session.h>
 #include <glint/scene_view/textures.h>
-#include <glint/texture_stream.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -6,14 +6,14 @@
 //                 output("pixels", "Number of pixels.", [](const Size& size) { return size.count(); })};
 //     }
 //
-// A field is a number, a text, a flag, a value with names (glint/names.h), Json, another described type, or
+// A field is a number, a text, a flag, a value with names (glint/result.h), Json, another described type, or
 // an optional, a list, a map or list of pairs by text or a variant of these.
 #pragma once
 
 #include "base/fields_fwd.h"
 #include "base/json.h"
 
-#include <glint/names.h>
+#include <glint/result.h>
 
 #include <concepts>
 #include <cstdint>

@@ -11,8 +11,8 @@
 
 #include <glint/measure/settings.h>
 #include <glint/measure/target.h>
+#include <glint/package_modules.h>
 #include <glint/scene_view/session.h>
-#include <glint/strategies.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -4,7 +4,7 @@
 #include "resolve/resolve.h"
 #include "settings/descriptor.h"
 
-#include <glint/texture_stream.h>
+#include <glint/scene.h>
 
 #include <fmt/format.h>
 

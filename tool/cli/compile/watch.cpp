@@ -7,7 +7,7 @@
 #include "cli/options/setting_options.h"
 #include "emit/package/write.h"
 
-#include <glint/package_watch.h>
+#include <glint/package.h>
 
 #include <fmt/format.h>
 

@@ -77,7 +77,7 @@ private:
 
 // Calls `compileOnce`, which returns an exit code or the error of the run, at the start and after each change
 // of an input, until SIGINT or SIGTERM. After each run it prints a line, and after each new package it counts
-// the stamp up (glint/package_watch.h). Returns the exit code of the command, which is 0.
+// the stamp up (glint/package.h). Returns the exit code of the command, which is 0.
 using CompileOnce = std::function<Result<int>(const Console&, const CompileArguments&, WatchedRun&)>;
 int watchInputs(const Console& console, const CompileArguments& arguments, const CompileOnce& compileOnce);
 

@@ -4,8 +4,8 @@
 #include "emit/feature_kernel.h"
 
 #include <glint/context.h>
+#include <glint/internal/scene_kernel.h>
 #include <glint/measure/check_materials.h>
-#include <glint/scene_kernel.h>
 #include <glint/scene_view/session.h>
 
 #include <cstdint>
