@@ -1,11 +1,11 @@
 # Installs and exports the package Glint: find_package(Glint) gives Glint::runtime, Glint::gltf, Glint::compiler,
-# Glint::scene_view, Glint::measure, Glint::glint and glint_add_materials(), from a prefix or from a build folder.
+# Glint::session, Glint::measure, Glint::glint and glint_add_materials(), from a prefix or from a build folder.
 include(CMakePackageConfigHelpers)
 
 set(glint_targets glint_package glint_runtime)
 if(GLINT_BUILD_COMPILER)
   # glint_base, glint_image, glint_inspect and glint_synthetic, as glint_package, are what the others link; they are no interface of their own.
-  list(APPEND glint_targets glint_base glint_gltf glint_compiler glint_image glint_inspect glint_synthetic glint_scene_view
+  list(APPEND glint_targets glint_base glint_gltf glint_compiler glint_image glint_inspect glint_synthetic glint_session
        glint_measure glint)
 endif()
 install(TARGETS ${glint_targets} EXPORT GlintTargets
@@ -32,7 +32,7 @@ if(GLINT_BUILD_COMPILER)
     cmake_path(GET header PARENT_PATH folder)
     install(FILES tool/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/compiler/${folder})
   endforeach()
-  install(DIRECTORY tool/scene_view/include/glint tool/measure/include/glint DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  install(DIRECTORY tool/session/include/glint tool/measure/include/glint DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endif()
 install(EXPORT GlintTargets NAMESPACE Glint:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Glint)
 export(EXPORT GlintTargets NAMESPACE Glint:: FILE "${CMAKE_CURRENT_BINARY_DIR}/GlintTargets.cmake")

@@ -5,7 +5,7 @@
 #include "gltf/scene.h"
 
 #include <glint/scene.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/session.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -115,8 +115,8 @@ Status measureEdits(const Arguments& arguments) {
     settings.emissiveLights = compiler::EmissiveLights::On;
     settings.lightSamples = 4;
     GLINT_TRY(const auto build, compiler::resolve(std::span(&scene, 1), settings));
-    GLINT_TRY(const auto package, scene_view::compileAndLoad(build));
-    const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+    GLINT_TRY(const auto package, session::compileAndLoad(build));
+    const session::SceneViewData data = session::makeSceneView(scene);
     SceneView view = data.view();
     view.editable = true;
     GLINT_TRY(const auto uploaded, GpuScene::upload(*context, *package, view));

@@ -7,8 +7,8 @@
 #include "materials/declarations.h"
 
 #include <glint/package.h>
-#include <glint/scene_view/camera.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/camera.h>
+#include <glint/session/session.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -344,14 +344,14 @@ Status measure(const Arguments& arguments) {
     const Compiler compiler(arguments, settings.package, queries ? "ray-query" : "ray-pipeline");
     fmt::print("<!-- {} -->\n", compiler.lines(1).first);
     PackageWatch packages(settings.package);
-    GLINT_TRY(auto first, scene_view::givenPackage(settings));
+    GLINT_TRY(auto first, session::givenPackage(settings));
     GLINT_TRY(const auto uploaded,
-              scene_view::DeviceScene::upload(*context, std::move(first), scene_view::makeSceneView(scene)));
+              session::DeviceScene::upload(*context, std::move(first), session::makeSceneView(scene)));
     GLINT_TRY(const auto renderer, uploaded.makeRenderer(*context, options));
     renderer->waitForPipelines();
     const double aspect = static_cast<double>(arguments.width) / arguments.height;
     FrameOptions frame;
-    frame.camera = scene_view::framingCamera(scene_view::worldBounds(uploaded.data), aspect);
+    frame.camera = session::framingCamera(session::worldBounds(uploaded.data), aspect);
     GLINT_TRY_DO(renderer->renderSamples(frame, 1));
     GLINT_TRY(const auto bytes, base::readFile(arguments.file));
     const std::string original(base::asText(bytes));

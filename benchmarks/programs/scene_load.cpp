@@ -5,9 +5,9 @@
 #include "context/commands.h"
 #include "gltf/import.h"
 
-#include <glint/scene_view/camera.h>
-#include <glint/scene_view/session.h>
-#include <glint/scene_view/textures.h>
+#include <glint/session/camera.h>
+#include <glint/session/session.h>
+#include <glint/session/textures.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -40,7 +40,7 @@ struct Ready {
     std::unique_ptr<Context> context;
     gltf::Scene scene;
     std::shared_ptr<const Package> package;
-    scene_view::SceneViewData data;
+    session::SceneViewData data;
     FrameOptions frame;
 };
 
@@ -53,21 +53,21 @@ struct Times {
 
 Result<std::unique_ptr<Ready>> prepare(const Arguments& arguments, const compiler::Settings& settings) {
     auto ready = std::make_unique<Ready>();
-    GLINT_TRY(ready->context, Context::createHeadless(scene_view::deviceOptions(settings)));
+    GLINT_TRY(ready->context, Context::createHeadless(session::deviceOptions(settings)));
     GLINT_TRY(ready->scene, gltf::importScene(arguments.scene, {.keepImageFiles = true}));
     compiler::CompileSettings compile;
     compile.strategies = package::kStrategyUber;
     compile.tracers = ready->context->handles().tracers;
     GLINT_TRY(const auto build, compiler::resolve(std::span(&ready->scene, 1), compile));
-    GLINT_TRY(ready->package, scene_view::compileAndLoad(build));
-    scene_view::TextureOptions options =
-        scene_view::textureOptions(settings, *ready->context, *ready->package, nullptr);
+    GLINT_TRY(ready->package, session::compileAndLoad(build));
+    session::TextureOptions options =
+        session::textureOptions(settings, *ready->context, *ready->package, nullptr);
     options.fit.allLevels = true;
-    GLINT_TRY(auto textures, scene_view::loadTextures(ready->scene, options));
-    ready->data = scene_view::sceneView(settings, ready->scene);
-    scene_view::usePackage(*ready->package, ready->scene, std::move(textures), ready->data);
+    GLINT_TRY(auto textures, session::loadTextures(ready->scene, options));
+    ready->data = session::sceneView(settings, ready->scene);
+    session::usePackage(*ready->package, ready->scene, std::move(textures), ready->data);
     const double aspect = static_cast<double>(arguments.width) / arguments.height;
-    GLINT_TRY(const auto camera, scene_view::chooseCamera(ready->scene, ready->data, "", aspect));
+    GLINT_TRY(const auto camera, session::chooseCamera(ready->scene, ready->data, "", aspect));
     ready->frame.camera = camera.view;
     return ready;
 }

@@ -6,8 +6,8 @@
 #include "emit/package/write.h"
 #include "synthetic/cases_scene.h"
 
-#include <glint/scene_view/camera.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/camera.h>
+#include <glint/session/session.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -45,7 +45,7 @@ constexpr std::uint32_t kMostFrames = 1'000'000;
 struct Bed {
     std::unique_ptr<Context> context;
     std::shared_ptr<const Package> other;  // the same scene, with other code in every shader that shades
-    scene_view::DeviceScene scene;
+    session::DeviceScene scene;
     FrameOptions frame;
 };
 
@@ -57,7 +57,7 @@ Result<std::shared_ptr<const Package>> compiledPackage(const gltf::Scene& scene,
     if (!folder.empty()) {
         GLINT_TRY_DO(compiler::writePackage(compiled, folder));
     }
-    return scene_view::loadPackage(compiled);
+    return session::loadPackage(compiled);
 }
 
 Result<Bed> makeBed(const Arguments& arguments) {
@@ -92,9 +92,9 @@ Result<Bed> makeBed(const Arguments& arguments) {
         settings.energyCompensation = false;
         GLINT_TRY(bed.other, compiledPackage(scene, settings, ""));
     }
-    GLINT_TRY(bed.scene, scene_view::DeviceScene::upload(*bed.context, std::move(package),
-                                                         scene_view::makeSceneView(scene)));
-    GLINT_TRY(bed.frame.camera, scene_view::sceneCamera(scene, 0, options.aspect));
+    GLINT_TRY(bed.scene,
+              session::DeviceScene::upload(*bed.context, std::move(package), session::makeSceneView(scene)));
+    GLINT_TRY(bed.frame.camera, session::sceneCamera(scene, 0, options.aspect));
     return bed;
 }
 

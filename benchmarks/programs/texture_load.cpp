@@ -5,7 +5,7 @@
 #include "gltf/texels/levels.h"
 #include "image/image_file.h"
 
-#include <glint/scene_view/textures.h>
+#include <glint/session/textures.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -66,10 +66,10 @@ struct Round {
 Result<Round> load(const std::string& file, const Arguments& arguments) {
     const double begin = processorMilliseconds();
     GLINT_TRY(const auto scene, gltf::importScene(file, {.keepImageFiles = true}));
-    scene_view::TextureOptions options;
+    session::TextureOptions options;
     options.fit.formats = desktopFormats(!arguments.unpack);
     options.fit.compress = arguments.compress;
-    GLINT_TRY(const auto textures, scene_view::loadTextures(scene, options));
+    GLINT_TRY(const auto textures, session::loadTextures(scene, options));
     Round round;
     round.processorMs = processorMilliseconds() - begin;
     for (const gltf::FittedImage& image : textures->images) {

@@ -6,9 +6,9 @@
 #include "settings/descriptor.h"
 
 #include <glint/measure/target.h>
-#include <glint/scene_view/camera.h>
-#include <glint/scene_view/session.h>
-#include <glint/scene_view/textures.h>
+#include <glint/session/camera.h>
+#include <glint/session/session.h>
+#include <glint/session/textures.h>
 
 #include <array>
 #include <chrono>
@@ -165,22 +165,22 @@ void printRow(const std::string& what, const glint::LinearImage& image, const gl
 }
 
 void run(Options& options) {
-    namespace scene_view = glint::scene_view;
+    namespace session = glint::session;
     glint::compiler::Settings& settings = options.settings;
-    const scene_view::Opened opened = valueOf(scene_view::open(options.scene, settings, nullptr));
+    const session::Opened opened = valueOf(session::open(options.scene, settings, nullptr));
     const glint::gltf::Scene& scene = opened.scene;
-    scene_view::SceneViewData data = scene_view::sceneView(settings, scene);
+    session::SceneViewData data = session::sceneView(settings, scene);
     const std::uint32_t width = settings.renderer.width;
     const std::uint32_t height = settings.renderer.height;
     const auto camera =
-        valueOf(scene_view::chooseCamera(scene, data, settings.camera, static_cast<double>(width) / height));
-    const auto context = valueOf(glint::Context::createHeadless(scene_view::deviceOptions(settings)));
+        valueOf(session::chooseCamera(scene, data, settings.camera, static_cast<double>(width) / height));
+    const auto context = valueOf(glint::Context::createHeadless(session::deviceOptions(settings)));
     const auto compile =
         [&](const std::vector<std::string>& layers) -> glint::Result<std::shared_ptr<const glint::Package>> {
         settings.compile.layers = layers;
         GLINT_TRY(const auto target, glint::measure::targetOf(settings, *context, nullptr, scene));
         GLINT_TRY(const auto build, glint::compiler::resolve(std::span(&scene, 1), settings, target));
-        return scene_view::compileAndLoad(build);
+        return session::compileAndLoad(build);
     };
     std::vector<std::string> layers = denoise::wantedLayers();
     for (const std::string& layer : denoise::imageLayers()) {
@@ -191,21 +191,21 @@ void run(Options& options) {
         compiled = compile(denoise::wantedLayers());  // no effect shows points
     }
     const auto package = valueOf(std::move(compiled));
-    scene_view::usePackage(*package, scene,
-                           valueOf(scene_view::loadTextures(
-                               scene, scene_view::textureOptions(settings, *context, *package, nullptr))),
-                           data);
-    const auto sky = scene_view::chooseSky(settings, scene, data);
-    const auto uploaded = valueOf(scene_view::DeviceScene::upload(*context, package, std::move(data)));
+    session::usePackage(
+        *package, scene,
+        valueOf(session::loadTextures(scene, session::textureOptions(settings, *context, *package, nullptr))),
+        data);
+    const auto sky = session::chooseSky(settings, scene, data);
+    const auto uploaded = valueOf(session::DeviceScene::upload(*context, package, std::move(data)));
 
     // Each frame is a picture of its own. Its layers are means over its samples.
-    glint::RendererOptions rendererOptions = scene_view::rendererOptions(settings);
+    glint::RendererOptions rendererOptions = session::rendererOptions(settings);
     rendererOptions.accumulate = options.samples > 1;
     const auto renderer = valueOf(uploaded.makeRenderer(*context, rendererOptions));
     options.filter.samples = options.samples;
     const auto denoiser =
         valueOf(denoise::Denoiser::create(*context, *renderer, width, height, options.filter));
-    glint::FrameOptions frame = scene_view::frameOptions(settings, camera.view, sky, nullptr);
+    glint::FrameOptions frame = session::frameOptions(settings, camera.view, sky, nullptr);
     glint::LinearImage filtered;
     double samplesMs = 0.0;  // of the last frame
     for (std::uint32_t i = 0; i < options.frames; ++i) {
@@ -224,7 +224,7 @@ void run(Options& options) {
         rendererOptions.accumulate = true;
         const auto means = valueOf(uploaded.makeRenderer(*context, rendererOptions));
         const auto mean = [&](std::uint32_t samples, std::uint32_t seed, double& milliseconds) {
-            glint::FrameOptions many = scene_view::frameOptions(settings, camera.view, sky, nullptr);
+            glint::FrameOptions many = session::frameOptions(settings, camera.view, sky, nullptr);
             many.seed = seed;
             const auto begin = std::chrono::steady_clock::now();
             glint::LinearImage image = valueOf(means->render(many, samples));

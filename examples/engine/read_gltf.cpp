@@ -3,8 +3,8 @@
 #include "gpu.h"
 #include "world.h"
 
-#include <glint/scene_view/camera.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/camera.h>
+#include <glint/session/scene_view.h>
 
 #include <algorithm>
 #include <map>
@@ -59,7 +59,7 @@ World readGltf(const std::string& file, Format format, float aspect) {
     if (!scene) {
         fail(toString(scene.error()));
     }
-    const glint::scene_view::SceneViewData data = glint::scene_view::makeSceneView(*scene);
+    const glint::session::SceneViewData data = glint::session::makeSceneView(*scene);
     World world;
     world.format = format;
     std::map<std::uint32_t, std::uint32_t> meshes;
@@ -96,8 +96,8 @@ World readGltf(const std::string& file, Format format, float aspect) {
         }
         world.suns.push_back({light.direction, light.intensity});
     }
-    const glint::Result<glint::scene_view::CameraChoice> camera =
-        glint::scene_view::chooseCamera(*scene, data, "", aspect);
+    const glint::Result<glint::session::CameraChoice> camera =
+        glint::session::chooseCamera(*scene, data, "", aspect);
     if (!camera) {
         fail(toString(camera.error()));
     }

@@ -8,7 +8,7 @@
 #include "scene/deformed.h"
 #include "support/temporary_folder.h"
 
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/scene_view.h>
 
 #include <cstddef>
 #include <filesystem>
@@ -86,7 +86,7 @@ void checkMotion(gltf::Scene scene) {
         all.push_back(all.size());
     }
     for (const double time : {0.0, 0.4, 1e6}) {
-        scene_view::applyPose(scene_view::poseAt(scene, all, time), scene);
+        session::applyPose(session::poseAt(scene, all, time), scene);
         for (const gltf::Node& node : scene.nodes) {
             if (!compiler::isDeformed(scene, node)) {
                 continue;
@@ -94,10 +94,10 @@ void checkMotion(gltf::Scene scene) {
             const std::vector<gltf::Matrix4> joints =
                 node.skin < 0
                     ? std::vector<gltf::Matrix4>()
-                    : scene_view::jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)]);
+                    : session::jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)]);
             for (const gltf::Primitive& primitive :
                  scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
-                require(scene_view::deformedPositions(primitive, node.weights, joints).size() ==
+                require(session::deformedPositions(primitive, node.weights, joints).size() ==
                             primitive.positions.size(),
                         "every vertex has a place");
             }

@@ -29,7 +29,7 @@ LinearImage renderEffect(const gltf::Scene& scene, const EffectOptions& options,
     settings.effects = {false, options.effects, options.maxRoughness};
     settings.energyCompensation = options.energyCompensation;
     settings.sizedLights = options.findsLights ? compiler::SizedLights::On : compiler::SizedLights::Off;
-    const testing::LoadedScene loaded(scene, settings, [&](scene_view::SceneViewData& data) {
+    const testing::LoadedScene loaded(scene, settings, [&](session::SceneViewData& data) {
         for (LightView& light : data.lights) {
             const bool sun = light.type == LightView::Type::Directional;
             light.size = static_cast<float>(sun ? 0.5 * options.lights.sunDiameter : options.lights.radius);

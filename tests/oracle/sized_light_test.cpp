@@ -200,7 +200,7 @@ TEST(SizedLights, LookTheSameWithEveryStrategy) {
             }
             expectSameImage(image, reference, nameOf(way));
         },
-        [](scene_view::SceneViewData& data) {
+        [](session::SceneViewData& data) {
             for (LightView& light : data.lights) {
                 const bool sun = light.type == LightView::Type::Directional;
                 light.size = static_cast<float>(sun ? 0.5 * kSizes.sunDiameter : kSizes.radius);

@@ -385,7 +385,7 @@ TEST(Blend, AVaseShowsTheThingInIt) {
     settings.strategies = package::kStrategyUber;
     settings.effects = {false, compiler::builtinEffects({"reflection"})};
     // The sky alone lights the vases, because glints of lamps would be noise.
-    const LoadedScene loaded(scene, settings, [](scene_view::SceneViewData& data) { data.lights.clear(); });
+    const LoadedScene loaded(scene, settings, [](session::SceneViewData& data) { data.lights.clear(); });
     ASSERT_TRUE(loaded.ok());
     RenderSetup setup = squareSetup(scene);
     setup.samples = 64;

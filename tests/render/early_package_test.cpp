@@ -10,8 +10,8 @@
 #include "support/shared_modules.h"
 #include "support/temporary_folder.h"
 
-#include <glint/scene_view/scene_view.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/scene_view.h>
+#include <glint/session/session.h>
 
 #include <gtest/gtest.h>
 
@@ -109,7 +109,7 @@ struct Version {
 };
 
 std::shared_ptr<const Package> load(const compiler::CompiledPackage& compiled) {
-    const auto package = scene_view::loadPackage(compiled);
+    const auto package = session::loadPackage(compiled);
     EXPECT_TRUE(package) << toString(package.error());
     return package ? *package : nullptr;
 }

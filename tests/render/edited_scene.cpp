@@ -228,8 +228,8 @@ EditedScene::EditedScene(EditedSceneOptions options)
     if (!loaded_->ok()) {
         return;
     }
-    data_ = scene_view::makeSceneView(scene);
-    layout_ = scene_view::recordLayoutOf(package(), scene.materials.front().model());
+    data_ = session::makeSceneView(scene);
+    layout_ = session::recordLayoutOf(package(), scene.materials.front().model());
     frameOptions_ = defaultSetup(scene, options_.width, options_.height).frame;
     // A floor that mirrors, and something above it.
     const std::array<std::uint32_t, 2> placed{meshOfCatalogue(0, std::array{0U, 0U}),
@@ -256,8 +256,8 @@ EditedScene::EditedScene(EditedSceneOptions options)
         instances.push_back({editor().instance(i), i, {}, views[i].objectToWorld, true, true});
     }
     lights.push_back({editor().light(0), data_.lights[0], true});
-    const std::vector<scene_view::EditedTextures> known =
-        scene_view::uploadedTextures(editor(), package().scene(0), scene);
+    const std::vector<session::EditedTextures> known =
+        session::uploadedTextures(editor(), package().scene(0), scene);
     for (std::size_t i = 0; i < scene.textures.size(); ++i) {
         const gltf::Image& image = scene.images[i];
         textures.push_back({known[i].color, static_cast<std::uint32_t>(image.width),
@@ -265,7 +265,7 @@ EditedScene::EditedScene(EditedSceneOptions options)
     }
     // Those that no uploaded primitive has, have no keys yet.
     for (const Material& material : materials) {
-        const scene_view::MaterialSourceData made = source(material.kind);
+        const session::MaterialSourceData made = source(material.kind);
         const Result<EditReport> set = editor().setMaterial(material.handle, made.view());
         EXPECT_TRUE(set) << (set ? "" : toString(set.error()));
     }
@@ -284,18 +284,18 @@ PrimitiveView EditedScene::primitive(std::uint32_t shape, std::size_t index) con
     return *found;
 }
 
-scene_view::MaterialSourceData EditedScene::source(std::uint32_t kind) const {
-    std::vector<scene_view::EditedTextures> handles;
+session::MaterialSourceData EditedScene::source(std::uint32_t kind) const {
+    std::vector<session::EditedTextures> handles;
     for (const Texture& texture : textures) {
         handles.push_back({texture.handle, {}});
     }
     materials::Material material = scene.materials[kind];
-    scene_view::MaterialSourceData data =
-        scene_view::makeMaterialSource(package(), layout_, scene, material, handles);
+    session::MaterialSourceData data =
+        session::makeMaterialSource(package(), layout_, scene, material, handles);
     if (options_.lamps && (kind == 1 || kind == 3)) {
         material["emissiveFactor"] = {1.0F, 1.0F, 1.0F};
         std::vector<std::uint8_t> record = std::move(data.record);
-        data = scene_view::makeMaterialSource(package(), layout_, scene, material, handles);
+        data = session::makeMaterialSource(package(), layout_, scene, material, handles);
         data.record = std::move(record);
     }
     return data;

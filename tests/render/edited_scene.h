@@ -5,8 +5,8 @@
 #include "render/harness.h"
 
 #include <glint/scene.h>
-#include <glint/scene_view/material_source.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/material_source.h>
+#include <glint/session/scene_view.h>
 
 #include <vulkan/vulkan_core.h>
 
@@ -145,7 +145,7 @@ public:
     }
     PrimitiveView primitive(std::uint32_t shape, std::size_t index) const;
     // The source of a material of a kind with the kind's present values. A lamp that is dark keeps its keys.
-    scene_view::MaterialSourceData source(std::uint32_t kind) const;
+    session::MaterialSourceData source(std::uint32_t kind) const;
 
     // Records the edits and a frame, and submits both.
     void frame();
@@ -160,7 +160,7 @@ private:
 
     EditedSceneOptions options_;
     std::unique_ptr<LoadedScene> loaded_;
-    scene_view::SceneViewData data_;
+    session::SceneViewData data_;
     compiler::MaterialLayout layout_;
     FrameOptions frameOptions_;
     std::unique_ptr<GpuScene> gpuScene_;

@@ -157,8 +157,7 @@ TEST(AllEffects, OfCompactVerticesAreNearlyTheSame) {
     settings.strategies = package::kStrategyUber;
     settings.plan.merge = compiler::MergePolicy::All;
     const auto load = [&](VertexForm form) {
-        return LoadedScene(scene, settings,
-                           [form](scene_view::SceneViewData& data) { data.vertices = form; });
+        return LoadedScene(scene, settings, [form](session::SceneViewData& data) { data.vertices = form; });
     };
     const LoadedScene full = load(VertexForm::Full);
     const LoadedScene compact = load(VertexForm::Compact);

@@ -56,7 +56,7 @@ compiler::CompileSettings settingsOf(const Ways& ways) {
     return settings;
 }
 
-void noLights(scene_view::SceneViewData& data) {
+void noLights(session::SceneViewData& data) {
     data.lights.clear();
 }
 
@@ -391,7 +391,7 @@ TEST(EmissiveLights, LampsThatMoveAreFollowed) {
         const LoadedScene expected = load(still, ways);
         ASSERT_TRUE(expected.ok());
         std::vector<InstanceView> instances;
-        const LoadedScene moving(scene, settingsOf(ways), [&](scene_view::SceneViewData& data) {
+        const LoadedScene moving(scene, settingsOf(ways), [&](session::SceneViewData& data) {
             data.lights.clear();
             data.moves = true;
             instances = data.instances;
@@ -425,14 +425,14 @@ TEST(EmissiveLights, ASkinnedLampIsFollowed) {
     const gltf::Scene still = bakedScene(bent);
     const Ways ways{EmissiveLights::On, 1, 1, false};
     const LoadedScene expected = load(still, ways);
-    const LoadedScene moving(rest, settingsOf(ways), [](scene_view::SceneViewData& data) {
+    const LoadedScene moving(rest, settingsOf(ways), [](session::SceneViewData& data) {
         data.lights.clear();
         data.moves = true;
     });
     ASSERT_TRUE(expected.ok() && moving.ok());
     const MeanEstimate before = estimate(moving, rest, ways, 32);
-    scene_view::SceneViewData data = scene_view::makeSceneView(rest);
-    scene_view::poseSceneView(bent, data);
+    session::SceneViewData data = session::makeSceneView(rest);
+    session::poseSceneView(bent, data);
     const Status moved = moving.gpuScene().updateAndWait(data.motion());
     ASSERT_TRUE(moved) << toString(moved.error());
     const MeanEstimate after = estimate(moving, rest, ways, 32);

@@ -179,8 +179,7 @@ TEST(Half, NeedsTheFeature) {
     EXPECT_EQ(loaded.package().precision(), package::ShadingPrecision::Half);
     const Result<std::unique_ptr<Context>> context = Context::createHeadless({});
     ASSERT_TRUE(context) << toString(context.error());
-    const auto uploaded =
-        GpuScene::upload(**context, loaded.package(), scene_view::makeSceneView(scene).view());
+    const auto uploaded = GpuScene::upload(**context, loaded.package(), session::makeSceneView(scene).view());
     ASSERT_FALSE(uploaded);
     EXPECT_EQ(uploaded.error().id, "half-precision");
     EXPECT_NE(uploaded.error().hint.find("--precision 32"), std::string::npos);

@@ -3,9 +3,9 @@
 #include "image/compare.h"
 #include "support/shared_modules.h"
 
-#include <glint/scene_view/camera.h>
-#include <glint/scene_view/scene_view.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/camera.h>
+#include <glint/session/scene_view.h>
+#include <glint/session/session.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -57,8 +57,8 @@ std::unique_ptr<GpuScene> uploadScene(const Package& package, const SceneView& s
 
 std::unique_ptr<GpuScene> uploadScene(const Package& package, const gltf::Scene& scene,
                                       const std::function<void(SceneView&)>& change) {
-    scene_view::SceneViewData data = scene_view::makeSceneView(scene);
-    scene_view::useLayoutOf(package, scene, data);
+    session::SceneViewData data = session::makeSceneView(scene);
+    session::useLayoutOf(package, scene, data);
     SceneView view = data.view();
     if (change) {
         change(view);
@@ -79,7 +79,7 @@ LoadedScene::LoadedScene(const gltf::Scene& scene, const compiler::PlanOptions& 
     : LoadedScene(scene, compiler::CompileSettings{.plan = plan}) {}
 
 LoadedScene::LoadedScene(const gltf::Scene& scene, const compiler::CompileSettings& settings,
-                         const std::function<void(scene_view::SceneViewData&)>& change) {
+                         const std::function<void(session::SceneViewData&)>& change) {
     const Status loaded = load(scene, settings, change);
     if (!loaded) {
         ADD_FAILURE() << toString(loaded.error());
@@ -87,19 +87,19 @@ LoadedScene::LoadedScene(const gltf::Scene& scene, const compiler::CompileSettin
 }
 
 Status LoadedScene::load(const gltf::Scene& scene, const compiler::CompileSettings& settings,
-                         const std::function<void(scene_view::SceneViewData&)>& change) {
+                         const std::function<void(session::SceneViewData&)>& change) {
     GLINT_TRY(compiled_, compilePackage(scene, settings, &sharedModules()));
-    GLINT_TRY(auto package, scene_view::loadPackage(compiled_));
-    scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+    GLINT_TRY(auto package, session::loadPackage(compiled_));
+    session::SceneViewData data = session::makeSceneView(scene);
     data.vertices = VertexForm::Full;  // pictures are compared with exact ones
     if (scene.lights.empty()) {
-        data.lights.push_back(scene_view::sunLight());
+        data.lights.push_back(session::sunLight());
     }
     if (change) {
         change(data);
     }
-    scene_view::useLayoutOf(*package, scene, data);
-    GLINT_TRY(device_, scene_view::DeviceScene::upload(sharedContext(), std::move(package), std::move(data)));
+    session::useLayoutOf(*package, scene, data);
+    GLINT_TRY(device_, session::DeviceScene::upload(sharedContext(), std::move(package), std::move(data)));
     return okStatus();
 }
 
@@ -129,20 +129,20 @@ LinearImage LoadedScene::render(RendererOptions options, const RenderSetup& setu
 }
 
 PosedScene::PosedScene(gltf::Scene posed, std::shared_ptr<const LoadedScene> loaded,
-                       const std::function<void(scene_view::SceneViewData&)>& change)
-    : scene(std::move(posed)), compiled(std::move(loaded)), data(scene_view::makeSceneView(scene)) {
+                       const std::function<void(session::SceneViewData&)>& change)
+    : scene(std::move(posed)), compiled(std::move(loaded)), data(session::makeSceneView(scene)) {
     data.moves = true;
     if (change) {
         change(data);
     }
     if (compiled->ok()) {
-        scene_view::useLayoutOf(package(), scene, data);
+        session::useLayoutOf(package(), scene, data);
         gpuScene = uploadScene(package(), data.view());
     }
 }
 
 MotionStatistics PosedScene::update(MotionView::Builds builds) {
-    scene_view::poseSceneView(scene, data);
+    session::poseSceneView(scene, data);
     MotionView motion = data.motion();
     motion.builds = builds;
     const Status updated = gpuScene->updateAndWait(motion);
@@ -155,11 +155,10 @@ RenderSetup defaultSetup(const gltf::Scene& scene, std::uint32_t width, std::uin
     RenderSetup setup;
     setup.width = width;
     setup.height = height;
-    const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+    const session::SceneViewData data = session::makeSceneView(scene);
     const double aspect = static_cast<double>(width) / height;
-    const Result<scene_view::CameraChoice> camera = scene_view::chooseCamera(scene, data, "", aspect);
-    setup.frame.camera =
-        camera ? camera->view : scene_view::framingCamera(scene_view::worldBounds(data), aspect);
+    const Result<session::CameraChoice> camera = session::chooseCamera(scene, data, "", aspect);
+    setup.frame.camera = camera ? camera->view : session::framingCamera(session::worldBounds(data), aspect);
     return setup;
 }
 

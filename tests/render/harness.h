@@ -4,7 +4,7 @@
 #include "emit/compile.h"
 #include "gltf/scene.h"
 
-#include <glint/scene_view/session.h>
+#include <glint/session/session.h>
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ public:
     LoadedScene(const gltf::Scene& scene, const compiler::PlanOptions& plan);
     // `change`, if there is one, is called with the data before they are uploaded.
     LoadedScene(const gltf::Scene& scene, const compiler::CompileSettings& settings,
-                const std::function<void(scene_view::SceneViewData&)>& change = {});
+                const std::function<void(session::SceneViewData&)>& change = {});
 
     bool ok() const {
         return device_.gpu != nullptr;
@@ -73,10 +73,10 @@ public:
 
 private:
     Status load(const gltf::Scene& scene, const compiler::CompileSettings& settings,
-                const std::function<void(scene_view::SceneViewData&)>& change);
+                const std::function<void(session::SceneViewData&)>& change);
 
     compiler::CompiledPackage compiled_;
-    scene_view::DeviceScene device_;
+    session::DeviceScene device_;
 };
 
 // A scene on the device that moves.
@@ -84,7 +84,7 @@ struct PosedScene {
     // Uploads it with the package of `loaded`. `change`, if there is one, is called with the data before
     // that.
     PosedScene(gltf::Scene posed, std::shared_ptr<const LoadedScene> loaded,
-               const std::function<void(scene_view::SceneViewData&)>& change = {});
+               const std::function<void(session::SceneViewData&)>& change = {});
 
     // Otherwise the test has failed.
     bool ok() const {
@@ -102,7 +102,7 @@ struct PosedScene {
 
     gltf::Scene scene;
     std::shared_ptr<const LoadedScene> compiled;
-    scene_view::SceneViewData data;
+    session::SceneViewData data;
     std::unique_ptr<GpuScene> gpuScene;
 };
 

@@ -16,9 +16,8 @@ std::vector<Values> ask(const gltf::Scene& scene, const std::vector<Query>& quer
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;  // the less to compile: the kernel reads the scene only
     // Queries name triangles by the numbers that they have in the scene.
-    const LoadedScene loaded(scene, settings, [](scene_view::SceneViewData& data) {
-        data.traversalOrder = TraversalOrder::Input;
-    });
+    const LoadedScene loaded(
+        scene, settings, [](session::SceneViewData& data) { data.traversalOrder = TraversalOrder::Input; });
     if (!loaded.ok()) {
         return {};
     }

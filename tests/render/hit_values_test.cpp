@@ -3,7 +3,7 @@
 #include "render/hit_query.h"
 #include "render/scene_builder.h"
 
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/scene_view.h>
 
 #include <gtest/gtest.h>
 
@@ -99,7 +99,7 @@ TEST(HitValues, TransformsOfEverySizeKeepNormalsAndSides) {
         }
     }
     const gltf::Scene scene = triangleScene(placements);
-    const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+    const session::SceneViewData data = session::makeSceneView(scene);
     std::vector<Query> queries;
     for (std::uint32_t i = 0; i < placements.size(); ++i) {
         for (const gltf::Float2 barycentrics :

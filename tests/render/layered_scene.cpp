@@ -1,7 +1,7 @@
 #include "render/layered_scene.h"
 
-#include <glint/scene_view/camera.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/camera.h>
+#include <glint/session/scene_view.h>
 
 #include <utility>
 
@@ -64,7 +64,7 @@ LayeredScene::LayeredScene(const gltf::Scene& posed, const compiler::CompileSett
 
 LinearImage LayeredScene::render() {
     update();
-    const Result<CameraView> camera = scene_view::sceneCamera(scene, 0, aspect_);
+    const Result<CameraView> camera = session::sceneCamera(scene, 0, aspect_);
     EXPECT_TRUE(camera.ok());
     frame.camera = *camera;
     LinearImage image = drawn(*renderer_, frame);

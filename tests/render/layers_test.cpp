@@ -145,7 +145,7 @@ TEST(Layers, LightsThatRefractedRaysFindAreOfTheRefraction) {
     settings.sizedLights = compiler::SizedLights::On;
     settings.maxBounces = 2;
     const LoadedScene loaded(scene, settings,
-                             [](scene_view::SceneViewData& data) { data.lights[0].size = 0.8F; });
+                             [](session::SceneViewData& data) { data.lights[0].size = 0.8F; });
     ASSERT_TRUE(loaded.ok());
     RendererOptions options;
     options.strategy = package::kStrategyUber;

@@ -34,7 +34,7 @@ LinearImage pictureWithCoatedTexture(const EditedScene& edited, const EditedScen
     gltf::Scene known = catalogueScene();
     known.materials[2] = coatedTexture();
     known.meshes[kKinds + 3].primitives[0].material = 2;
-    const LoadedScene loaded(known, options.settings, [&](scene_view::SceneViewData& data) {
+    const LoadedScene loaded(known, options.settings, [&](session::SceneViewData& data) {
         data.instances[0].objectToWorld = edited.instances[0].objectToWorld;
         data.instances[kKinds + 3].objectToWorld = edited.instances[1].objectToWorld;
         for (std::size_t i = 0; i < data.instances.size(); ++i) {
@@ -113,7 +113,7 @@ TEST_F(LiveEditErrors, Values) {
                 "scene-edit-value");
     const std::vector<std::uint8_t> tooShort(4);
     expectError(editor().setMaterialValues(edited_->materials[0].handle, tooShort), "scene-edit-value");
-    scene_view::MaterialSourceData source = edited_->source(3);
+    session::MaterialSourceData source = edited_->source(3);
     source.textures[0].slot = 99;
     expectError(editor().addMaterial(source.view()), "scene-edit-value", "slot");
     source = edited_->source(3);
@@ -158,7 +158,7 @@ TEST_F(LiveEditErrors, Geometry) {
 }
 
 TEST_F(LiveEditErrors, Keys) {
-    scene_view::MaterialSourceData source = edited_->source(3);
+    session::MaterialSourceData source = edited_->source(3);
     source.keys = {source.keys.front()};
     const Result<MaterialHandle> added = editor().addMaterial(source.view());
     ASSERT_TRUE(added);
@@ -185,7 +185,7 @@ TEST_F(LiveEditErrors, Rooms) {
     for (const TextureHandle texture : added) {
         ASSERT_TRUE(editor().removeTexture(texture));
     }
-    scene_view::MaterialSourceData source = edited_->source(3);
+    session::MaterialSourceData source = edited_->source(3);
     std::vector<MaterialHandle> materials;
     for (std::uint32_t i = 0; i < 9 * 8; ++i) {
         source.textures[0].sampler = {i % 3, i / 3 % 3, i / 9 % 2, i / 18 % 2, i / 36, 1};
@@ -211,7 +211,7 @@ TEST_F(LiveEditErrors, Frames) {
 
 TEST_F(LiveEditErrors, AKeyWithoutACase) {
     edited_->scene.materials[2] = coatedTexture();
-    const scene_view::MaterialSourceData source = edited_->source(2);
+    const session::MaterialSourceData source = edited_->source(2);
     edited_->scene.materials[2] = catalogueScene().materials[2];
     const Result<MaterialHandle> added = editor().addMaterial(source.view());
     ASSERT_TRUE(added) << toString(added.error());
@@ -227,7 +227,7 @@ TEST_F(LiveEditErrors, AKeyWithoutACase) {
     sheen.give("KHR_materials_sheen");
     sheen["sheenColorFactor"] = {0.5F, 0.5F, 0.5F};
     edited_->scene.materials[1] = sheen;
-    const scene_view::MaterialSourceData unknown = edited_->source(1);
+    const session::MaterialSourceData unknown = edited_->source(1);
     edited_->scene.materials[1] = catalogueScene().materials[1];
     expectError(editor().setMaterial(edited_->materials[0].handle, unknown.view()), "scene-edit-feature",
                 "sheen");
@@ -241,7 +241,7 @@ TEST(LiveEditKeys, ACaseForSeveralKeysShadesTheKeysBetweenThem) {
     EditedScene edited(options);
     ASSERT_TRUE(edited.ok());
     edited.scene.materials[2] = coatedTexture();
-    const scene_view::MaterialSourceData source = edited.source(2);
+    const session::MaterialSourceData source = edited.source(2);
     const Result<MaterialHandle> added = edited.editor().addMaterial(source.view());
     ASSERT_TRUE(added) << toString(added.error());
     const Result<EditReport> report =
@@ -255,7 +255,7 @@ TEST(LiveEditUpload, RefusesScenesThatMove) {
     const gltf::Scene scene = catalogueScene();
     const LoadedScene loaded(scene, EditedSceneOptions().settings);
     ASSERT_TRUE(loaded.ok());
-    const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+    const session::SceneViewData data = session::makeSceneView(scene);
     SceneView view = data.view();
     view.editable = true;
     view.moves = true;
@@ -275,7 +275,7 @@ TEST(LiveEditFallback, ShadesAndReportsKeysWithoutACase) {
     ASSERT_TRUE(edited.ok());
     const LinearImage before = edited.picture();
     edited.scene.materials[2] = coatedTexture();
-    const scene_view::MaterialSourceData source = edited.source(2);
+    const session::MaterialSourceData source = edited.source(2);
     const Result<MaterialHandle> added = edited.editor().addMaterial(source.view());
     ASSERT_TRUE(added) << toString(added.error());
     const Result<EditReport> report =

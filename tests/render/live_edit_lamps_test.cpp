@@ -209,7 +209,7 @@ TEST(LiveEditLampKeys, AKeyMakesAMaterialALight) {
     // A package whose scene has such a lamp shows the same, up to the rounding of other shaders.
     gltf::Scene known = lamps.edited.scene;
     known.meshes[kKinds + 3].primitives[0].material = 2;
-    const LoadedScene loaded(known, options.settings, [&](scene_view::SceneViewData& data) {
+    const LoadedScene loaded(known, options.settings, [&](session::SceneViewData& data) {
         for (std::size_t i = 0; i < data.instances.size(); ++i) {
             data.instances[i].visible = i == 0 || i == kKinds + 3;
         }

@@ -108,7 +108,7 @@ private:
             const float strength = below(3) == 0 ? 0.0F : between(1, 8);
             changed["emissiveFactor"] = {strength, strength * between(0, 1), strength * between(0, 1)};
         }
-        const scene_view::MaterialSourceData source = edited_.source(kind);
+        const session::MaterialSourceData source = edited_.source(kind);
         for (const EditedScene::Material& one : edited_.materials) {
             if (one.kind == kind) {
                 expectDone(editor().setMaterialValues(one.handle, source.record));
@@ -124,7 +124,7 @@ private:
         ++made["another key"];
         EditedScene::Material& one = edited_.materials[kKinds + below(edited_.materials.size() - kKinds)];
         one.kind = static_cast<std::uint32_t>(below(kKinds));
-        const scene_view::MaterialSourceData source = edited_.source(one.kind);
+        const session::MaterialSourceData source = edited_.source(one.kind);
         const Result<EditReport> report = editor().setMaterial(one.handle, source.view());
         expectDone(report);
         EXPECT_TRUE(report && report->missing.empty());
@@ -157,7 +157,7 @@ private:
         ASSERT_TRUE(added) << toString(added.error());
         const TextureHandle old = std::exchange(texture.handle, *added);
         for (const EditedScene::Material& one : edited_.materials) {
-            const scene_view::MaterialSourceData source = edited_.source(one.kind);
+            const session::MaterialSourceData source = edited_.source(one.kind);
             expectDone(editor().setMaterial(one.handle, source.view()));
         }
         expectDone(editor().removeTexture(old));
@@ -169,7 +169,7 @@ private:
         }
         ++made["add material"];
         const auto kind = static_cast<std::uint32_t>(below(kKinds));
-        const scene_view::MaterialSourceData source = edited_.source(kind);
+        const session::MaterialSourceData source = edited_.source(kind);
         const Result<MaterialHandle> added = editor().addMaterial(source.view());
         ASSERT_TRUE(added) << toString(added.error());
         edited_.materials.push_back({*added, kind, false});

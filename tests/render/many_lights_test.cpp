@@ -191,7 +191,7 @@ TEST(ManyLights, TheHierarchyFollowsLightsThatMove) {
     settings.lightSamples = 4;
     std::vector<InstanceView> instances;
     std::vector<LightView> lights;
-    const LoadedScene moving(scene, settings, [&](scene_view::SceneViewData& data) {
+    const LoadedScene moving(scene, settings, [&](session::SceneViewData& data) {
         data.moves = true;
         instances = data.instances;
         lights = data.lights;

@@ -8,8 +8,8 @@
 #include "scene/scene_motion.h"
 #include "support/halved_tree.h"
 
-#include <glint/scene_view/camera.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/camera.h>
+#include <glint/session/scene_view.h>
 
 #include <array>
 #include <cmath>
@@ -25,7 +25,7 @@ constexpr std::uint32_t kHeight = 36;
 struct Moving : PosedScene {
     explicit Moving(const gltf::Scene& posed, bool isMoved = true)
         : PosedScene(posed, std::make_shared<const LoadedScene>(posed, compiler::PlanOptions{}),
-                     [isMoved](scene_view::SceneViewData& given) { given.moves = isMoved; }) {}
+                     [isMoved](session::SceneViewData& given) { given.moves = isMoved; }) {}
 
     LinearImage render() const {
         RendererOptions options;
@@ -37,7 +37,7 @@ struct Moving : PosedScene {
         }
         FrameOptions frame;
         const Result<CameraView> camera =
-            scene_view::sceneCamera(scene, 0, static_cast<double>(kWidth) / static_cast<double>(kHeight));
+            session::sceneCamera(scene, 0, static_cast<double>(kWidth) / static_cast<double>(kHeight));
         frame.camera = *camera;
         LinearImage image = drawn(*renderer, frame, 2);
         expectNoValidationMessages();
@@ -318,7 +318,7 @@ gltf::Scene paintedScene() {
 gltf::Scene plainScene(gltf::Scene scene, double time) {
     constexpr std::array<std::size_t, 1> kFirst{0};
     const int painted = scene.animatedMaterials[0].material;
-    scene.materials[static_cast<std::size_t>(painted)] = scene_view::poseAt(scene, kFirst, time).materials[0];
+    scene.materials[static_cast<std::size_t>(painted)] = session::poseAt(scene, kFirst, time).materials[0];
     scene.animatedMaterials.clear();
     scene.animations.clear();
     return scene;
@@ -369,7 +369,7 @@ TEST(Motion, NodesThatAreNotVisibleAreNeitherDrawnNorHit) {
     // A node that is never shown is not uploaded.
     scene.nodes[1].shown = false;
     scene.nodes[1].canShow = false;
-    EXPECT_EQ(scene_view::makeSceneView(scene).instances.size(), moving.data.instances.size() - 1);
+    EXPECT_EQ(session::makeSceneView(scene).instances.size(), moving.data.instances.size() - 1);
 }
 
 // Placements of one node are drawn like nodes at the same places, with fewer calls. One of them is mirrored.

@@ -3,7 +3,7 @@
 #include "render/scene_builder.h"
 #include "scene/deformed.h"
 
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/scene_view.h>
 
 #include <cmath>
 #include <cstddef>
@@ -98,8 +98,8 @@ gltf::Scene bakedScene(const gltf::Scene& scene) {
     gltf::Node& node = baked.nodes[1];
     gltf::Primitive& primitive = baked.meshes[static_cast<std::size_t>(node.mesh)].primitives[0];
     const std::vector<gltf::Matrix4> joints =
-        node.skin >= 0 ? scene_view::jointMatrices(scene, scene.skins[0]) : std::vector<gltf::Matrix4>();
-    const auto positions = scene_view::deformedPositions(primitive, node.weights, joints);
+        node.skin >= 0 ? session::jointMatrices(scene, scene.skins[0]) : std::vector<gltf::Matrix4>();
+    const auto positions = session::deformedPositions(primitive, node.weights, joints);
     for (std::size_t i = 0; i < positions.size(); ++i) {
         primitive.positions[i] = {static_cast<float>(positions[i][0]), static_cast<float>(positions[i][1]),
                                   static_cast<float>(positions[i][2])};

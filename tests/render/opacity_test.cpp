@@ -3,7 +3,7 @@
 #include "render/harness.h"
 #include "render/scene_builder.h"
 
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/scene_view.h>
 
 #include <algorithm>
 #include <cmath>
@@ -105,8 +105,8 @@ compiler::CompileSettings settingsOf(std::uint32_t strategies) {
     return settings;
 }
 
-std::function<void(scene_view::SceneViewData&)> use(OpacityUse opacity) {
-    return [opacity](scene_view::SceneViewData& data) { data.opacity = opacity; };
+std::function<void(session::SceneViewData&)> use(OpacityUse opacity) {
+    return [opacity](session::SceneViewData& data) { data.opacity = opacity; };
 }
 
 TEST(Opacity, PicturesDoNotShowWhatWasDecided) {
@@ -209,7 +209,7 @@ gltf::Scene swayingFoliage(int frame) {
 struct Swaying : PosedScene {
     Swaying(std::shared_ptr<const LoadedScene> loaded, OpacityUse use)
         : PosedScene(swayingFoliage(0), std::move(loaded),
-                     [use](scene_view::SceneViewData& given) { given.opacity = use; }) {}
+                     [use](session::SceneViewData& given) { given.opacity = use; }) {}
     void moveTo(int frame) {
         scene.nodes = swayingFoliage(frame).nodes;
         update();
@@ -293,20 +293,20 @@ TEST(Opacity, TestsOfRaysThroughGlassAreCounted) {
 TEST(Opacity, NothingIsDecidedAboutWhatMayChange) {
     const gltf::Scene scene = foliage();
     const compiler::CompileSettings settings = settingsOf(package::kStrategyUber);
-    const auto provedOf = [&](const std::function<void(scene_view::SceneViewData&)>& change) {
+    const auto provedOf = [&](const std::function<void(session::SceneViewData&)>& change) {
         const LoadedScene loaded(scene, settings, change);
         return loaded.ok() ? loaded.gpuScene().statistics().provedOpaque : ~0ULL;
     };
     EXPECT_GT(provedOf({}), 0U);
     // The material of an animated scene, whose cutoff or factor an update may change.
-    EXPECT_EQ(provedOf([](scene_view::SceneViewData& data) {
+    EXPECT_EQ(provedOf([](session::SceneViewData& data) {
                   data.moves = true;
                   data.materials.push_back({0, {}});
                   data.materialRecords.emplace_back();
               }),
               0U);
     // An unmoved material of a scene that moves stays decided.
-    EXPECT_GT(provedOf([](scene_view::SceneViewData& data) { data.moves = true; }), 0U);
+    EXPECT_GT(provedOf([](session::SceneViewData& data) { data.moves = true; }), 0U);
     expectNoValidationMessages();
 }
 

@@ -10,8 +10,8 @@
 #include "render/ways.h"
 #include "support/nightly.h"
 
-#include <glint/scene_view/camera.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/camera.h>
+#include <glint/session/scene_view.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -123,7 +123,7 @@ gltf::Scene placed(const Place& place, gltf::Scene scene) {
     return scene;
 }
 
-void sizeRoomLamps(double scale, scene_view::SceneViewData& data) {
+void sizeRoomLamps(double scale, session::SceneViewData& data) {
     for (LightView& light : data.lights) {
         light.size = static_cast<float>(kRoomLampRadius * scale);
     }
@@ -147,7 +147,7 @@ FrameOptions frameOf(const gltf::Scene& scene) {
     frame.bounces = 2;
     frame.screenSteps = 8;
     if (const Result<CameraView> camera =
-            scene_view::sceneCamera(scene, 0, static_cast<double>(kWidth) / kHeight)) {
+            session::sceneCamera(scene, 0, static_cast<double>(kWidth) / kHeight)) {
         frame.camera = *camera;
     }
     return frame;
@@ -177,7 +177,7 @@ Difference differenceOf(const LinearImage& image, const LinearImage& reference) 
 class MovedRoom {
 public:
     MovedRoom(const LoadedScene& loaded, const Way& way)
-        : loaded_(&loaded), room_(tiledRoom()), data_(scene_view::makeSceneView(room_)) {
+        : loaded_(&loaded), room_(tiledRoom()), data_(session::makeSceneView(room_)) {
         RendererOptions options = optionsOf(way);
         options.width = kWidth;
         options.height = kHeight;
@@ -188,7 +188,7 @@ public:
 
     LinearImage at(const Place& place) {
         const gltf::Scene moved = placed(place, room_);
-        scene_view::poseSceneView(moved, data_);
+        session::poseSceneView(moved, data_);
         sizeRoomLamps(place.scale, data_);
         const Status updated = loaded_->gpuScene().updateAndWait(data_.motion());
         EXPECT_TRUE(updated.ok()) << toString(updated.error());
@@ -204,7 +204,7 @@ public:
 private:
     const LoadedScene* loaded_;
     gltf::Scene room_;
-    scene_view::SceneViewData data_;
+    session::SceneViewData data_;
     std::unique_ptr<Renderer> renderer_;
 };
 
@@ -249,7 +249,7 @@ TEST(SceneOrigin, PictureIsTheSameAtEachPlaceAndScale) {
             note(rows, fmt::format("distance {:g}", place.distance), difference);
         }
     };
-    forEachWay(tiledRoom(), roomSettings(), visit, [](scene_view::SceneViewData& data) {
+    forEachWay(tiledRoom(), roomSettings(), visit, [](session::SceneViewData& data) {
         data.moves = true;
         sizeRoomLamps(1.0, data);
     });

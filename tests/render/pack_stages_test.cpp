@@ -7,7 +7,7 @@
 #include "support/temporary_folder.h"
 
 #include <glint/package_modules.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/session.h>
 
 #include <gtest/gtest.h>
 
@@ -152,7 +152,7 @@ TEST(PackStages, AttributesThatDoNotFitAreErrors) {
     ASSERT_TRUE(loaded.ok());
     const auto upload = [&](std::vector<gltf::VertexValues> attributes) {
         scene.meshes[0].primitives[0].attributes = std::move(attributes);
-        const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+        const session::SceneViewData data = session::makeSceneView(scene);
         const Result<std::unique_ptr<GpuScene>> uploaded =
             GpuScene::upload(sharedContext(), loaded.package(), data.view());
         return uploaded ? std::string() : uploaded.error().id;

@@ -136,7 +136,7 @@ public:
     Yard(const gltf::Scene& scene, const compiler::CompileSettings& settings, package::Strategy strategy,
          bool sized = false)
         : loaded_(scene, settings,
-                  [&](scene_view::SceneViewData& data) {
+                  [&](session::SceneViewData& data) {
                       for (LightView& light : data.lights) {
                           const bool sun = light.type == LightView::Type::Directional;
                           light.size = sized ? (sun ? 0.1F : 0.25F) : 0.0F;

@@ -221,7 +221,7 @@ TEST(PathFootprint, TheConeAfterTwoBouncesIsAnalytic) {
     settings.effects = {false, compiler::builtinEffects({"reflection"})};
     settings.plan.merge = compiler::MergePolicy::All;
     settings.energyCompensation = false;
-    const LoadedScene loaded(scene, settings, [](scene_view::SceneViewData& data) { data.lights.clear(); });
+    const LoadedScene loaded(scene, settings, [](session::SceneViewData& data) { data.lights.clear(); });
     ASSERT_TRUE(loaded.ok());
     RenderSetup setup = defaultSetup(scene, kPixels, kPixels);
     setup.samples = 256;

@@ -70,7 +70,7 @@ SkyView uniformSky(float radiance) {
     return {sky, sky, sky};
 }
 
-void noLights(scene_view::SceneViewData& data) {
+void noLights(session::SceneViewData& data) {
     data.lights.clear();
 }
 

@@ -9,7 +9,7 @@
 #include "unit/gltf/gltf_builder.h"
 
 #include <glint/package_modules.h>
-#include <glint/scene_view/camera.h>
+#include <glint/session/camera.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ std::optional<std::uint64_t> numberIn(const char* variable) {
 
 struct Picture {
     LinearImage image;
-    scene_view::CameraChoice camera;
+    session::CameraChoice camera;
     bool hasSurface = false;
     bool ok() const {
         return !image.pixels.empty();
@@ -63,8 +63,8 @@ public:
         if (!loaded_->ok()) {
             return;
         }
-        layout_ = scene_view::recordLayoutOf(package(), scene_.materials.front().model());
-        data_ = scene_view::makeSceneView(scene_);
+        layout_ = session::recordLayoutOf(package(), scene_.materials.front().model());
+        data_ = session::makeSceneView(scene_);
         SceneView view = data_.view();
         view.editable = true;
         view.vertices = VertexForm::Full;
@@ -72,7 +72,7 @@ public:
         if (!gpuScene_) {
             return;
         }
-        textures_ = scene_view::uploadedTextures(editor(), package().scene(0), scene_);
+        textures_ = session::uploadedTextures(editor(), package().scene(0), scene_);
         for (std::uint32_t i = 0; i < data_.instances.size(); ++i) {
             instances_.push_back(editor().instance(i));
             meshes_.push_back(editor().mesh(data_.instances[i].mesh));
@@ -110,14 +110,14 @@ public:
     // pictures must be the same; the first is returned. Fails the test where nothing is seen in silence.
     // `given` takes the place of the scene's own camera.
     Picture draw(const std::string& file, std::size_t count,
-                 const std::optional<scene_view::CameraChoice>& given = std::nullopt) {
+                 const std::optional<session::CameraChoice>& given = std::nullopt) {
         const gltf::Scene scene = read(file);
         if (scene.materials.size() != scene_.materials.size()) {
             return {};
         }
-        const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
-        const Result<scene_view::CameraChoice> camera =
-            given ? Result<scene_view::CameraChoice>(*given) : scene_view::chooseCamera(scene, data, "", 1.0);
+        const session::SceneViewData data = session::makeSceneView(scene);
+        const Result<session::CameraChoice> camera =
+            given ? Result<session::CameraChoice>(*given) : session::chooseCamera(scene, data, "", 1.0);
         if (!camera) {
             ADD_FAILURE() << toString(camera.error());
             return {};
@@ -181,12 +181,12 @@ private:
         lights_.clear();
     }
 
-    void fill(const gltf::Scene& scene, const scene_view::SceneViewData& data) {
+    void fill(const gltf::Scene& scene, const session::SceneViewData& data) {
         std::vector<MaterialHandle> materials;
         for (std::uint32_t i = 0; i < scene.materials.size(); ++i) {
             materials.push_back(editor().material(i));
-            const scene_view::MaterialSourceData source =
-                scene_view::makeMaterialSource(package(), layout_, scene, scene.materials[i], textures_);
+            const session::MaterialSourceData source =
+                session::makeMaterialSource(package(), layout_, scene, scene.materials[i], textures_);
             const Result<EditReport> set = editor().setMaterial(materials[i], source.view());
             EXPECT_TRUE(set) << (set ? "" : toString(set.error()));
         }
@@ -213,7 +213,7 @@ private:
         }
         std::vector<LightView> lights = data.lights;
         if (lights.empty()) {
-            lights.push_back(scene_view::sunLight());
+            lights.push_back(session::sunLight());
         }
         for (const LightView& light : lights) {
             const Result<LightHandle> added = editor().addLight(light);
@@ -240,16 +240,16 @@ private:
     }
 
     // A picture without a surface has a warning, and one that is sure of it before it is made is right.
-    static void expectNotSilent(const gltf::Scene& scene, const scene_view::SceneViewData& data,
-                                const scene_view::CameraChoice& camera, bool hasSurface) {
+    static void expectNotSilent(const gltf::Scene& scene, const session::SceneViewData& data,
+                                const session::CameraChoice& camera, bool hasSurface) {
         const bool isEmpty = test::countWarnings(scene, "nothing-drawn") > 0;
         EXPECT_EQ(isEmpty, data.instances.empty());
-        const std::optional<Diagnostic> early = scene_view::nothingSeen(scene, data, camera);
+        const std::optional<Diagnostic> early = session::nothingSeen(scene, data, camera);
         if (hasSurface) {
             EXPECT_FALSE(isEmpty) << "the scene has a surface";
             EXPECT_FALSE(early) << toString(*early);
         } else {
-            EXPECT_TRUE(isEmpty || scene_view::nothingSeen(scene, data, camera, true))
+            EXPECT_TRUE(isEmpty || session::nothingSeen(scene, data, camera, true))
                 << "nothing is seen, and nothing says so";
         }
     }
@@ -257,9 +257,9 @@ private:
     const gltf::Scene scene_;  // of the package
     std::unique_ptr<LoadedScene> loaded_;
     compiler::MaterialLayout layout_;
-    scene_view::SceneViewData data_;
+    session::SceneViewData data_;
     std::unique_ptr<GpuScene> gpuScene_;
-    std::vector<scene_view::EditedTextures> textures_;
+    std::vector<session::EditedTextures> textures_;
     std::unique_ptr<TwoFrames> frames_;
     std::vector<std::unique_ptr<Renderer>> renderers_;
     std::vector<MeshHandle> meshes_;

@@ -7,7 +7,7 @@
 #include "scene/gpu_scene_state.h"
 
 #include <glint/package_modules.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/scene_view.h>
 
 #include <optional>
 #include <string>
@@ -209,7 +209,7 @@ TEST_P(OneTracer, IsEnoughForEveryStrategyThatItHas) {
     ASSERT_TRUE(loaded.ok());
     const RenderSetup setup = hallSetup(scene);
     const LinearImage reference = loaded.render(package::kStrategyVisibility, setup);
-    const scene_view::SceneViewData view = scene_view::makeSceneView(scene);
+    const session::SceneViewData view = session::makeSceneView(scene);
     auto uploaded = GpuScene::upload(**context, loaded.package(), view.view());
     ASSERT_TRUE(uploaded) << toString(uploaded.error());
     for (const Way& way : waysOf(package::allStrategies(), package::kAllTracers)) {

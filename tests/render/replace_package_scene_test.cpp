@@ -2,7 +2,7 @@
 #include "render/pixel_test.h"
 #include "render/replacement.h"
 
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/scene_view.h>
 
 #include <cstdint>
 #include <memory>

@@ -5,8 +5,8 @@
 #include "resolve/resolve.h"
 #include "support/shared_modules.h"
 
-#include <glint/scene_view/scene_view.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/scene_view.h>
+#include <glint/session/session.h>
 
 #include <utility>
 
@@ -83,7 +83,7 @@ void expectEqualImage(const LinearImage& image, const LinearImage& reference, co
 std::shared_ptr<const Package> packageOf(const gltf::Scene& scene,
                                          const compiler::CompileSettings& settings) {
     auto package =
-        scene_view::compileAndLoad(*compiler::resolve(std::span(&scene, 1), settings), &sharedModules());
+        session::compileAndLoad(*compiler::resolve(std::span(&scene, 1), settings), &sharedModules());
     if (!package) {
         ADD_FAILURE() << toString(package.error());
         return nullptr;

@@ -58,7 +58,7 @@ compiler::CompileSettings settingsOf(const SizedWays& ways) {
 constexpr float kLampRadius = 0.25F;
 constexpr float kSunHalfAngle = 0.2F;  // radians
 
-void sizeLights(scene_view::SceneViewData& data) {
+void sizeLights(session::SceneViewData& data) {
     for (LightView& light : data.lights) {
         light.size = light.type == LightView::Type::Directional ? kSunHalfAngle : kLampRadius;
     }
@@ -168,7 +168,7 @@ TEST(FoundLights, AMirrorShowsTheSameWithAHierarchy) {
         scene.lights.back().range = i % 3 == 0 ? 4.0F : 0.0F;
     }
     addDirectionalLight(scene, {0, 0, -1}, 3.0F);
-    const auto sizes = [](scene_view::SceneViewData& data) {
+    const auto sizes = [](session::SceneViewData& data) {
         for (std::size_t i = 0; i < data.lights.size(); ++i) {
             data.lights[i].size = 0.01F * static_cast<float>(1 + i % 40);
         }

@@ -59,7 +59,7 @@ compiler::CompileSettings settingsOf(const SkyWays& ways) {
     return settings;
 }
 
-void noLights(scene_view::SceneViewData& data) {
+void noLights(session::SceneViewData& data) {
     data.lights.clear();
 }
 

@@ -79,7 +79,7 @@ TEST(TexelBoundsOfDevice, EncloseEveryLookup) {
     settings.strategies = package::kStrategyUber;  // the less to compile: the kernel reads textures only
     // Devices make levels where sides are powers of two; the importer makes the others (gltf/texels/fit.h).
     std::vector<gltf::Texels> made(scene.images.size());
-    const LoadedScene loaded(scene, settings, [&](scene_view::SceneViewData& data) {
+    const LoadedScene loaded(scene, settings, [&](session::SceneViewData& data) {
         for (std::size_t i = 0; i < made.size(); ++i) {
             const gltf::Image& image = scene.images[i];
             if (std::has_single_bit(static_cast<unsigned>(image.width)) &&

@@ -10,7 +10,7 @@
 #include "unit/gltf/block_files.h"
 
 #include <glint/scene.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/session.h>
 
 #include <gtest/gtest.h>
 
@@ -99,7 +99,7 @@ TEST(TextureFormats, DevicesReadWhatTheCpuUnpacks) {
     const gltf::Scene scene = squares(images.formats.size());
     RenderSetup setup = defaultSetup(scene, kSide, kSide);
     const auto picture = [&](bool inBlocks) {
-        const LoadedScene loaded(scene, settingsForDevice(), [&](scene_view::SceneViewData& data) {
+        const LoadedScene loaded(scene, settingsForDevice(), [&](session::SceneViewData& data) {
             for (std::size_t i = 0; i < images.formats.size(); ++i) {
                 data.images[i].format = inBlocks ? images.formats[i] : TexelFormat::Rgba8;
                 data.images[i].pixels = inBlocks ? images.blocks[i] : images.pixels[i];
@@ -183,7 +183,7 @@ TEST(TextureFormats, DataInOneAndTwoChannels) {
     RenderSetup setup = defaultSetup(scene, 32, 32);
     const compiler::CompileSettings settings = settingsForDevice();
     const LoadedScene plain(scene, settings);
-    const LoadedScene compressed(scene, settings, [&](scene_view::SceneViewData& view) {
+    const LoadedScene compressed(scene, settings, [&](session::SceneViewData& view) {
         using enum TexelChannel;
         ASSERT_EQ(view.images.size(), 3U);
         constexpr TexelFormat kFormats[] = {TexelFormat::Bc5, TexelFormat::Bc5, TexelFormat::Bc4};
@@ -215,7 +215,7 @@ TEST(TextureFormats, WhatADeviceCantReadIsRefused) {
     Context& context = sharedContext();
     const LoadedScene loaded(scene, settingsForDevice());
     ASSERT_TRUE(loaded.ok());
-    scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+    session::SceneViewData data = session::makeSceneView(scene);
     const auto errorOf = [&](TexelFormat format, std::uint32_t levels, std::size_t bytes) {
         const std::vector<std::uint8_t> blocks(bytes);
         data.images[0].format = format;
@@ -301,7 +301,7 @@ TEST(TextureLevels, LevelsOfRoughnessAreNearerToTheFinestLevelThanPlainMeans) {
         const gltf::Scene scene = roughFloors(smooth, rough);
         const gltf::Image& image = scene.images[0];
         const auto errorOf = [&](const std::vector<std::uint8_t>& texels, int levels) {
-            const LoadedScene loaded(scene, settingsForDevice(), [&](scene_view::SceneViewData& data) {
+            const LoadedScene loaded(scene, settingsForDevice(), [&](session::SceneViewData& data) {
                 data.images[0].pixels = texels;
                 data.images[0].levels = static_cast<std::uint32_t>(levels);
             });
@@ -407,7 +407,7 @@ public:
         settings.strategies = package::kStrategyUber;
         settings.tracers = tracerOfDevice();
         loaded_.emplace(scene_, settings);
-        data_ = scene_view::makeSceneView(scene_);
+        data_ = session::makeSceneView(scene_);
         SceneView view = data_.view();
         whole_ = uploadScene(loaded_->package(), view);
         view.editable = editable;
@@ -471,7 +471,7 @@ private:
 
     gltf::Scene scene_;
     std::optional<LoadedScene> loaded_;
-    scene_view::SceneViewData data_;
+    session::SceneViewData data_;
     std::unique_ptr<GpuScene> whole_;
     std::unique_ptr<GpuScene> streamed_;
     std::unique_ptr<Renderer> renderer_;

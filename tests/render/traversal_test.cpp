@@ -97,7 +97,7 @@ LinearImage render(const gltf::Scene& scene, TraversalOrder order) {
     settings.strategies = package::kStrategyUber;
     settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     const LoadedScene loaded(scene, settings,
-                             [&](scene_view::SceneViewData& data) { data.traversalOrder = order; });
+                             [&](session::SceneViewData& data) { data.traversalOrder = order; });
     if (!loaded.ok()) {
         return {};
     }
@@ -123,9 +123,8 @@ TEST(Traversal, TheDeviceHasTheTrianglesInOrder) {
     addCamera(scene);
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
-    const LoadedScene loaded(scene, settings, [](scene_view::SceneViewData& data) {
-        data.traversalOrder = TraversalOrder::Halving;
-    });
+    const LoadedScene loaded(
+        scene, settings, [](session::SceneViewData& data) { data.traversalOrder = TraversalOrder::Halving; });
     ASSERT_TRUE(loaded.ok());
     const Result<std::unique_ptr<HitKernel>> kernel = HitKernel::create(scene, loaded, "hit_numbers.comp");
     ASSERT_TRUE(kernel.ok()) << toString(kernel.error());

@@ -9,7 +9,7 @@
 
 #include <glint/environment.h>
 #include <glint/scene.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/scene_view.h>
 
 #include <gtest/gtest.h>
 
@@ -108,9 +108,9 @@ struct Source {
         settings.environmentMap = environmentMap;
         settings.tracers = tracerOfDevice();
         loaded = std::make_unique<LoadedScene>(scene, settings);
-        data = scene_view::makeSceneView(scene);
+        data = session::makeSceneView(scene);
         if (loaded->ok()) {
-            scene_view::useLayoutOf(loaded->package(), scene, data);
+            session::useLayoutOf(loaded->package(), scene, data);
         }
     }
     SceneView view(Kind kind) const {
@@ -125,7 +125,7 @@ struct Source {
 
     gltf::Scene scene;
     std::unique_ptr<LoadedScene> loaded;
-    scene_view::SceneViewData data;
+    session::SceneViewData data;
 };
 
 Source& sourceOf(Kind kind) {

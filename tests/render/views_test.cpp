@@ -219,9 +219,9 @@ TEST(Views, FindHitsOfTheFallback) {
     SceneEditor& editor = *gpuScene->editor();
     materials::Material both = scene.materials[1];
     both.texture("baseColorTexture").texture = 0;
-    const scene_view::MaterialSourceData source = scene_view::makeMaterialSource(
-        loaded.package(), scene_view::recordLayoutOf(loaded.package(), both.model()), scene, both,
-        scene_view::uploadedTextures(editor, loaded.package().scene(0), scene));
+    const session::MaterialSourceData source = session::makeMaterialSource(
+        loaded.package(), session::recordLayoutOf(loaded.package(), both.model()), scene, both,
+        session::uploadedTextures(editor, loaded.package().scene(0), scene));
     const Result<MaterialHandle> added = editor.addMaterial(source.view());
     ASSERT_TRUE(added.ok()) << toString(added.error());
     const Result<EditReport> set = editor.setInstanceMaterial(editor.instance(1), 0, *added);

@@ -55,7 +55,7 @@ std::vector<Way> waysOf(std::uint32_t strategies, std::uint32_t tracers) {
 
 void forEachWay(const gltf::Scene& scene, compiler::CompileSettings settings,
                 const std::function<void(const LoadedScene&, const Way&)>& visit,
-                const std::function<void(scene_view::SceneViewData&)>& change) {
+                const std::function<void(session::SceneViewData&)>& change) {
     for (const package::Tracer tracer : package::kTracers) {
         settings.tracers = tracer;
         settings.strategies = strategiesWith(tracer);

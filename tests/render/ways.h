@@ -30,6 +30,6 @@ std::vector<Way> waysOf(std::uint32_t strategies, std::uint32_t tracers);
 // `change`: as in LoadedScene.
 void forEachWay(const gltf::Scene& scene, compiler::CompileSettings settings,
                 const std::function<void(const LoadedScene&, const Way&)>& visit,
-                const std::function<void(scene_view::SceneViewData&)>& change = {});
+                const std::function<void(session::SceneViewData&)>& change = {});
 
 }  // namespace glint::testing

@@ -24,9 +24,9 @@ namespace package = glint::package;
 
 // The parts of the tool, from what knows least to what knows most. A part includes itself and the parts
 // before it.
-constexpr std::string_view kParts[] = {"base",      "materials",  "plan",    "gltf", "scene",   "spirv",
-                                       "cache",     "settings",   "resolve", "emit", "inspect", "image",
-                                       "synthetic", "scene_view", "measure", "view", "cli"};
+constexpr std::string_view kParts[] = {"base",      "materials", "plan",    "gltf", "scene",   "spirv",
+                                       "cache",     "settings",  "resolve", "emit", "inspect", "image",
+                                       "synthetic", "session",   "measure", "view", "cli"};
 // The first part that may use the runtime and Vulkan, and not only the headers that say what a package is and
 // what a renderer is asked for.
 constexpr std::string_view kFirstWithRuntime = "inspect";

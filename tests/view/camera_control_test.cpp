@@ -7,8 +7,8 @@
 namespace {
 
 using glint::CameraView;
-using glint::scene_view::parsePlacedCamera;
-using glint::scene_view::PlacedCamera;
+using glint::session::parsePlacedCamera;
+using glint::session::PlacedCamera;
 using glint::view::CameraControl;
 
 double distanceOf(const PlacedCamera& camera) {

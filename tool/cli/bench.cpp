@@ -18,7 +18,7 @@
 #include <glint/measure/calibration.h>
 #include <glint/measure/observer.h>
 #include <glint/measure/report.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/session.h>
 
 #include <fmt/format.h>
 
@@ -132,7 +132,7 @@ Result<int> run(const Console& console, const BenchArguments& arguments) {
     GLINT_TRY_DO(measure::checkBenchFolder(arguments.output));
     console.progress("reading " + arguments.render.scene);
     CompileCache known(arguments.render.cache, "");
-    GLINT_TRY(const auto opened, scene_view::open(arguments.render.scene, arguments.render, known.store()));
+    GLINT_TRY(const auto opened, session::open(arguments.render.scene, arguments.render, known.store()));
     console.report(opened.scene.warnings);
     if (console.refused()) {
         return kExitFailed;
@@ -174,7 +174,7 @@ Result<int> reportDevice(const Console& console, const BenchArguments& arguments
     CompileCache cache(arguments.render.cache, "");
     std::optional<gltf::Scene> scene;
     if (!arguments.render.scene.empty()) {
-        GLINT_TRY(auto opened, scene_view::open(arguments.render.scene, arguments.render, cache.store()));
+        GLINT_TRY(auto opened, session::open(arguments.render.scene, arguments.render, cache.store()));
         console.report(opened.scene.warnings);
         scene = std::move(opened.scene);
     }

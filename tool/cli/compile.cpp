@@ -20,7 +20,7 @@
 
 #include <glint/measure/target.h>
 #include <glint/result.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/session.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -355,7 +355,7 @@ Result<Resolved> readAndResolve(const Console& console, const CompileArguments& 
     GLINT_TRY_DO(checkOutputs(arguments));
     console.progress("reading " + base::join(arguments.scenes));
     GLINT_TRY(const auto import,
-              scene_view::importOptions(arguments.settings, scene_view::ImageReading::None, cache.store()));
+              session::importOptions(arguments.settings, session::ImageReading::None, cache.store()));
     Resolved resolved;
     GLINT_TRY(resolved.scenes, readScenes(arguments.scenes, import));
     report(warningsOf(resolved.scenes));

@@ -13,7 +13,7 @@
 #include "scene/deformed.h"
 
 #include <glint/measure/target.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/session.h>
 
 #include <fmt/format.h>
 
@@ -383,7 +383,7 @@ void print(const Console& console, const ExplainArguments& arguments, const comp
 Result<int> explain(const Console& console, const ExplainArguments& arguments) {
     CompileCache known(CacheArguments{}, "");
     GLINT_TRY(const auto import,
-              scene_view::importOptions(arguments.settings, scene_view::ImageReading::None, known.store()));
+              session::importOptions(arguments.settings, session::ImageReading::None, known.store()));
     GLINT_TRY(const auto scene, importScene(arguments.scene, import));
     console.report(scene.warnings);
     compiler::Settings asked = arguments.settings;

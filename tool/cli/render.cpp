@@ -21,9 +21,9 @@
 #include <glint/measure/views.h>
 #include <glint/package.h>
 #include <glint/renderer.h>
-#include <glint/scene_view/camera.h>
-#include <glint/scene_view/session.h>
-#include <glint/scene_view/textures.h>
+#include <glint/session/camera.h>
+#include <glint/session/session.h>
+#include <glint/session/textures.h>
 
 #include <fmt/format.h>
 
@@ -63,7 +63,7 @@ Result<std::shared_ptr<const Package>> obtainPackage(const Console& console, con
                                                      compiler::ModuleCache* cache, RenderReport& report) {
     const compiler::Settings& settings = build.settings;
     const base::Clock::time_point start = base::Clock::now();
-    GLINT_TRY(auto package, scene_view::packageFor(build, given, cache));
+    GLINT_TRY(auto package, session::packageFor(build, given, cache));
     if (given == nullptr) {
         report.compileMs = base::millisecondsSince(start) + build.milliseconds;
         report.merge = nameOf(settings.compile.plan.merge);
@@ -85,7 +85,7 @@ Result<std::shared_ptr<const Package>> obtainPackage(const Console& console, con
 }
 
 Result<std::unique_ptr<Context>> makeContext(const RenderArguments& arguments, const Package* given) {
-    HeadlessOptions options = scene_view::deviceOptions(settingsOf(arguments));
+    HeadlessOptions options = session::deviceOptions(settingsOf(arguments));
     options.pipelineStatistics = options.pipelineStatistics || arguments.pipelineStatistics;
     if (given != nullptr) {
         inspect::requirePackage(*given, options);
@@ -104,7 +104,7 @@ Result<std::unique_ptr<Environment>> obtainEnvironment(const Console& console,
     console.progress("filtering " + file);
     std::vector<Diagnostic> notes;
     Result<std::unique_ptr<Environment>> environment =
-        scene_view::loadEnvironment(context, file, {.sampled = package.skyLight()}, notes);
+        session::loadEnvironment(context, file, {.sampled = package.skyLight()}, notes);
     console.report(notes);
     if (environment) {
         report.environment = {file, (*environment)->statistics()};
@@ -192,13 +192,12 @@ Status writeResults(const RenderArguments& arguments, const RenderReport& report
 
 // Reads the scene's images in the formats of the device. Those that are compressed for it stay in the cache
 // of compiled modules.
-Result<std::shared_ptr<const scene_view::TextureSet>> readTextures(
+Result<std::shared_ptr<const session::TextureSet>> readTextures(
     const Console& console, const RenderArguments& arguments, const Context& context, const Package& package,
     const gltf::Scene& scene, CompileCache& cache, RenderReport& report) {
     console.progress("reading textures of " + arguments.scene);
-    GLINT_TRY(auto textures,
-              scene_view::loadTextures(
-                  scene, scene_view::textureOptions(arguments, context, package, cache.store())));
+    GLINT_TRY(auto textures, session::loadTextures(
+                                 scene, session::textureOptions(arguments, context, package, cache.store())));
     console.report(textures->notes);
     report.start.texturesMs = textures->milliseconds;
     return textures;
@@ -206,28 +205,28 @@ Result<std::shared_ptr<const scene_view::TextureSet>> readTextures(
 
 // Chooses the camera for an animated scene. A camera that frames everything frames all that is visible at any
 // moment, and does not move.
-Result<scene_view::CameraChoice> chooseView(const std::optional<Movement>& movement,
-                                            const RenderArguments& arguments, gltf::Scene& scene,
-                                            scene_view::SceneViewData& data, double aspect) {
+Result<session::CameraChoice> chooseView(const std::optional<Movement>& movement,
+                                         const RenderArguments& arguments, gltf::Scene& scene,
+                                         session::SceneViewData& data, double aspect) {
     if (!movement) {
-        return scene_view::chooseCamera(scene, data, arguments.camera, aspect);
+        return session::chooseCamera(scene, data, arguments.camera, aspect);
     }
-    scene_view::Bounds bounds = scene_view::Bounds{{1.0, 1.0, 1.0}, {-1.0, -1.0, -1.0}};
-    if (scene_view::framesEverything(scene, arguments.camera)) {
+    session::Bounds bounds = session::Bounds{{1.0, 1.0, 1.0}, {-1.0, -1.0, -1.0}};
+    if (session::framesEverything(scene, arguments.camera)) {
         // This many moments show well enough how far the scene moves.
         constexpr std::size_t kMostMoments = 64;
         const std::size_t step = (movement->seconds.size() + kMostMoments - 1) / kMostMoments;
         for (std::size_t i = 0; i < movement->seconds.size(); i += step) {
-            scene_view::moveTo(movement->moment(i), scene);
-            scene_view::poseSceneView(scene, data);
-            bounds = scene_view::united(bounds, scene_view::posedBounds(scene, data));
+            session::moveTo(movement->moment(i), scene);
+            session::poseSceneView(scene, data);
+            bounds = session::united(bounds, session::posedBounds(scene, data));
         }
     }
-    scene_view::moveTo(movement->moment(0), scene);
-    Result<scene_view::CameraChoice> camera =
-        scene_view::chooseCameraAround(scene, bounds, arguments.camera, aspect);
+    session::moveTo(movement->moment(0), scene);
+    Result<session::CameraChoice> camera =
+        session::chooseCameraAround(scene, bounds, arguments.camera, aspect);
     // The package must not depend on which frames are rendered.
-    scene_view::moveTo(std::nullopt, scene);
+    session::moveTo(std::nullopt, scene);
     return camera;
 }
 
@@ -247,17 +246,17 @@ Result<std::optional<LinearImage>> readReference(const RenderArguments& argument
 }
 
 // Does all the work between reading the scene and writing the files.
-Status render(const Console& console, const RenderArguments& arguments, scene_view::Opened opened,
+Status render(const Console& console, const RenderArguments& arguments, session::Opened opened,
               CompileCache& cache, RenderReport& report) {
     gltf::Scene& scene = opened.scene;
     GLINT_TRY(const auto movement, chooseMovement(arguments.motion, scene, !arguments.materials.empty()));
     GLINT_TRY(const auto compared, readReference(arguments));
-    scene_view::SceneViewData data = scene_view::sceneView(arguments, scene);
+    session::SceneViewData data = session::sceneView(arguments, scene);
     const double aspect = static_cast<double>(report.width) / report.height;
     GLINT_TRY(const auto camera, chooseView(movement, arguments, scene, data, aspect));
     report.camera = camera.name;
     if (compiler::addsSun(arguments, scene)) {
-        report.sun = RenderReport::Sun{scene_view::sunLight(), arguments.sun == compiler::Sun::Auto};
+        report.sun = RenderReport::Sun{session::sunLight(), arguments.sun == compiler::Sun::Auto};
     }
     report.sceneInFile = gltf::sceneInFile(scene);
     // This comes before the compilation, which takes longer than finding out that there is no device.
@@ -277,7 +276,7 @@ Status render(const Console& console, const RenderArguments& arguments, scene_vi
     GLINT_TRY(const auto environment, obtainEnvironment(console, arguments, *context, *package, report));
     GLINT_TRY(const auto textures,
               readTextures(console, arguments, *context, *package, scene, cache, report));
-    scene_view::usePackage(*package, scene, textures, data);
+    session::usePackage(*package, scene, textures, data);
     report.textures = textureReport(data.images);
     report.textures.found = textures->found;
     cache.close(console);
@@ -324,7 +323,7 @@ Status render(const Console& console, const RenderArguments& arguments, scene_vi
 Status readAndRender(const Console& console, const RenderArguments& arguments, RenderReport& report) {
     console.progress("reading " + arguments.scene);
     CompileCache cache(arguments.cache, "");
-    GLINT_TRY(auto opened, scene_view::open(arguments.scene, arguments, cache.store()));
+    GLINT_TRY(auto opened, session::open(arguments.scene, arguments, cache.store()));
     console.report(opened.scene.warnings);
     return console.refused() ? okStatus() : render(console, arguments, std::move(opened), cache, report);
 }

@@ -12,7 +12,7 @@ namespace glint::gltf {
 struct ImportOptions {
     // Whether to decode images. The compiler needs none of them, and the renderer needs all.
     bool decodeImages = false;
-    // Whether to keep the files of images (Image::file). scene_view::loadTextures() then reads them in the
+    // Whether to keep the files of images (Image::file). session::loadTextures() then reads them in the
     // formats of a device, on all cores.
     bool keepImageFiles = false;
     // Whether to look at every texel, so that planning knows what textures hold (TextureInfo::content,

@@ -8,7 +8,7 @@
 #include <glint/measure/machine.h>
 #include <glint/measure/point.h>
 #include <glint/measure/target.h>
-#include <glint/scene_view/camera.h>
+#include <glint/session/camera.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,7 +21,7 @@ namespace {
 
 // Opens the device with as many of its optional features as possible, for the default and the sweep.
 Result<std::unique_ptr<Context>> openDevice(const compiler::Settings& render, DeviceOptions& features) {
-    const HeadlessOptions wanted = scene_view::deviceOptions(render);
+    const HeadlessOptions wanted = session::deviceOptions(render);
     HeadlessOptions options = wanted;
     Result<std::unique_ptr<Context>> context = Diagnostic{};
     for (const DeviceOptions tried :
@@ -39,7 +39,7 @@ Result<std::unique_ptr<Context>> openDevice(const compiler::Settings& render, De
     return context;
 }
 
-SceneSize sizeOf(const scene_view::SceneViewData& data) {
+SceneSize sizeOf(const session::SceneViewData& data) {
     std::map<std::uint32_t, std::uint64_t> triangles;  // by mesh
     for (const PrimitiveView& primitive : data.primitives) {
         triangles[primitive.mesh] += primitive.indices.size() / 3;
@@ -136,16 +136,16 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, con
                                                    const gltf::Scene& scene, compiler::ModuleCache* cache,
                                                    compiler::CacheStore* store) {
     std::unique_ptr<BenchBed> bed(new BenchBed(observer, base, scene, cache, store));
-    const scene_view::SceneViewData data = scene_view::sceneView(base, scene);
+    const session::SceneViewData data = session::sceneView(base, scene);
     GLINT_TRY(const auto camera,
-              scene_view::chooseCamera(scene, data, base.camera,
-                                       static_cast<double>(base.renderer.width) / base.renderer.height));
-    if (const std::optional<Diagnostic> warning = scene_view::nothingSeen(scene, data, camera)) {
+              session::chooseCamera(scene, data, base.camera,
+                                    static_cast<double>(base.renderer.width) / base.renderer.height));
+    if (const std::optional<Diagnostic> warning = session::nothingSeen(scene, data, camera)) {
         observer.report(*warning);
     }
     bed->camera_ = camera.view;
     bed->cameraName_ = camera.name;
-    bed->sky_ = scene_view::chooseSky(base, scene, data);
+    bed->sky_ = session::chooseSky(base, scene, data);
     bed->size_ = sizeOf(data);
     bed->lights_ = static_cast<std::uint32_t>(data.lights.size());
     GLINT_TRY(bed->context_, openDevice(base, bed->features_));
@@ -154,7 +154,7 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, con
     if (!base.environment.empty()) {
         std::vector<Diagnostic> notes;
         Result<std::unique_ptr<Environment>> environment =
-            scene_view::loadEnvironment(*bed->context_, base.environment, {.sampled = true}, notes);
+            session::loadEnvironment(*bed->context_, base.environment, {.sampled = true}, notes);
         observer.report(notes);
         if (!environment) {
             return environment.error();
@@ -186,7 +186,7 @@ Result<std::shared_ptr<const gltf::SceneList>> BenchBed::scenesFor(const Package
     }
     if (!otherScene_) {
         GLINT_TRY(const auto import,
-                  scene_view::importOptions(base_, scene_view::ImageReading::Files, store_, package));
+                  session::importOptions(base_, session::ImageReading::Files, store_, package));
         GLINT_TRY(auto read, importScene(scene_.path, import));
         otherScene_ = std::make_unique<const gltf::Scene>(std::move(read));
         otherList_ = std::make_shared<const gltf::SceneList>(std::span(otherScene_.get(), 1));
@@ -194,28 +194,28 @@ Result<std::shared_ptr<const gltf::SceneList>> BenchBed::scenesFor(const Package
     return otherList_;
 }
 
-Result<std::shared_ptr<const scene_view::TextureSet>> BenchBed::textures(const compiler::Build& build,
-                                                                         const Package& package) {
+Result<std::shared_ptr<const session::TextureSet>> BenchBed::textures(const compiler::Build& build,
+                                                                      const Package& package) {
     const gltf::Scene& scene = build.scenes->scenes().front();
-    const scene_view::TextureOptions options =
-        scene_view::textureOptions(build.settings, *context_, package, store_);
-    std::shared_ptr<const scene_view::TextureSet>& known =
+    const session::TextureOptions options =
+        session::textureOptions(build.settings, *context_, package, store_);
+    std::shared_ptr<const session::TextureSet>& known =
         textures_[{&scene, options.fit.compress, options.fit.decodeEmission}];
     if (!known) {
-        GLINT_TRY(known, scene_view::loadTextures(scene, options));
+        GLINT_TRY(known, session::loadTextures(scene, options));
         observer_.report(known->notes);
     }
     return known;
 }
 
-Result<scene_view::DeviceScene> BenchBed::mountScene(const compiler::Build& build,
-                                                     std::shared_ptr<const Package> given) {
+Result<session::DeviceScene> BenchBed::mountScene(const compiler::Build& build,
+                                                  std::shared_ptr<const Package> given) {
     const gltf::Scene& scene = build.scenes->scenes().front();
-    GLINT_TRY(auto package, scene_view::packageFor(build, std::move(given), cache_));
+    GLINT_TRY(auto package, session::packageFor(build, std::move(given), cache_));
     GLINT_TRY(auto images, textures(build, *package));
-    scene_view::SceneViewData data = scene_view::sceneView(build.settings, scene);
-    scene_view::usePackage(*package, scene, std::move(images), data);
-    return scene_view::DeviceScene::upload(*context_, std::move(package), std::move(data));
+    session::SceneViewData data = session::sceneView(build.settings, scene);
+    session::usePackage(*package, scene, std::move(images), data);
+    return session::DeviceScene::upload(*context_, std::move(package), std::move(data));
 }
 
 Result<Mount> BenchBed::mount(const compiler::Configuration& configuration, const std::string& package) {
@@ -244,21 +244,21 @@ Result<Mount> BenchBed::mountFiltered(const FilterMaker& filter, std::uint32_t f
 }
 
 Result<Mount> BenchBed::mount(const compiler::Settings& asked) {
-    GLINT_TRY(auto given, scene_view::givenPackage(asked));
+    GLINT_TRY(auto given, session::givenPackage(asked));
     GLINT_TRY(auto scenes, scenesFor(given.get()));
     GLINT_TRY(const auto target, targetOf(asked, *context_, given.get(), scenes->scenes().front()));
     GLINT_TRY(const auto build, resolve(std::move(scenes), asked, target));
     const compiler::Settings& settings = build.settings;
     Mount mount;
     for (const Known& known : known_) {
-        const std::shared_ptr<const scene_view::DeviceScene> scene = known.scene.lock();
+        const std::shared_ptr<const session::DeviceScene> scene = known.scene.lock();
         if (scene && changeBetween(known.settings, settings) < compiler::kChangesUpload) {
             mount.scene_ = scene;
         }
     }
     if (!mount.scene_) {
         GLINT_TRY(auto scene, mountScene(build, std::move(given)));
-        mount.scene_ = std::make_shared<const scene_view::DeviceScene>(std::move(scene));
+        mount.scene_ = std::make_shared<const session::DeviceScene>(std::move(scene));
     }
     for (const Known& known : known_) {
         if (known.scene.lock() == mount.scene_ &&
@@ -267,11 +267,10 @@ Result<Mount> BenchBed::mount(const compiler::Settings& asked) {
         }
     }
     if (!mount.renderer_) {
-        GLINT_TRY(mount.renderer_,
-                  mount.scene_->makeRenderer(*context_, scene_view::rendererOptions(settings)));
+        GLINT_TRY(mount.renderer_, mount.scene_->makeRenderer(*context_, session::rendererOptions(settings)));
         known_.push_back({settings, mount.scene_, mount.renderer_});
     }
-    mount.frame_ = scene_view::frameOptions(settings, camera_, sky_, environment_.get());
+    mount.frame_ = session::frameOptions(settings, camera_, sky_, environment_.get());
     mount.samples_ = settings.samples;
     mount.ordersHits_ = (*settings.strategy & package::orderedStrategies()) != 0;
     return mount;

@@ -210,7 +210,7 @@ private:
 }  // namespace
 
 Result<std::unique_ptr<Context>> openCalibrationDevice(const compiler::Settings& render) {
-    return Context::createHeadless(scene_view::deviceOptions(render));
+    return Context::createHeadless(session::deviceOptions(render));
 }
 
 Status runCalibration(const Observer& observer, const CalibrationSettings& settings, Context& context,

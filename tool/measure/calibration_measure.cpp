@@ -9,7 +9,7 @@
 
 #include <glint/measure/bed.h>
 #include <glint/measure/machine.h>
-#include <glint/scene_view/camera.h>
+#include <glint/session/camera.h>
 
 #include <fmt/format.h>
 
@@ -92,14 +92,14 @@ Result<CompiledGroup> compileGroup(const CalibrationSettings& settings, std::uin
 Result<CalibrationGroup> uploadGroup(Context& context, const CompiledGroup& compiled) {
     CalibrationGroup group;
     group.work = workOf(compiled.package);
-    GLINT_TRY(group.package, scene_view::loadPackage(compiled.package));
+    GLINT_TRY(group.package, session::loadPackage(compiled.package));
     for (std::size_t i = 0; i < compiled.scenes.size(); ++i) {
         const gltf::Scene& scene = compiled.scenes[i];
         const synthetic::CasesOptions& options = compiled.options[i];
-        GLINT_TRY(const auto camera, scene_view::sceneCamera(scene, 0, options.aspect));
-        scene_view::SceneViewData data = scene_view::sceneView(compiled.settings, scene);
+        GLINT_TRY(const auto camera, session::sceneCamera(scene, 0, options.aspect));
+        session::SceneViewData data = session::sceneView(compiled.settings, scene);
         data.packageScene = static_cast<std::uint32_t>(i);
-        GLINT_TRY(auto uploaded, scene_view::DeviceScene::upload(context, group.package, std::move(data)));
+        GLINT_TRY(auto uploaded, session::DeviceScene::upload(context, group.package, std::move(data)));
         group.scenes.push_back({options, std::move(uploaded), camera, effectOf(options.coherence)});
     }
     return group;
@@ -151,7 +151,7 @@ public:
                   const CalibrationSettings& settings, const PointOptions& options)
         : context_(context), group_(group), scene_(scene), settings_(settings), options_(options) {
         sizeFor(options.rays, entry_.width, entry_.height);
-        frame_ = scene_view::frameOptions(settings.render, scene.camera, scene_view::SkyChoice{}, nullptr);
+        frame_ = session::frameOptions(settings.render, scene.camera, session::SkyChoice{}, nullptr);
         frame_.effects = scene.effect;
     }
 
@@ -221,7 +221,7 @@ private:
         asked.renderer.height = entry_.height;
         asked.renderer.bands = 1;  // the model is that of one list
         Result<std::unique_ptr<Renderer>> renderer =
-            scene_.scene.makeRenderer(context_, scene_view::rendererOptions(asked));
+            scene_.scene.makeRenderer(context_, session::rendererOptions(asked));
         if (!renderer) {
             measure.skipped = renderer.error().message;
             return okStatus();

@@ -6,7 +6,7 @@
 
 #include <glint/measure/calibration_report.h>
 #include <glint/measure/strategy_fit.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/session.h>
 
 #include <cstdint>
 #include <memory>
@@ -18,7 +18,7 @@ namespace glint::measure {
 // A scene on the device whose rays belong to one effect.
 struct CalibrationScene {
     synthetic::CasesOptions options;
-    scene_view::DeviceScene scene;
+    session::DeviceScene scene;
     CameraView camera;
     package::Effect effect{};
 };

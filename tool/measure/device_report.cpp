@@ -7,7 +7,7 @@
 
 #include <glint/measure/bed.h>
 #include <glint/measure/machine.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/session.h>
 
 #include <fmt/format.h>
 
@@ -43,7 +43,7 @@ std::uint64_t raysOf(bool quick, bool onCpu) {
 }
 
 Result<std::unique_ptr<Context>> open(const compiler::Settings& render, bool positionFetch, bool float16) {
-    HeadlessOptions options = scene_view::deviceOptions(render);
+    HeadlessOptions options = session::deviceOptions(render);
     options.pipelineStatistics = true;
     options.positionFetch = positionFetch;
     options.shaderFloat16 = float16;

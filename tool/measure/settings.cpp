@@ -2,7 +2,7 @@
 #include "settings/descriptor.h"
 
 #include <glint/measure/settings.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/session.h>
 
 #include <fmt/format.h>
 
@@ -152,7 +152,7 @@ compiler::BenchFacts factsOf(const compiler::Build& build, std::size_t index) {
     facts.rayEffects = rayEffects(settings.compile.effects);
     facts.emits = compiler::countEmitters(*build.scenes, index) > 0;
     addAlternatives(build, facts);
-    const scene_view::SceneViewData data = scene_view::sceneView(settings, scene);
+    const session::SceneViewData data = session::sceneView(settings, scene);
     facts.punctualLights = !data.lights.empty();
     const auto directional = std::ranges::count(data.lights, LightView::Type::Directional, &LightView::type);
     facts.directionalLights = directional > 0;

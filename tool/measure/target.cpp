@@ -4,7 +4,7 @@
 #include <glint/measure/device_file.h>
 #include <glint/measure/machine.h>
 #include <glint/measure/target.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/session.h>
 
 #include <fmt/format.h>
 
@@ -30,7 +30,7 @@ compiler::DecidedPackage decidedBy(const Package& package, const gltf::Scene& sc
     for (const package::CaseEntry& entry : package.cases()) {
         decided.cases.push_back({entry.always, entry.sometimes, entry.keyCount == 0});
     }
-    if (const std::optional<std::uint32_t> index = scene_view::sceneIn(package, scene)) {
+    if (const std::optional<std::uint32_t> index = session::sceneIn(package, scene)) {
         for (const materials::PrimitiveInputs& inputs : planningInputs(scene)) {
             const package::PrimitiveEntry* const entry = package.scene(*index).findPrimitive(
                 static_cast<std::uint32_t>(inputs.mesh), static_cast<std::uint32_t>(inputs.primitive));

@@ -74,7 +74,7 @@ struct Settings {
 
     // Names and files. They are options of their own, without rows in the table.
     std::string environment;  // a map; empty: a gradient
-    std::string camera;       // see scene_view::chooseCamera()
+    std::string camera;       // see session::chooseCamera()
     std::string device;
     std::string package;  // a folder; empty: one is compiled
     std::string profile;  // hit counts, for the merge policies profile and auto

@@ -12,7 +12,7 @@
 #include <glint/measure/settings.h>
 #include <glint/measure/target.h>
 #include <glint/package_modules.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/session.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -147,7 +147,7 @@ Result<Build> Builder::build(const BuildOrder& order) {
     Build build;
     changed_[order.picture].insert(order.changed.begin(), order.changed.end());
     made_.reset();
-    GLINT_TRY(auto given, scene_view::givenPackage(order.settings));
+    GLINT_TRY(auto given, session::givenPackage(order.settings));
     GLINT_TRY_DO(readScene(order, given.get(), build));
     GLINT_TRY_DO(makePackage(order, std::move(given), build));
     GLINT_TRY_DO(readTextures(build));
@@ -164,7 +164,7 @@ Status Builder::readScene(const BuildOrder& order, const Package* package, Build
     const base::Clock::time_point start = base::Clock::now();
     const compiler::Settings& settings = order.settings;
     GLINT_TRY(const auto import,
-              scene_view::importOptions(settings, scene_view::ImageReading::Files, request_.store, package));
+              session::importOptions(settings, session::ImageReading::Files, request_.store, package));
     const std::string key =
         fmt::format("{}|{}|{}|{}|{}|{}", order.scene, settings.sceneInFile, settings.variant,
                     settings.strictPaths, import.trustTextures, fmt::join(settings.materials, "|"));
@@ -219,7 +219,7 @@ std::optional<compiler::EarlyShowing> Builder::earlyShowing(std::size_t picture,
 }
 
 bool Builder::publishEarly(std::size_t picture, const compiler::CompiledPackage& early) {
-    const Result<std::shared_ptr<const Package>> loaded = scene_view::loadPackage(early);
+    const Result<std::shared_ptr<const Package>> loaded = session::loadPackage(early);
     if (!loaded) {
         return false;
     }
@@ -249,7 +249,7 @@ Status Builder::makePackage(const BuildOrder& order, std::shared_ptr<const Packa
     build.resolved = std::make_shared<const compiler::Build>(std::move(decided));
     const compiler::Build& resolved = *build.resolved;
     if (given) {
-        GLINT_TRY_DO(scene_view::checkPackage(*given, resolved));
+        GLINT_TRY_DO(session::checkPackage(*given, resolved));
         build.package = std::move(given);
         for (const package::PackageLayer& layer : build.package->layers()) {
             build.layers.push_back(layer.name);
@@ -265,7 +265,7 @@ Status Builder::makePackage(const BuildOrder& order, std::shared_ptr<const Packa
         if (!compiled) {
             return compiled.error();
         }
-        GLINT_TRY(build.package, scene_view::loadPackage(*compiled));
+        GLINT_TRY(build.package, session::loadPackage(*compiled));
         build.instructions.resize(compiled->plan.cases.size());
         for (const compiler::CompiledModule& module : compiled->modules) {
             (module.compiled ? build.modulesCompiled : build.modulesKept) += 1;
@@ -285,13 +285,13 @@ Status Builder::makePackage(const BuildOrder& order, std::shared_ptr<const Packa
 }
 
 Status Builder::readTextures(Build& build) {
-    scene_view::TextureOptions options =
-        scene_view::textureOptions(build.settings(), context_, *build.package, request_.store);
+    session::TextureOptions options =
+        session::textureOptions(build.settings(), context_, *build.package, request_.store);
     options.fit.allLevels = true;  // so that the coarse ones can be there first
     const std::string key = fmt::format("{} {}", options.fit.compress, options.fit.decodeEmission);
     if (!textures_ || key != texturesKey_) {
         say("reading textures");
-        GLINT_TRY(textures_, scene_view::loadTextures(*build.scene, options));
+        GLINT_TRY(textures_, session::loadTextures(*build.scene, options));
         texturesKey_ = key;
         build.texturesMs = textures_->milliseconds;
         const std::lock_guard lock(mutex_);

@@ -10,7 +10,7 @@
 #include "view/request.h"
 
 #include <glint/package.h>
-#include <glint/scene_view/textures.h>
+#include <glint/session/textures.h>
 
 #include <array>
 #include <condition_variable>
@@ -30,7 +30,7 @@ struct Build {
     std::shared_ptr<const compiler::Build> resolved;  // of `scene`
     std::shared_ptr<const gltf::Scene> scene;
     std::shared_ptr<const Package> package;
-    std::shared_ptr<const scene_view::TextureSet> textures;
+    std::shared_ptr<const session::TextureSet> textures;
     // The length of each case's own shader in SPIR-V instructions, by shader ID; 0: it has none, or it is
     // unknown.
     std::vector<std::uint32_t> instructions;
@@ -106,7 +106,7 @@ private:
     std::shared_ptr<const gltf::Scene> scene_;
     std::shared_ptr<const gltf::SceneList> list_;  // of it
     std::string sceneKey_;
-    std::shared_ptr<const scene_view::TextureSet> textures_;
+    std::shared_ptr<const session::TextureSet> textures_;
     std::string texturesKey_;
     std::uint32_t strategies_ = 0;  // bits
     std::string strategiesKey_;

@@ -84,14 +84,14 @@ void CameraControl::changeSpeed(double factor) {
 
 CameraView CameraControl::view(double aspect) const {
     if (moved_) {
-        return scene_view::viewOf(placed(), aspect);
+        return session::viewOf(placed(), aspect);
     }
     CameraView view = start_;
     view.halfWidth = static_cast<float>(view.halfHeight * aspect);
     return view;
 }
 
-scene_view::PlacedCamera CameraControl::placed() const {
+session::PlacedCamera CameraControl::placed() const {
     // A user reads and copies these numbers, so they are no longer than the view needs: a millionth of the
     // target's distance.
     const double unit = std::exp2(std::floor(std::log2(distance_)) - 20.0);
@@ -104,7 +104,7 @@ scene_view::PlacedCamera CameraControl::placed() const {
 }
 
 std::string CameraControl::name() const {
-    return moved_ ? scene_view::toText(placed()) : name_;
+    return moved_ ? session::toText(placed()) : name_;
 }
 
 }  // namespace glint::view

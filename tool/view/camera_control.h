@@ -2,7 +2,7 @@
 #pragma once
 
 #include <glint/scene_view.h>
-#include <glint/scene_view/camera.h>
+#include <glint/session/camera.h>
 
 #include <array>
 #include <string>
@@ -40,7 +40,7 @@ public:
     // Returns the value of --camera that shows the same.
     std::string name() const;
     // The camera that view() shows once it has moved.
-    scene_view::PlacedCamera placed() const;
+    session::PlacedCamera placed() const;
 
 private:
     void turn(double right, double down);

@@ -20,7 +20,7 @@ namespace {
 RendererOptions optionsOf(compiler::Settings settings, std::uint32_t width, std::uint32_t height) {
     settings.renderer.width = width;
     settings.renderer.height = height;
-    return scene_view::rendererOptions(settings);
+    return session::rendererOptions(settings);
 }
 
 }  // namespace
@@ -36,7 +36,7 @@ Status Picture::readEnvironment(const Build& build, std::vector<Diagnostic>& not
     environmentKey_.clear();
     if (!file.empty()) {
         GLINT_TRY(environment_,
-                  scene_view::loadEnvironment(context_, file, {.sampled = build.package->skyLight()}, notes));
+                  session::loadEnvironment(context_, file, {.sampled = build.package->skyLight()}, notes));
     }
     environmentKey_ = key;
     return okStatus();
@@ -48,14 +48,14 @@ Result<Picture::Device> Picture::recordUpload(Context& context, const Build& bui
                                               const gltf::Scene* posed) {
     const base::Clock::time_point start = base::Clock::now();
     const gltf::Scene& scene = posed != nullptr ? *posed : *build.scene;
-    scene_view::SceneViewData data = scene_view::sceneView(build.settings(), scene);
+    session::SceneViewData data = session::sceneView(build.settings(), scene);
     data.moves = posed != nullptr;
-    scene_view::usePackage(*build.package, scene, build.textures, data);
+    session::usePackage(*build.package, scene, build.textures, data);
     Device made;
     made.read = build.scene;
     GLINT_TRY(made.commands, OneTimeCommands::create(context));
-    GLINT_TRY(made.scene, scene_view::DeviceScene::record(context, build.package, std::move(data),
-                                                          made.commands.handle()));
+    GLINT_TRY(made.scene,
+              session::DeviceScene::record(context, build.package, std::move(data), made.commands.handle()));
     made.recordMs = base::millisecondsSince(start);
     return made;
 }
@@ -161,7 +161,7 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, 
     beforeEarly_.reset();
     settings_ = build_.settings();
     options_ = options;
-    sky_ = scene_view::chooseSky(settings_, scene(), data());
+    sky_ = session::chooseSky(settings_, scene(), data());
     restart();
     return okStatus();
 }
@@ -194,12 +194,12 @@ Status Picture::change(const compiler::Settings& settings, std::uint32_t width, 
         inFlight_.clear();
     }
     settings_ = settings;
-    sky_ = scene_view::chooseSky(settings_, scene(), data());
+    sky_ = session::chooseSky(settings_, scene(), data());
     restart();
     return okStatus();
 }
 
-Status Picture::pose(const std::optional<scene_view::Moment>& moment, std::uint64_t frame) {
+Status Picture::pose(const std::optional<session::Moment>& moment, std::uint64_t frame) {
     if (moment == moment_) {
         return okStatus();
     }
@@ -214,8 +214,8 @@ Status Picture::pose(const std::optional<scene_view::Moment>& moment, std::uint6
         }
     }
     moment_ = moment;
-    scene_view::moveTo(moment, *posed_);
-    scene_view::poseSceneView(*posed_, device_.scene.data);
+    session::moveTo(moment, *posed_);
+    session::poseSceneView(*posed_, device_.scene.data);
     poseIsNew_ = true;
     restart();
     return okStatus();
@@ -240,7 +240,7 @@ Status Picture::record(VkCommandBuffer commands, const CameraView& camera, Timin
     if (device_.renderer->replacementProgress().ready) {
         restart();
     }
-    FrameOptions frame = scene_view::frameOptions(settings_, camera, sky_, environment_.get());
+    FrameOptions frame = session::frameOptions(settings_, camera, sky_, environment_.get());
     frame.timing = timing;
     frame.sampleIndex = samples_;
     frame.time = moment_ ? static_cast<float>(moment_->seconds) : 0.0F;

@@ -4,7 +4,7 @@
 #include "view/builder.h"
 #include "view/vulkan.h"
 
-#include <glint/scene_view/session.h>
+#include <glint/session/session.h>
 
 #include <cstdint>
 #include <future>
@@ -48,7 +48,7 @@ public:
 
     // Shows another moment, or the rest pose. The first one uploads the scene anew, so that it can move,
     // before the frame `frame`. The device must be idle.
-    Status pose(const std::optional<scene_view::Moment>& moment, std::uint64_t frame);
+    Status pose(const std::optional<session::Moment>& moment, std::uint64_t frame);
 
     bool isReady() const {
         return device_.renderer != nullptr;
@@ -89,7 +89,7 @@ public:
     const gltf::Scene& scene() const {
         return posed_ ? *posed_ : *build_.scene;
     }
-    const scene_view::SceneViewData& data() const {
+    const session::SceneViewData& data() const {
         return device_.scene.data;
     }
     Renderer& renderer() {
@@ -98,7 +98,7 @@ public:
     GpuScene& gpuScene() {
         return *device_.scene.gpu;
     }
-    const std::optional<scene_view::Moment>& moment() const {
+    const std::optional<session::Moment>& moment() const {
         return moment_;
     }
     // Frame number of the last sample.
@@ -114,7 +114,7 @@ private:
     // A scene on the device, with the commands of its upload. Members are destroyed in reverse order.
     struct Device {
         std::shared_ptr<const gltf::Scene> read;  // to which the scene's data point
-        scene_view::DeviceScene scene;
+        session::DeviceScene scene;
         OneTimeCommands commands;
         std::unique_ptr<Renderer> renderer;
         std::uint64_t uploadedIn = 0;  // frame that is done after the upload
@@ -131,11 +131,11 @@ private:
     Build build_;
     std::shared_ptr<const Package> beforeEarly_;  // null: no early package is shown
     std::unique_ptr<gltf::Scene> posed_;          // null until the scene moves
-    std::optional<scene_view::Moment> moment_;
+    std::optional<session::Moment> moment_;
     bool poseIsNew_ = false;  // the device has another pose
     std::shared_ptr<Environment> environment_;
     std::string environmentKey_;
-    scene_view::SkyChoice sky_;
+    session::SkyChoice sky_;
     Device device_;
     std::uint64_t levelsIn_ = 0;  // frame that has got the last levels of textures
     bool levelsAreNew_ = false;   // takeAllLevels() has not told yet

@@ -3,8 +3,8 @@
 #include "gltf/import.h"
 #include "oracle/scene/picture.h"
 
-#include <glint/scene_view/camera.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/camera.h>
+#include <glint/session/scene_view.h>
 
 #include <algorithm>
 #include <charconv>
@@ -14,7 +14,7 @@ namespace {
 
 // The sun of glint render.
 gltf::Light sun() {
-    const LightView view = scene_view::sunLight();
+    const LightView view = session::sunLight();
     gltf::Light light;
     light.name = "sun";
     light.color = view.intensity;
@@ -45,9 +45,9 @@ Result<OracleInput> readOracleInput(const SceneChoice& choice, std::uint32_t wid
         return makeError("oracle-moves", choice.path.string(), "has skins or morph targets",
                          "the oracle renders rigid meshes only: use another scene");
     }
-    const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+    const session::SceneViewData data = session::makeSceneView(scene);
     GLINT_TRY(const auto camera,
-              scene_view::chooseCamera(scene, data, choice.camera, static_cast<double>(width) / height));
+              session::chooseCamera(scene, data, choice.camera, static_cast<double>(width) / height));
     if (scene.lights.empty()) {
         scene.lights.push_back(sun());
     }

@@ -10,7 +10,7 @@
 #include "oracle/scene/texels.h"
 #include "oracle/transport/path_picture.h"
 
-#include <glint/scene_view/camera.h>
+#include <glint/session/camera.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

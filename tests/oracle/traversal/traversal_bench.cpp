@@ -12,9 +12,9 @@
 #include "support/halved_tree.h"
 #include "support/quantile.h"
 
-#include <glint/scene_view/camera.h>
-#include <glint/scene_view/scene_view.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/camera.h>
+#include <glint/session/scene_view.h>
+#include <glint/session/session.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -69,7 +69,7 @@ constexpr const char* kEmbree = "Embree";
 
 // Puts indices and instances into a random order. Afterwards spans of `data` point to them.
 struct Shuffled {
-    explicit Shuffled(scene_view::SceneViewData& data) {
+    explicit Shuffled(session::SceneViewData& data) {
         std::mt19937_64 random(3);
         for (PrimitiveView& primitive : data.primitives) {
             std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -94,7 +94,7 @@ struct Shuffled {
 // Orders the triangles of each primitive, and the instances by their meshes, as the driver's order does, but
 // without a BLAS for each geometry.
 struct OrderedMeshes {
-    explicit OrderedMeshes(const scene_view::SceneViewData& data)
+    explicit OrderedMeshes(const session::SceneViewData& data)
         : primitives(data.primitives),
           instances(data.instances),
           indices(orderedTriangles(data.primitives, {std::uint64_t{1} << 24U, 1}, halvingOrder)) {
@@ -159,7 +159,7 @@ struct Measured {
 };
 
 // Returns the cost of the driver's tree over the primitive with the most triangles.
-double costOf(const scene_view::SceneViewData& data, const Variant& variant) {
+double costOf(const session::SceneViewData& data, const Variant& variant) {
     const auto largest = std::ranges::max_element(
         data.primitives, {}, [](const PrimitiveView& primitive) { return primitive.indices.size(); });
     std::vector<LeafBox> leaves(largest->indices.size() / 3);
@@ -177,7 +177,7 @@ Result<std::shared_ptr<const Package>> packageOf(const gltf::Scene& scene) {
     settings.strategies = package::kStrategyUber;
     settings.plan.merge = compiler::MergePolicy::All;
     settings.plan.maxShaders = 1;
-    return scene_view::compileAndLoad(*compiler::resolve(std::span(&scene, 1), settings));
+    return session::compileAndLoad(*compiler::resolve(std::span(&scene, 1), settings));
 }
 
 class SceneBench {
@@ -189,7 +189,7 @@ public:
         gltf::ImportOptions import;
         import.decodeImages = true;
         GLINT_TRY(const auto scene, gltf::importScene(file, import));
-        scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+        session::SceneViewData data = session::makeSceneView(scene);
         for (InstanceView& instance : data.instances) {
             instance.joints = {};
             instance.morphWeights = {};
@@ -199,7 +199,7 @@ public:
             return std::optional<Measured>();
         }
         const EmbreeScene embree(triangles);
-        GLINT_TRY(const auto camera, scene_view::chooseCamera(scene, data, "auto", 16.0 / 9.0));
+        GLINT_TRY(const auto camera, session::chooseCamera(scene, data, "auto", 16.0 / 9.0));
         rays_[0] = cameraRays(camera.view, 640, 360);
         rays_[1] = embree.bounces(rays_[0]);
         if (rays_[1].size() < kTile) {
@@ -216,7 +216,7 @@ public:
     }
 
 private:
-    Status upload(const gltf::Scene& scene, scene_view::SceneViewData& data, Measured& measured) {
+    Status upload(const gltf::Scene& scene, session::SceneViewData& data, Measured& measured) {
         GLINT_TRY(const auto package, packageOf(scene));
         scenes_.clear();
         std::optional<Shuffled> shuffled;

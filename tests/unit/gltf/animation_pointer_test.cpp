@@ -6,7 +6,7 @@
 #include "support/features.h"
 #include "unit/gltf/gltf_builder.h"
 
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/scene_view.h>
 
 #include <gtest/gtest.h>
 
@@ -76,7 +76,7 @@ struct Pointed {
 // Returns the scene at a time of its first animation.
 gltf::Scene posedAt(gltf::Scene scene, double time) {
     constexpr std::array<std::size_t, 1> kFirst{0};
-    scene_view::applyPose(scene_view::poseAt(scene, kFirst, time), scene);
+    session::applyPose(session::poseAt(scene, kFirst, time), scene);
     return scene;
 }
 
@@ -104,7 +104,7 @@ TEST(AnimationPointers, MaterialValuesAreInterpolated) {
     EXPECT_EQ(material["transmissionFactor"], 0.0F) << "not animated";
     // The file's values return, however often the scene was posed.
     gltf::Scene again = posedAt(scene, 1.0);
-    scene_view::applyPose(scene_view::restPose(again), again);
+    session::applyPose(session::restPose(again), again);
     EXPECT_EQ(again.materials[0]["baseColorFactor"], rest.materials[0]["baseColorFactor"]);
     EXPECT_EQ(again.materials[0]["roughnessFactor"], 0.75F);
 }

@@ -2,7 +2,7 @@
 #include "plan/plan.h"
 #include "unit/gltf/gltf_builder.h"
 
-#include <glint/scene_view/camera.h>
+#include <glint/session/camera.h>
 
 #include <gtest/gtest.h>
 
@@ -187,12 +187,12 @@ TEST(GltfLosses, ExplainUvSetsBeyondTheSecond) {
 }
 
 // What a camera at (0, 0, 5) that looks along -Z says of a triangle, which faces +Z.
-std::string unseen(const GltfBuilder& builder, scene_view::CameraChoice camera = {}, bool isCertain = false) {
+std::string unseen(const GltfBuilder& builder, session::CameraChoice camera = {}, bool isCertain = false) {
     const gltf::Scene scene = readScene(builder);
-    const scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+    const session::SceneViewData data = session::makeSceneView(scene);
     camera.view.position = {0, 0, 5};
     camera.name = camera.name.empty() ? "7" : camera.name;
-    const std::optional<Diagnostic> warning = scene_view::nothingSeen(scene, data, camera, isCertain);
+    const std::optional<Diagnostic> warning = session::nothingSeen(scene, data, camera, isCertain);
     return warning ? warning->message + "; " + warning->hint : "";
 }
 
@@ -225,15 +225,15 @@ TEST(NothingSeen, SaysWhy) {
     turned.root["meshes"][0]["primitives"][0]["material"] = 0;
     EXPECT_EQ(unseen(turned), "");
 
-    scene_view::CameraChoice near;
+    session::CameraChoice near;
     near.view.far = 3.0F;
     expectContains(unseen(triangleAt(Json::object()), near), "1 instance is beyond its far plane at 3 m");
-    scene_view::CameraChoice flat;
+    session::CameraChoice flat;
     flat.view.orthographic = true;
     EXPECT_EQ(unseen(triangleAt(Json::object()), flat), "");
     expectContains(unseen(triangleAt(Json::parse(R"({"translation": [0.5, 0, 0]})")), flat),
                    "outside of its view");
-    scene_view::CameraChoice framing;
+    session::CameraChoice framing;
     framing.name = "auto";
     expectContains(unseen(triangleAt(Json::parse(R"({"translation": [0, 0, 6]})")), framing),
                    "place a camera");

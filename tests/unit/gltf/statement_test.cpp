@@ -4,7 +4,7 @@
 #include "unit/gltf/gltf_builder.h"
 #include "unit/gltf/packed_scenes.h"
 
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/scene_view.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -369,7 +369,7 @@ void compareReads(const Ordered& row, gltf::Scene scene) {
     if (row.contains("time")) {
         std::vector<std::size_t> animations(scene.animations.size());
         std::iota(animations.begin(), animations.end(), 0U);
-        scene_view::applyPose(scene_view::poseAt(scene, animations, row["time"].get<double>()), scene);
+        session::applyPose(session::poseAt(scene, animations, row["time"].get<double>()), scene);
     }
     const Json all = describe(scene);
     const Ordered reads = row.value("reads", Ordered::object());

@@ -6,7 +6,7 @@
 
 #include <glint/result.h>
 #include <glint/scene_view.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/scene_view.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -46,7 +46,7 @@ struct Movement {
     bool isSequence = false;                // files are numbered
     MotionView::Builds builds = MotionView::Builds::ByRule;
 
-    scene_view::Moment moment(std::size_t frame) const {
+    session::Moment moment(std::size_t frame) const {
         return {animations, seconds[frame]};
     }
 };

@@ -22,24 +22,24 @@ class FrameLoop {
 public:
     FrameLoop(const FrameSetup& setup, gltf::Scene& scene, RenderReport& report)
         : setup_(setup),
-          options_(scene_view::rendererOptions(setup.settings)),
+          options_(session::rendererOptions(setup.settings)),
           scene_(scene),
           report_(report),
           camera_(setup.camera) {}
 
     // The scene is uploaded in the pose of the first moment.
-    Status start(Context& context, std::shared_ptr<const Package> package, scene_view::SceneViewData data) {
+    Status start(Context& context, std::shared_ptr<const Package> package, session::SceneViewData data) {
         if (setup_.movement) {
             GLINT_TRY_DO(pose(0, data));
             data.moves = setup_.movement->seconds.size() > 1;
         }
         // Once for all pictures: a sequence would flicker otherwise.
-        sky_ = scene_view::chooseSky(setup_.settings, scene_, data);
+        sky_ = session::chooseSky(setup_.settings, scene_, data);
         if (setup_.environment == nullptr) {
             report_.sky = sky_;
         }
         const base::Clock::time_point begin = base::Clock::now();
-        GLINT_TRY(device_, scene_view::DeviceScene::upload(context, std::move(package), std::move(data)));
+        GLINT_TRY(device_, session::DeviceScene::upload(context, std::move(package), std::move(data)));
         const base::Clock::time_point onDevice = base::Clock::now();
         report_.start.uploadMs = base::millisecondsBetween(begin, onDevice);
         GLINT_TRY(renderer_, device_.makeRenderer(context, options_));
@@ -65,10 +65,9 @@ public:
     Result<LinearImage> render(FrameReport& frame) {
         // Reasons that are certain before the picture is made save the time that it takes.
         if (!warned_) {
-            warn(scene_view::nothingSeen(scene_, device_.data, camera_));
+            warn(session::nothingSeen(scene_, device_.data, camera_));
         }
-        FrameOptions options =
-            scene_view::frameOptions(setup_.settings, camera_.view, sky_, setup_.environment);
+        FrameOptions options = session::frameOptions(setup_.settings, camera_.view, sky_, setup_.environment);
         options.timing = Timing::Passes;
         options.time = static_cast<float>(frame.seconds);
         options.seed = report_.seed;
@@ -94,7 +93,7 @@ public:
         if (!warned_) {
             GLINT_TRY(const auto surfaces, renderer_->readSurfaces());
             if (std::ranges::all_of(surfaces, [](std::uint8_t isSurface) { return isSurface == 0; })) {
-                warn(scene_view::nothingSeen(scene_, device_.data, camera_, true));
+                warn(session::nothingSeen(scene_, device_.data, camera_, true));
             }
         }
         return setup_.arguments.denoise ? denoised(*image, *renderer_) : std::move(image);
@@ -165,14 +164,14 @@ private:
     }
 
     // Takes a moment of the movement.
-    Status pose(std::size_t moment, scene_view::SceneViewData& data) {
-        scene_view::moveTo(setup_.movement->moment(moment), scene_);
-        scene_view::poseSceneView(scene_, data);
-        if (scene_view::framesEverything(scene_, setup_.arguments.camera)) {
+    Status pose(std::size_t moment, session::SceneViewData& data) {
+        session::moveTo(setup_.movement->moment(moment), scene_);
+        session::poseSceneView(scene_, data);
+        if (session::framesEverything(scene_, setup_.arguments.camera)) {
             return okStatus();  // that one stands still
         }
-        GLINT_TRY(camera_, scene_view::chooseCameraAround(scene_, scene_view::Bounds{},
-                                                          setup_.arguments.camera, setup_.aspect));
+        GLINT_TRY(camera_, session::chooseCameraAround(scene_, session::Bounds{}, setup_.arguments.camera,
+                                                       setup_.aspect));
         return okStatus();
     }
 
@@ -216,11 +215,11 @@ private:
     RendererOptions options_;
     gltf::Scene& scene_;
     RenderReport& report_;
-    scene_view::CameraChoice camera_;
+    session::CameraChoice camera_;
     std::size_t samplesDone_ = 0;  // of all pictures
-    scene_view::SkyChoice sky_;
+    session::SkyChoice sky_;
     package::Effect onScreen_ = 0;  // for --coverage
-    scene_view::DeviceScene device_;
+    session::DeviceScene device_;
     std::unique_ptr<Renderer> renderer_;
     bool begun_ = false;   // a sample is complete
     bool warned_ = false;  // a picture shows nothing
@@ -240,7 +239,7 @@ Status write(FrameLoop& loop, const FrameSetup& setup, const FrameReport& frame,
 }  // namespace
 
 Status renderFrames(Context& context, std::shared_ptr<const Package> package, const FrameSetup& setup,
-                    gltf::Scene& scene, scene_view::SceneViewData data,
+                    gltf::Scene& scene, session::SceneViewData data,
                     const std::function<Result<bool>()>& accept, RenderReport& report) {
     FrameLoop loop(setup, scene, report);
     GLINT_TRY_DO(loop.start(context, std::move(package), std::move(data)));

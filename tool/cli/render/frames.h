@@ -7,8 +7,8 @@
 #include "cli/render/report.h"
 #include "gltf/scene.h"
 
-#include <glint/scene_view/camera.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/camera.h>
+#include <glint/session/session.h>
 
 #include <functional>
 #include <memory>
@@ -22,7 +22,7 @@ struct FrameSetup {
     const compiler::Settings& settings;        // that were decided
     const Environment* environment = nullptr;  // null: none
     const std::optional<Movement>& movement;   // nothing: the rest pose
-    scene_view::CameraChoice camera;           // of the first picture
+    session::CameraChoice camera;              // of the first picture
     double aspect = 1.0;                       // width / height
     const LinearImage* reference = nullptr;    // that of --view-reference; null: none
     // Gets how many samples of all pictures are done, and how many there are.
@@ -33,7 +33,7 @@ struct FrameSetup {
 // left in the last pose. `accept` is called before each picture is written. Its error ends the work; if it
 // returns false, the work ends without an error.
 Status renderFrames(Context& context, std::shared_ptr<const Package> package, const FrameSetup& setup,
-                    gltf::Scene& scene, scene_view::SceneViewData data,
+                    gltf::Scene& scene, session::SceneViewData data,
                     const std::function<Result<bool>()>& accept, RenderReport& report);
 
 }  // namespace glint::cli

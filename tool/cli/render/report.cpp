@@ -108,8 +108,8 @@ std::string titleOf(const PassTiming& pass, const RenderReport& report, Detail d
 }
 
 // Describes the choice in one line.
-std::string toText(const scene_view::SkyChoice& choice) {
-    const double mean = scene_view::meanIlluminance(choice.sky()) / std::numbers::pi;
+std::string toText(const session::SkyChoice& choice) {
+    const double mean = session::meanIlluminance(choice.sky()) / std::numbers::pi;
     const std::string what =
         fmt::format("{:.3g} cd/m² on average, {:.3g} times the default", mean, choice.scale);
     if (!choice.automatic) {
@@ -160,7 +160,7 @@ Status checkOrder(const RenderReport& report) {
 
 }  // namespace glint::cli
 
-namespace glint::scene_view {
+namespace glint::session {
 
 static base::Fields fieldsOf(const SkyChoice*) {
     using T = SkyChoice;
@@ -172,7 +172,7 @@ static base::Fields fieldsOf(const SkyChoice*) {
                                      "Log-average of the lights' illuminance in lux; null without lights.")};
 }
 
-}  // namespace glint::scene_view
+}  // namespace glint::session
 
 namespace glint {
 

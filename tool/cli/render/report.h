@@ -11,7 +11,7 @@
 #include <glint/measure/views.h>
 #include <glint/renderer.h>
 #include <glint/scene_view.h>
-#include <glint/scene_view/sky.h>
+#include <glint/session/sky.h>
 
 #include <cstdint>
 #include <map>
@@ -78,8 +78,8 @@ struct RenderReport {
         bool automatic = false;
     };
     std::optional<Sun> sun;
-    std::optional<scene_view::SkyChoice> sky;  // absent: an environment map lights the scene
-    std::optional<double> compileMs;           // absent: a package was given
+    std::optional<session::SkyChoice> sky;  // absent: an environment map lights the scene
+    std::optional<double> compileMs;        // absent: a package was given
     std::uint32_t cases = 0;
     std::vector<std::string> caseNames;  // by shader ID
     std::optional<EnvironmentReport> environment;

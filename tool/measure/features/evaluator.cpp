@@ -44,15 +44,15 @@ Result<std::unique_ptr<FeatureEvaluator>> FeatureEvaluator::create(const gltf::S
         settings.tracers = package::kTracerRayPipeline;
     }
     GLINT_TRY(const auto build, compiler::resolve(std::span(&scene, 1), settings));
-    GLINT_TRY(auto package, scene_view::compileAndLoad(build));
+    GLINT_TRY(auto package, session::compileAndLoad(build));
     GLINT_TRY(auto kernel, compileFeatureKernel(build));
     evaluator->layers_ = std::move(kernel.layers);
 
     observer.progress("making the pipeline");
-    scene_view::SceneViewData data = scene_view::makeSceneView(scene);
+    session::SceneViewData data = session::makeSceneView(scene);
     data.vertices = VertexForm::Full;  // frames of surfaces are compared exactly
     GLINT_TRY(evaluator->scene_,
-              scene_view::DeviceScene::upload(*evaluator->context_, std::move(package), std::move(data)));
+              session::DeviceScene::upload(*evaluator->context_, std::move(package), std::move(data)));
     GLINT_TRY(evaluator->kernel_, SceneKernel::create(*evaluator->scene_.gpu, kernel.spirv));
     return evaluator;
 }

@@ -6,7 +6,7 @@
 #include <glint/context.h>
 #include <glint/internal/scene_kernel.h>
 #include <glint/measure/check_materials.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/session.h>
 
 #include <cstdint>
 #include <memory>
@@ -38,7 +38,7 @@ private:
     FeatureEvaluator() = default;
 
     std::unique_ptr<Context> context_;
-    scene_view::DeviceScene scene_;
+    session::DeviceScene scene_;
     std::unique_ptr<SceneKernel> kernel_;
     std::vector<std::string> layers_;
 };

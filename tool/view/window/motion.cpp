@@ -1,7 +1,7 @@
 // The camera, and the moment of animations that is shown.
 #include "view/window/window.h"
 
-#include <glint/scene_view/camera.h>
+#include <glint/session/camera.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,12 +18,12 @@ CameraView Window::cameraView() const {
 // Returns the distance of a camera from the point that it orbits, in metres.
 double Window::distanceToMiddle(const CameraView& view) const {
     const Picture& picture = sides_[0]->picture;
-    if (const std::optional<scene_view::PlacedCamera> placed =
-            scene_view::parsePlacedCamera(sides_[0]->wanted.camera)) {
+    if (const std::optional<session::PlacedCamera> placed =
+            session::parsePlacedCamera(sides_[0]->wanted.camera)) {
         return std::hypot(placed->target[0] - placed->position[0], placed->target[1] - placed->position[1],
                           placed->target[2] - placed->position[2]);
     }
-    const scene_view::Bounds bounds = scene_view::posedBounds(picture.scene(), picture.data());
+    const session::Bounds bounds = session::posedBounds(picture.scene(), picture.data());
     double distance = 0.0;
     double size = 0.0;
     for (std::size_t i = 0; i < 3 && !bounds.empty(); ++i) {
@@ -45,8 +45,8 @@ void Window::startCamera() {
     cameraIsNew_ = false;
     const compiler::Settings& settings = one.picture.settings();
     const double aspect = static_cast<double>(settings.renderer.width) / settings.renderer.height;
-    const Result<scene_view::CameraChoice> choice =
-        scene_view::chooseCamera(one.picture.scene(), one.picture.data(), one.wanted.camera, aspect);
+    const Result<session::CameraChoice> choice =
+        session::chooseCamera(one.picture.scene(), one.picture.data(), one.wanted.camera, aspect);
     if (!choice) {
         report(choice.error());
         one.wanted.camera = "auto";
@@ -54,7 +54,7 @@ void Window::startCamera() {
         return;
     }
     if (const std::optional<Diagnostic> warning =
-            scene_view::nothingSeen(one.picture.scene(), one.picture.data(), *choice)) {
+            session::nothingSeen(one.picture.scene(), one.picture.data(), *choice)) {
         report(*warning);
     }
     if (orbitDistance_ <= 0.0) {
@@ -95,7 +95,7 @@ Status Window::applyPose() {
     } else {
         animations_.push_back(static_cast<std::size_t>(animationChoice_));
     }
-    const auto moment = poses_ ? std::optional(scene_view::Moment{animations_, time_}) : std::nullopt;
+    const auto moment = poses_ ? std::optional(session::Moment{animations_, time_}) : std::nullopt;
     for (std::unique_ptr<Side>& one : sides_) {
         if (!one || !one->picture.isReady() || one->picture.moment() == moment) {
             continue;
@@ -112,7 +112,7 @@ Status Window::applyPose() {
     if (!camera_.moved() && poses_) {
         // A camera of the scene may move, too.
         const Picture& picture = sides_[0]->picture;
-        if (!scene_view::framesEverything(picture.scene(), sides_[0]->wanted.camera)) {
+        if (!session::framesEverything(picture.scene(), sides_[0]->wanted.camera)) {
             cameraIsNew_ = true;
         }
     }

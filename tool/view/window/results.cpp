@@ -91,8 +91,8 @@ void Window::saveScreenshot() {
     compiler::Settings settings = withoutRebuilding(picture.build().resolved->asked, picture.settings());
     settings.strategy = picture.settings().strategy;
     // A camera that frames everything was placed for another moment.
-    const bool isPlaced = poses_ && scene_view::framesEverything(picture.scene(), sides_[0]->wanted.camera);
-    const std::string camera = isPlaced ? scene_view::toText(camera_.placed()) : camera_.name();
+    const bool isPlaced = poses_ && session::framesEverything(picture.scene(), sides_[0]->wanted.camera);
+    const std::string camera = isPlaced ? session::toText(camera_.placed()) : camera_.name();
     const std::vector<std::string> words =
         shotWords(settings, {scene_, file.string(), camera, static_cast<double>(exposure_),
                              poses_ ? fmt::format("{}", time_) : std::string(), animation, shown.view,

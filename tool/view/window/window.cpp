@@ -5,7 +5,7 @@
 #include "settings/descriptor.h"
 
 #include <glint/measure/observer.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/session.h>
 
 #define GLFW_INCLUDE_NONE
 #include <fmt/format.h>
@@ -57,7 +57,7 @@ Window::~Window() {
 }
 
 Status Window::openDevice() {
-    HeadlessOptions options = scene_view::deviceOptions(request_.settings);
+    HeadlessOptions options = session::deviceOptions(request_.settings);
     std::uint32_t count = 0;
     const char** const extensions = glfwGetRequiredInstanceExtensions(&count);
     if (extensions == nullptr) {

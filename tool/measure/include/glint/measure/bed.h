@@ -8,8 +8,8 @@
 #include <glint/measure/observer.h>
 #include <glint/measure/picture_filter.h>
 #include <glint/measure/settings.h>
-#include <glint/scene_view/session.h>
-#include <glint/scene_view/textures.h>
+#include <glint/session/session.h>
+#include <glint/session/textures.h>
 
 #include <cstdint>
 #include <map>
@@ -69,7 +69,7 @@ private:
     Status addSplit(FrameOptions frame, Exposure& exposure) const;
     Status showFramesBefore(FrameOptions frame) const;
 
-    std::shared_ptr<const scene_view::DeviceScene> scene_;
+    std::shared_ptr<const session::DeviceScene> scene_;
     std::shared_ptr<Renderer> renderer_;
     std::shared_ptr<PictureFilter> filter_;  // null: none
     std::uint32_t frames_ = 1;               // frames that the filter sees, with the picture
@@ -128,7 +128,7 @@ public:
     const SceneSize& sceneSize() const {
         return size_;
     }
-    const scene_view::SkyChoice& sky() const {
+    const session::SkyChoice& sky() const {
         return sky_;
     }
     std::uint32_t lights() const {
@@ -149,11 +149,11 @@ private:
           store_(store) {}
     Status resolveBase();
     Result<Mount> mount(const compiler::Settings& asked);
-    Result<scene_view::DeviceScene> mountScene(const compiler::Build& build,
-                                               std::shared_ptr<const Package> given);
+    Result<session::DeviceScene> mountScene(const compiler::Build& build,
+                                            std::shared_ptr<const Package> given);
     Result<std::shared_ptr<const gltf::SceneList>> scenesFor(const Package* package);
-    Result<std::shared_ptr<const scene_view::TextureSet>> textures(const compiler::Build& build,
-                                                                   const Package& package);
+    Result<std::shared_ptr<const session::TextureSet>> textures(const compiler::Build& build,
+                                                                const Package& package);
 
     const Observer& observer_;
     compiler::Settings base_;
@@ -165,13 +165,13 @@ private:
     compiler::ModuleCache* cache_;
     compiler::CacheStore* store_;
     // By the scene, by whether they are compressed, and whether emission is unpacked as well.
-    std::map<std::tuple<const gltf::Scene*, bool, bool>, std::shared_ptr<const scene_view::TextureSet>>
+    std::map<std::tuple<const gltf::Scene*, bool, bool>, std::shared_ptr<const session::TextureSet>>
         textures_;
     std::unique_ptr<Context> context_;
     std::unique_ptr<Environment> environment_;
     CameraView camera_;
     std::string cameraName_;
-    scene_view::SkyChoice sky_;
+    session::SkyChoice sky_;
     DeviceOptions features_;
     bool onCpu_ = false;
     std::uint32_t lights_ = 0;
@@ -179,7 +179,7 @@ private:
     // What is mounted, or was.
     struct Known {
         compiler::Settings settings;  // of the build
-        std::weak_ptr<const scene_view::DeviceScene> scene;
+        std::weak_ptr<const session::DeviceScene> scene;
         std::weak_ptr<Renderer> renderer;
     };
     std::vector<Known> known_;

@@ -1,5 +1,5 @@
 // How bright the default sky becomes, against what light formulas give by hand.
-#include <glint/scene_view/sky.h>
+#include <glint/session/sky.h>
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,11 @@
 #include <limits>
 #include <numbers>
 
-namespace glint::scene_view {
+namespace glint::session {
 namespace {
 
 constexpr gltf::Matrix4 kUnmoved{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-constexpr scene_view::SurfacePoint kFloor{{0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
+constexpr session::SurfacePoint kFloor{{0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
 
 LightView light(LightView::Type type, float intensity) {
     LightView light;
@@ -86,7 +86,7 @@ gltf::Node placed(double x, double z) {
     return node;
 }
 
-std::vector<scene_view::LitPatch> patchesOf(const gltf::Scene& scene, const std::vector<LightView>& lights) {
+std::vector<session::LitPatch> patchesOf(const gltf::Scene& scene, const std::vector<LightView>& lights) {
     return litPatches(scene, makeSceneView(scene), lights);
 }
 
@@ -98,9 +98,9 @@ gltf::Scene floorOf(double x, double z) {
     return scene;
 }
 
-double areaOf(const std::vector<scene_view::LitPatch>& patches) {
+double areaOf(const std::vector<session::LitPatch>& patches) {
     double area = 0.0;
-    for (const scene_view::LitPatch& patch : patches) {
+    for (const session::LitPatch& patch : patches) {
         area += patch.area;
     }
     return area;
@@ -112,7 +112,7 @@ TEST(SkyChoice, PatchesHaveTheArea) {
     // 20,000 triangles too small for a patch each, beside a large one.
     gltf::Scene scene = floorOf(100.0, 100.0);
     scene.nodes.resize(10001, placed(0.01, 0.01));
-    const std::vector<scene_view::LitPatch> patches = patchesOf(scene, {});
+    const std::vector<session::LitPatch> patches = patchesOf(scene, {});
     EXPECT_LT(patches.size(), 100U);
     EXPECT_NEAR(areaOf(patches) / (40000.0 + 4.0), 1.0, 1e-3);
     EXPECT_TRUE(patchesOf(gltf::Scene{}, {}).empty());
@@ -122,7 +122,7 @@ TEST(SkyChoice, PatchesHaveTheArea) {
 TEST(SkyChoice, PatchesFaceTheFront) {
     const std::vector<LightView> sun{light(LightView::Type::Directional, 10.0F)};
     for (const double x : {1.0, -1.0}) {
-        for (const scene_view::LitPatch& patch : patchesOf(floorOf(x, 1.0), sun)) {
+        for (const session::LitPatch& patch : patchesOf(floorOf(x, 1.0), sun)) {
             EXPECT_NEAR(patch.illuminance, 10.0, 1e-5) << x;
         }
     }
@@ -130,10 +130,10 @@ TEST(SkyChoice, PatchesFaceTheFront) {
 
 // On a plane without end half of what a lamp sends down falls within 60 degrees.
 TEST(SkyChoice, PatchesReceiveTheFluxOfALamp) {
-    const std::vector<scene_view::LitPatch> patches = patchesOf(floorOf(1e4, 1e4), {lampAbove(100.0F, 2.0F)});
+    const std::vector<session::LitPatch> patches = patchesOf(floorOf(1e4, 1e4), {lampAbove(100.0F, 2.0F)});
     double flux = 0.0;
     double bright = 0.0;
-    for (const scene_view::LitPatch& patch : patches) {
+    for (const session::LitPatch& patch : patches) {
         flux += patch.illuminance * patch.area;
         bright += patch.illuminance >= 100.0 / 4.0 / 8.0 ? patch.illuminance * patch.area : 0.0;
     }
@@ -167,7 +167,7 @@ TEST(SkyChoice, TheSizeOfTheGroundHardlyCounts) {
 TEST(SkyChoice, TheSkyBringsAsMuchAsTheLights) {
     EXPECT_NEAR(meanIlluminance({{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}), std::numbers::pi, 1e-6);
     for (const double lux : {0.005, 1.0, 1000.0, 1e6}) {
-        const scene_view::SkyChoice choice = skyForLights({{lux, 1.0}});
+        const session::SkyChoice choice = skyForLights({{lux, 1.0}});
         EXPECT_NEAR(meanIlluminance(choice.sky()) / lux, 1.0, 1e-5) << lux;
         EXPECT_TRUE(choice.automatic);
     }
@@ -175,7 +175,7 @@ TEST(SkyChoice, TheSkyBringsAsMuchAsTheLights) {
 
 TEST(SkyChoice, WithoutLightTheSkyStays) {
     EXPECT_EQ(skyForLights({}).scale, 1.0);
-    const scene_view::SkyChoice black = skyForLights(patchesOf(floorOf(1.0, 1.0), {lampAbove(0.0F, 2.0F)}));
+    const session::SkyChoice black = skyForLights(patchesOf(floorOf(1.0, 1.0), {lampAbove(0.0F, 2.0F)}));
     EXPECT_EQ(black.scale, 1.0);
     EXPECT_FALSE(black.lights.has_value());
 }
@@ -190,4 +190,4 @@ TEST(SkyChoice, ExtremeLightsGiveAFiniteSky) {
 }
 
 }  // namespace
-}  // namespace glint::scene_view
+}  // namespace glint::session

@@ -5,14 +5,14 @@
 
 #include <glint/result.h>
 #include <glint/scene_view.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/scene_view.h>
 
 #include <array>
 #include <optional>
 #include <string>
 #include <string_view>
 
-namespace glint::scene_view {
+namespace glint::session {
 
 // Returns the union of the transformed boxes of all instances in the world, which may be larger than the
 // geometry. Instances whose box is not finite are left out.
@@ -72,4 +72,4 @@ Result<CameraChoice> chooseCameraAround(const gltf::Scene& scene, const Bounds& 
 std::optional<Diagnostic> nothingSeen(const gltf::Scene& scene, const SceneViewData& view,
                                       const CameraChoice& camera, bool isCertain = false);
 
-}  // namespace glint::scene_view
+}  // namespace glint::session

@@ -4,7 +4,7 @@
 //     auto opened = open(file, settings, store);             // the scene, and the package that it is drawn
 //     with auto package = packageFor(build, opened->package, modules);  // `build` is what resolve() decided
 //     SceneViewData data = sceneView(build.settings, opened->scene);
-//     usePackage(*package, opened->scene, textures, data);   // loadTextures() of glint/scene_view/textures.h
+//     usePackage(*package, opened->scene, textures, data);   // loadTextures() of glint/session/textures.h
 //     auto scene = DeviceScene::upload(context, package, std::move(data));
 //     auto renderer = scene->makeRenderer(context, rendererOptions(build.settings));
 //     renderer->render(frameOptions(build.settings, camera, sky, environment), samples);
@@ -20,8 +20,8 @@
 #include <glint/package.h>
 #include <glint/renderer.h>
 #include <glint/result.h>
-#include <glint/scene_view/scene_view.h>
-#include <glint/scene_view/sky.h>
+#include <glint/session/scene_view.h>
+#include <glint/session/sky.h>
 
 #include <cstdint>
 #include <memory>
@@ -33,9 +33,9 @@ class CacheStore;
 class ModuleCache;
 }  // namespace glint::compiler
 
-namespace glint::scene_view {
+namespace glint::session {
 
-struct TextureOptions;  // glint/scene_view/textures.h
+struct TextureOptions;  // glint/session/textures.h
 
 // --- Reading ---
 
@@ -126,4 +126,4 @@ struct DeviceScene {
     Result<std::unique_ptr<Renderer>> makeRenderer(Context& context, const RendererOptions& options) const;
 };
 
-}  // namespace glint::scene_view
+}  // namespace glint::session

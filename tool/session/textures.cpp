@@ -4,7 +4,7 @@
 #include "gltf/codecs/basisu.h"
 #include "gltf/codecs/codecs.h"
 
-#include <glint/scene_view/textures.h>
+#include <glint/session/textures.h>
 
 #include <algorithm>
 #include <atomic>
@@ -14,7 +14,7 @@
 #include <thread>
 #include <utility>
 
-namespace glint::scene_view {
+namespace glint::session {
 
 namespace {
 
@@ -187,4 +187,4 @@ void useTextures(std::shared_ptr<const TextureSet> textures, SceneViewData& data
     data.textures = std::move(textures);
 }
 
-}  // namespace glint::scene_view
+}  // namespace glint::session

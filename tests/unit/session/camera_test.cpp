@@ -1,13 +1,13 @@
 #include "base/vectors.h"
 
-#include <glint/scene_view/camera.h>
+#include <glint/session/camera.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace glint::scene_view {
+namespace glint::session {
 namespace {
 
 struct Extents {
@@ -23,7 +23,7 @@ struct Extents {
 
 // Returns the box's corners in the image, whose edges are at -1 and 1. The result is infinite if a corner is
 // behind the camera.
-Extents project(const CameraView& camera, const scene_view::Bounds& box) {
+Extents project(const CameraView& camera, const session::Bounds& box) {
     const glm::dvec3 forward = base::toVector(camera.forward);
     const glm::dvec3 up = base::toVector(camera.up);
     const glm::dvec3 right = glm::cross(forward, up);
@@ -55,11 +55,10 @@ void expectFrame(const CameraView& camera) {
 }
 
 TEST(FramingCamera, FillsTheImageWithTheBox) {
-    const scene_view::Bounds boxes[] = {
-        {{-1, -1, -1}, {1, 1, 1}},        {{100, 200, 300}, {101, 200.1, 330}},
-        {{-1e-3, 0, 0}, {0, 1e-3, 2e-3}}, {{-5000, 0, -5000}, {5000, 10, 5000}},
-        {{0, 0, 0}, {3, 4, 0}},           {{0, 0, 0}, {0, 4, 0}}};
-    for (const scene_view::Bounds& box : boxes) {
+    const session::Bounds boxes[] = {{{-1, -1, -1}, {1, 1, 1}},        {{100, 200, 300}, {101, 200.1, 330}},
+                                     {{-1e-3, 0, 0}, {0, 1e-3, 2e-3}}, {{-5000, 0, -5000}, {5000, 10, 5000}},
+                                     {{0, 0, 0}, {3, 4, 0}},           {{0, 0, 0}, {0, 4, 0}}};
+    for (const session::Bounds& box : boxes) {
         for (const double aspect : {16.0 / 9.0, 1.0, 0.25}) {
             const CameraView camera = framingCamera(box, aspect);
             expectFrame(camera);
@@ -114,7 +113,7 @@ TEST(WorldBounds, CoverEveryInstance) {
     gltf::Node infinite = plain;
     infinite.world[12] = INFINITY;
     scene.nodes = {plain, moved, infinite};
-    const scene_view::Bounds bounds = worldBounds(makeSceneView(scene));
+    const session::Bounds bounds = worldBounds(makeSceneView(scene));
     EXPECT_EQ(bounds.min, (std::array<double, 3>{0, 0, 0}));
     EXPECT_EQ(bounds.max, (std::array<double, 3>{10, 2, 5}));
     EXPECT_TRUE(worldBounds({}).empty());
@@ -170,7 +169,7 @@ TEST(SceneCamera, FlatNodeIsAnError) {
 TEST(ChooseCamera, ByNameNumberAutoOrDefault) {
     const gltf::Scene scene = sceneWithCameras();
     const auto name = [&](const std::string& wanted) {
-        const Result<scene_view::CameraChoice> choice = chooseCamera(scene, {}, wanted, 1.0);
+        const Result<session::CameraChoice> choice = chooseCamera(scene, {}, wanted, 1.0);
         return choice ? choice->name : choice.error().id;
     };
     EXPECT_EQ(name("Wide"), "Wide");
@@ -180,10 +179,10 @@ TEST(ChooseCamera, ByNameNumberAutoOrDefault) {
     EXPECT_EQ(name(""), "Wide");
     EXPECT_EQ(name("3"), "camera-unknown");
     EXPECT_EQ(name("Wyde"), "camera-unknown");
-    const Result<scene_view::CameraChoice> none = chooseCamera(gltf::Scene{}, {}, "", 1.0);
+    const Result<session::CameraChoice> none = chooseCamera(gltf::Scene{}, {}, "", 1.0);
     ASSERT_TRUE(none);
     EXPECT_EQ(none->name, "auto");
 }
 
 }  // namespace
-}  // namespace glint::scene_view
+}  // namespace glint::session

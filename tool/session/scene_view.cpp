@@ -1,13 +1,13 @@
 #include "base/vectors.h"
 #include "gltf/motion/transform.h"
 
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/scene_view.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-namespace glint::scene_view {
+namespace glint::session {
 
 namespace {
 
@@ -416,4 +416,4 @@ LightView sunLight() {
     return sun;
 }
 
-}  // namespace glint::scene_view
+}  // namespace glint::session

@@ -1,12 +1,12 @@
 // Compares interpolation with values computed by hand from glTF 2.0, appendix C.
-#include "scene_view/interpolate.h"
+#include "session/interpolate.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-namespace glint::scene_view {
+namespace glint::session {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -18,20 +18,20 @@ void expectNear(const std::vector<double>& actual, const std::vector<double>& ex
     }
 }
 
-void expectNear(const scene_view::Quaternion& actual, const scene_view::Quaternion& expected) {
+void expectNear(const session::Quaternion& actual, const session::Quaternion& expected) {
     for (glm::length_t i = 0; i < 4; ++i) {
         EXPECT_NEAR(actual[i], expected[i], 1e-12) << "component " << i;
     }
 }
 
 // Returns a turn about Z.
-scene_view::Quaternion turned(double angle) {
+session::Quaternion turned(double angle) {
     return {std::cos(0.5 * angle), 0.0, 0.0, std::sin(0.5 * angle)};
 }
 
-std::vector<float> floats(std::initializer_list<scene_view::Quaternion> quaternions) {
+std::vector<float> floats(std::initializer_list<session::Quaternion> quaternions) {
     std::vector<float> values;
-    for (const scene_view::Quaternion& quaternion : quaternions) {
+    for (const session::Quaternion& quaternion : quaternions) {
         for (glm::length_t i = 0; i < 4; ++i) {
             values.push_back(static_cast<float>(quaternion[i]));
         }
@@ -99,12 +99,12 @@ TEST(Interpolation, RotationsTurnEvenly) {
 
 TEST(Interpolation, RotationsTakeTheShorterWay) {
     // The short way from 0 to 270 degrees is 90 degrees back.
-    const scene_view::Quaternion half = slerp(turned(0.0), turned(1.5 * kPi), 0.5);
-    const scene_view::Quaternion expected = turned(-0.25 * kPi);
+    const session::Quaternion half = slerp(turned(0.0), turned(1.5 * kPi), 0.5);
+    const session::Quaternion expected = turned(-0.25 * kPi);
     expectNear(half.w * expected.w < 0.0 ? -half : half, expected);
     // Tests equal quaternions, and opposite quaternions of one rotation.
     expectNear(slerp(turned(1.0), turned(1.0), 0.3), turned(1.0));
-    const scene_view::Quaternion q = turned(1.0);
+    const session::Quaternion q = turned(1.0);
     expectNear(slerp(q, -q, 0.7), q);
     // Some of these are so close that sines of the angle are lost in rounding, and some are just above that.
     for (const double angle : {1e-12, 1e-8, 1e-6, 1e-3}) {
@@ -118,7 +118,7 @@ TEST(Interpolation, RotationsAreUnit) {
     expectNear(sampleRotation(step, 0.0), {0, 0, 0, 1});
     const gltf::AnimationSampler none = makeSampler(gltf::Interpolation::Step, {0.0F}, 4, {0, 0, 0, 0});
     expectNear(sampleRotation(none, 0.0), {1, 0, 0, 0});
-    const scene_view::Quaternion zero(0.0, 0.0, 0.0, 0.0);
+    const session::Quaternion zero(0.0, 0.0, 0.0, 0.0);
     const gltf::AnimationSampler spline =
         makeSampler(gltf::Interpolation::CubicSpline, {0.0F, 1.0F}, 4,
                     floats({zero, turned(0.0), zero, zero, turned(kPi), zero}));
@@ -127,4 +127,4 @@ TEST(Interpolation, RotationsAreUnit) {
 }
 
 }  // namespace
-}  // namespace glint::scene_view
+}  // namespace glint::session

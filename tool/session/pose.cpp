@@ -1,13 +1,13 @@
 #include "base/vectors.h"
 #include "gltf/motion/animatable.h"
 #include "gltf/motion/transform.h"
-#include "scene_view/interpolate.h"
+#include "session/interpolate.h"
 
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/scene_view.h>
 
 #include <algorithm>
 
-namespace glint::scene_view {
+namespace glint::session {
 
 namespace {
 
@@ -194,4 +194,4 @@ std::vector<std::array<double, 3>> deformedPositions(const gltf::Primitive& prim
     return positions;
 }
 
-}  // namespace glint::scene_view
+}  // namespace glint::session

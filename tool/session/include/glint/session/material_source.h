@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace glint::scene_view {
+namespace glint::session {
 
 // The arrays behind a MaterialSource.
 struct MaterialSourceData {
@@ -45,4 +45,4 @@ MaterialSourceData makeMaterialSource(const Package& package, const compiler::Ma
                                       std::span<const AttributeMask> attributes = {},
                                       materials::FeatureMask keptLobes = materials::kLobeMask);
 
-}  // namespace glint::scene_view
+}  // namespace glint::session

@@ -1,10 +1,10 @@
 #include "scene/deformed.h"
 
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/scene_view.h>
 
 #include <gtest/gtest.h>
 
-namespace glint::scene_view {
+namespace glint::session {
 namespace {
 
 constexpr gltf::Matrix4 kIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -65,4 +65,4 @@ TEST(Deform, WhatDeformsIsFound) {
 }
 
 }  // namespace
-}  // namespace glint::scene_view
+}  // namespace glint::session

@@ -3,7 +3,7 @@
 #include "image/tone.h"
 #include "scene/deformed.h"
 
-#include <glint/scene_view/sky.h>
+#include <glint/session/sky.h>
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include <numbers>
 #include <utility>
 
-namespace glint::scene_view {
+namespace glint::session {
 
 namespace {
 
@@ -291,4 +291,4 @@ Result<std::unique_ptr<Environment>> loadEnvironment(Context& context, const std
     return environment;
 }
 
-}  // namespace glint::scene_view
+}  // namespace glint::session

@@ -2,13 +2,13 @@
 #include "plan/effects.h"
 #include "plan/plan.h"
 
-#include <glint/scene_view/material_source.h>
+#include <glint/session/material_source.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <interop/scene.h>
 
-namespace glint::scene_view {
+namespace glint::session {
 
 namespace {
 
@@ -95,4 +95,4 @@ MaterialSourceData makeMaterialSource(const Package& package, const compiler::Ma
     return data;
 }
 
-}  // namespace glint::scene_view
+}  // namespace glint::session

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace glint::scene_view {
+namespace glint::session {
 
 using Quaternion = glm::dquat;
 
@@ -23,4 +23,4 @@ std::vector<double> sampleNumbers(const gltf::AnimationSampler& sampler, double 
 // spherical. A rotation of length 0 has no meaning, and counts as no rotation.
 Quaternion sampleRotation(const gltf::AnimationSampler& sampler, double time);
 
-}  // namespace glint::scene_view
+}  // namespace glint::session

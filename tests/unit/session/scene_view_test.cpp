@@ -1,5 +1,5 @@
-#include <glint/scene_view/camera.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/camera.h>
+#include <glint/session/scene_view.h>
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace glint::scene_view {
+namespace glint::session {
 namespace {
 
 constexpr gltf::Matrix4 kNoTransform{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -35,7 +35,7 @@ TEST(SceneView, NumbersStayAsInTheScene) {
     scene.meshes[3].primitives = {triangle(), triangle()};
     scene.nodes = {placing(3), placing(1), placing(-1), placing(2), placing(3)};
 
-    const scene_view::SceneViewData data = makeSceneView(scene);
+    const session::SceneViewData data = makeSceneView(scene);
     ASSERT_EQ(data.primitives.size(), 3U);
     EXPECT_EQ(data.primitives[0].mesh, 1U);
     EXPECT_EQ(data.primitives[0].primitive, 1U);
@@ -61,7 +61,7 @@ TEST(SceneView, PlacementsAreInstances) {
     scene.instancings[0].translations = {{0, 0, 0}, {1, 0, 0}, {5, 0, 7}};
     scene.nodes[1].shown = scene.nodes[1].canShow = false;
     scene.nodes[2].shown = false;
-    const scene_view::SceneViewData data = makeSceneView(scene);
+    const session::SceneViewData data = makeSceneView(scene);
     ASSERT_EQ(data.instances.size(), 4U);
     EXPECT_EQ(data.primitives.size(), 1U) << "geometry is there once";
     EXPECT_EQ(data.instances[2].objectToWorld[3], 10.0F);
@@ -76,7 +76,7 @@ TEST(SceneView, AttributesAreViewsOfTheScene) {
     scene.meshes[0].primitives = {triangle()};
     scene.meshes[0].primitives[0].texCoords1 = {{0, 0}, {1, 0}, {0, 1}};
     scene.nodes = {placing(0)};
-    const scene_view::SceneViewData data = makeSceneView(scene);
+    const session::SceneViewData data = makeSceneView(scene);
     const PrimitiveView& view = data.primitives[0];
     EXPECT_EQ(view.positions.data(), scene.meshes[0].primitives[0].positions.data());
     EXPECT_EQ(view.texCoords1.size(), 3U);
@@ -97,7 +97,7 @@ TEST(SceneView, ImagesKeepTheirNumbers) {
     scene.images[1].width = 1;
     scene.images[1].height = 1;
     scene.images[1].pixels = {1, 2, 3, 4};
-    const scene_view::SceneViewData data = makeSceneView(scene);
+    const session::SceneViewData data = makeSceneView(scene);
     ASSERT_EQ(data.images.size(), 2U);
     EXPECT_TRUE(data.images[0].pixels.empty());
     EXPECT_EQ(data.images[1].pixels[3], 4);
@@ -116,7 +116,7 @@ TEST(SceneView, LightsCarryTheirIntensity) {
     light.position = {1, 2, 3};
     light.outerConeAngle = 0.3F;
     scene.lights = {light};
-    const scene_view::SceneViewData data = makeSceneView(scene);
+    const session::SceneViewData data = makeSceneView(scene);
     ASSERT_EQ(data.lights.size(), 1U);
     EXPECT_EQ(data.lights[0].type, LightView::Type::Spot);
     EXPECT_EQ(data.lights[0].intensity, (gltf::Float3{8.0F, 4.0F, 2.0F}));
@@ -267,4 +267,4 @@ TEST(SceneView, SunIsAUnitVectorThatTravelsDown) {
 }
 
 }  // namespace
-}  // namespace glint::scene_view
+}  // namespace glint::session

@@ -9,8 +9,8 @@
 #include "scene/deformed.h"
 
 #include <glint/embedded_file.h>
-#include <glint/scene_view/session.h>
-#include <glint/scene_view/textures.h>
+#include <glint/session/session.h>
+#include <glint/session/textures.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,7 +21,7 @@
 #include <utility>
 #include <vector>
 
-namespace glint::scene_view {
+namespace glint::session {
 
 namespace {
 
@@ -308,4 +308,4 @@ Result<std::unique_ptr<Renderer>> DeviceScene::makeRenderer(Context& context,
     return Renderer::create(context, *package, *gpu, options);
 }
 
-}  // namespace glint::scene_view
+}  // namespace glint::session

@@ -2,7 +2,7 @@
 // that uses both needs no other code between them:
 //
 //     Result<Scene> scene = importScene("room.gltf", {.decodeImages = true});
-//     scene_view::SceneViewData data = scene_view::makeSceneView(*scene);
+//     session::SceneViewData data = session::makeSceneView(*scene);
 //     GpuScene::upload(context, package, data.view());
 #pragma once
 
@@ -20,9 +20,9 @@
 #include <span>
 #include <vector>
 
-namespace glint::scene_view {
+namespace glint::session {
 
-struct TextureSet;  // glint/scene_view/textures.h
+struct TextureSet;  // glint/session/textures.h
 
 // An axis-aligned box. It is empty if any min is above its max.
 struct Bounds {
@@ -162,4 +162,4 @@ std::vector<std::array<double, 3>> deformedPositions(const gltf::Primitive& prim
                                                      std::span<const double> weights,
                                                      std::span<const gltf::Matrix4> joints);
 
-}  // namespace glint::scene_view
+}  // namespace glint::session

@@ -2,7 +2,7 @@
 #include "base/vectors.h"
 #include "scene/deformed.h"
 
-#include <glint/scene_view/camera.h>
+#include <glint/session/camera.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-namespace glint::scene_view {
+namespace glint::session {
 
 namespace {
 
@@ -600,4 +600,4 @@ std::optional<Diagnostic> nothingSeen(const gltf::Scene& scene, const SceneViewD
         fmt::format("the camera {} sees no surface: {}", camera.name, fmt::join(reasons, "; ")), hint);
 }
 
-}  // namespace glint::scene_view
+}  // namespace glint::session

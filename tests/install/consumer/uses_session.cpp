@@ -2,9 +2,9 @@
 // which it compiles in memory. It has no device, so it stops before the upload.
 #include "gltf/import.h"
 
-#include <glint/scene_view/camera.h>
-#include <glint/scene_view/scene_view.h>
-#include <glint/scene_view/session.h>
+#include <glint/session/camera.h>
+#include <glint/session/scene_view.h>
+#include <glint/session/session.h>
 
 #include <cstddef>
 #include <iostream>
@@ -18,21 +18,21 @@ int main(int argc, char** argv) {
         std::cerr << glint::toString(scene.error()) << '\n';
         return 1;
     }
-    const glint::scene_view::SceneViewData data = glint::scene_view::makeSceneView(*scene);
+    const glint::session::SceneViewData data = glint::session::makeSceneView(*scene);
     const glint::SceneView view = data.view();
-    const glint::Result<glint::scene_view::CameraChoice> camera =
-        glint::scene_view::chooseCamera(*scene, data, "auto", 16.0 / 9.0);
+    const glint::Result<glint::session::CameraChoice> camera =
+        glint::session::chooseCamera(*scene, data, "auto", 16.0 / 9.0);
     const auto build = glint::compiler::resolve(std::span(&*scene, 1), glint::compiler::CompileSettings());
     if (!build) {
         std::cerr << glint::toString(build.error()) << '\n';
         return 1;
     }
-    const glint::Result<glint::Package> package = glint::scene_view::compileAndLoad(*build);
+    const glint::Result<glint::Package> package = glint::session::compileAndLoad(*build);
     if (!camera || !package) {
         std::cerr << glint::toString(camera ? package.error() : camera.error()) << '\n';
         return 1;
     }
-    const glint::Status matches = glint::scene_view::checkPackage(*package, *build);
+    const glint::Status matches = glint::session::checkPackage(*package, *build);
     if (!matches) {
         std::cerr << glint::toString(matches.error()) << '\n';
         return 1;

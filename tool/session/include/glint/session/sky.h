@@ -9,7 +9,7 @@
 #include <glint/renderer.h>
 #include <glint/result.h>
 #include <glint/scene_view.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/scene_view.h>
 
 #include <array>
 #include <memory>
@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-namespace glint::scene_view {
+namespace glint::session {
 
 // A point of a surface in world space, with the unit normal of its triangle's front.
 struct SurfacePoint {
@@ -78,4 +78,4 @@ Result<std::unique_ptr<Environment>> loadEnvironment(Context& context, const std
                                                      const EnvironmentOptions& options,
                                                      std::vector<Diagnostic>& notes);
 
-}  // namespace glint::scene_view
+}  // namespace glint::session

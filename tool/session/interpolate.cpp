@@ -1,9 +1,9 @@
-#include "scene_view/interpolate.h"
+#include "session/interpolate.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace glint::scene_view {
+namespace glint::session {
 
 namespace {
 
@@ -106,4 +106,4 @@ Quaternion sampleRotation(const gltf::AnimationSampler& sampler, double time) {
     return quaternionOf([&](std::size_t number) { return cubic(sampler, at, number); });
 }
 
-}  // namespace glint::scene_view
+}  // namespace glint::session

@@ -1,4 +1,4 @@
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/scene_view.h>
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace glint::scene_view {
+namespace glint::session {
 namespace {
 
 constexpr gltf::Matrix4 kPoseIdentity{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
@@ -62,7 +62,7 @@ TEST(Pose, ChannelsMoveTheirNodesAndWhatIsBelow) {
                           {0, gltf::AnimationPath::Translation, shift},
                           {1, gltf::AnimationPath::Weights, morph}};
     const std::array<std::size_t, 1> first{0};
-    const scene_view::Pose pose = poseAt(scene, first, 0.5);
+    const session::Pose pose = poseAt(scene, first, 0.5);
     // The node is turned by 90 degrees about Z, twice as long in X, at (3, 0, 0). The child's (0, 2, 0) turns
     // to (-2, 0, 0).
     expectNear(pose.worlds[0], {0, 2, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 3, 0, 0, 1});
@@ -132,4 +132,4 @@ TEST(Pose, JointsTakeTheMeshFromItsBindPose) {
 }
 
 }  // namespace
-}  // namespace glint::scene_view
+}  // namespace glint::session

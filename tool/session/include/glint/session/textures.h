@@ -6,7 +6,7 @@
 
 #include <glint/context.h>
 #include <glint/result.h>
-#include <glint/scene_view/scene_view.h>
+#include <glint/session/scene_view.h>
 
 #include <cstdint>
 #include <memory>
@@ -16,7 +16,7 @@ namespace glint::compiler {
 class CacheStore;
 }  // namespace glint::compiler
 
-namespace glint::scene_view {
+namespace glint::session {
 
 struct TextureOptions {
     gltf::FitOptions fit;
@@ -43,4 +43,4 @@ Result<std::shared_ptr<const TextureSet>> loadTextures(const gltf::Scene& scene,
 // Gives the images to `data`, which keeps them.
 void useTextures(std::shared_ptr<const TextureSet> textures, SceneViewData& data);
 
-}  // namespace glint::scene_view
+}  // namespace glint::session
