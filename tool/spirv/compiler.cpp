@@ -51,7 +51,7 @@ std::size_t lengthAt(std::span<const std::uint32_t> words, std::size_t at) {
 
 // Calls visit(at, opcode) for each instruction of a valid module.
 template <typename Visit>
-void forEachInstruction(std::span<const std::uint32_t> words, const Visit& visit) {
+void visitInstructions(std::span<const std::uint32_t> words, const Visit& visit) {
     for (std::size_t at = kSpirvHeaderWords; at < words.size(); at += lengthAt(words, at)) {
         visit(at, static_cast<spv::Op>(words[at] & spv::OpCodeMask));
     }
@@ -64,7 +64,7 @@ std::map<std::uint32_t, Fate> fatesOf(std::span<const std::uint32_t> words,
         const bool imported = std::ranges::find(names.imported, function.name) != names.imported.end();
         fates[function.id] = imported ? Fate::Declared : Fate::Defined;
     }
-    forEachInstruction(words, [&](std::size_t at, spv::Op opcode) {
+    visitInstructions(words, [&](std::size_t at, spv::Op opcode) {
         if (opcode == spv::OpEntryPoint && !names.keepsEntryPoint) {
             fates[words[at + 2]] = Fate::Removed;
         }
@@ -83,7 +83,7 @@ std::set<std::uint32_t> removedResults(std::span<const std::uint32_t> words,
                                        const std::map<std::uint32_t, Fate>& fates) {
     std::set<std::uint32_t> removed;
     Fate fate = Fate::Defined;
-    forEachInstruction(words, [&](std::size_t at, spv::Op opcode) {
+    visitInstructions(words, [&](std::size_t at, spv::Op opcode) {
         if (opcode == spv::OpFunction) {
             fate = fates.at(words[at + 2]);
         }
@@ -131,7 +131,7 @@ Parts splitModule(std::span<const std::uint32_t> words, const std::map<std::uint
     Parts parts;
     Fate fate = Fate::Defined;
     bool inFunction = false;
-    forEachInstruction(words, [&](std::size_t at, spv::Op opcode) {
+    visitInstructions(words, [&](std::size_t at, spv::Op opcode) {
         const std::span<const std::uint32_t> instruction = words.subspan(at, lengthAt(words, at));
         if (opcode == spv::OpFunction) {
             inFunction = true;
