@@ -2,7 +2,7 @@
 # Glint::scene_view, Glint::measure, Glint::glint and glint_add_materials(), from a prefix or from a build folder.
 include(CMakePackageConfigHelpers)
 
-set(glint_targets glint_opacity glint_package glint_runtime)
+set(glint_targets glint_package glint_runtime)
 if(GLINT_BUILD_COMPILER)
   # glint_base, glint_image, glint_inspect and glint_synthetic, as glint_package, are what the others link; they are no interface of their own.
   list(APPEND glint_targets glint_base glint_gltf glint_compiler glint_image glint_inspect glint_synthetic glint_scene_view
@@ -17,7 +17,7 @@ foreach(companion glint-view glint-verify)
     install(TARGETS ${companion} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
   endif()
 endforeach()
-install(DIRECTORY runtime/include/glint DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(DIRECTORY runtime/include/glint DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} PATTERN internal EXCLUDE)
 install(DIRECTORY shaders/interop DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/shaders FILES_MATCHING PATTERN "*.h")
 if(GLINT_BUILD_COMPILER)
   # The headers that those of the libraries include. All others are internal.

@@ -7,7 +7,7 @@
 
 #include <glint/context.h>
 #include <glint/renderer.h>
-#include <glint/scene_edit.h>
+#include <glint/scene.h>
 #include <glint/scene_view/package.h>
 #include <glint/scene_view/scene_view.h>
 

@@ -7,7 +7,7 @@
 #include "materials/packs.h"
 
 #include <glint/context.h>
-#include <glint/package_watch.h>
+#include <glint/package.h>
 #include <glint/renderer.h>
 #include <glint/scene_view/camera.h>
 #include <glint/scene_view/scene_view.h>

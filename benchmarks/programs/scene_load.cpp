@@ -10,12 +10,12 @@
 #include <glint/context.h>
 #include <glint/measure/render_settings.h>
 #include <glint/renderer.h>
+#include <glint/scene.h>
 #include <glint/scene_view/camera.h>
 #include <glint/scene_view/package.h>
 #include <glint/scene_view/scene_view.h>
 #include <glint/scene_view/sky.h>
 #include <glint/scene_view/textures.h>
-#include <glint/texture_stream.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -6,8 +6,7 @@
 #include "pipelines.h"
 
 #include <glint/context.h>
-#include <glint/engine_scene.h>
-#include <glint/ray_steps.h>
+#include <glint/steps.h>
 
 #include <array>
 #include <memory>

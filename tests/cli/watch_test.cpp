@@ -3,7 +3,7 @@
 #include "cli/many_keys.h"
 #include "cli/tiny_scene.h"
 
-#include <glint/package_watch.h>
+#include <glint/package.h>
 
 #include <algorithm>
 #include <chrono>

@@ -1,7 +1,7 @@
 // Fuzzes tables.bin. Its hashes would reject every change at once, so each input is loaded three times: as it
 // is; with a header whose hash fits; and also with modules that fit the tables.
 #include "fuzz/fuzz_target.h"
-#include "package/interop_hash.h"
+#include "package/package.h"
 
 #include <glint/package.h>
 #include <glint/package_format.h>

@@ -1,6 +1,6 @@
 #include "compute_device.h"
 
-#include "context/vulkan_error.h"
+#include "context/vulkan_table.h"
 
 #include <algorithm>
 #include <vector>

@@ -2,7 +2,7 @@
 // devices.
 #pragma once
 
-#include "context/context_state.h"
+#include "context/context.h"
 
 #include <memory>
 #include <string>

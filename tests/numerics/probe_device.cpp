@@ -1,8 +1,8 @@
 #include "probe_device.h"
 
 #include "compute_device.h"
-#include "context/vulkan_error.h"
-#include "package/shader_modules.h"
+#include "context/shader_modules.h"
+#include "context/vulkan_table.h"
 #include "spirv/compiler.h"
 
 #include <bit>

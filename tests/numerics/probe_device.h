@@ -3,7 +3,6 @@
 
 #include "context/commands.h"
 #include "context/resources.h"
-#include "context/timer.h"
 #include "evaluate.h"
 #include "probe_kernel.h"
 

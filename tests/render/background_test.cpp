@@ -2,7 +2,7 @@
 #include "context/upload.h"
 #include "render/hall.h"
 #include "render/harness.h"
-#include "renderer/renderer_state.h"
+#include "renderer/renderer.h"
 
 #include <gtest/gtest.h>
 

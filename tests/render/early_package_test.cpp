@@ -5,7 +5,7 @@
 #include "render/edited_scene.h"
 #include "render/pixel_test.h"
 #include "render/replacement.h"
-#include "renderer/renderer_state.h"
+#include "renderer/renderer.h"
 #include "resolve/resolve.h"
 #include "support/shared_modules.h"
 #include "support/temporary_folder.h"

@@ -1,6 +1,6 @@
 #include "render/edited_scene.h"
 
-#include "context/context_state.h"
+#include "context/context.h"
 #include "render/scene_builder.h"
 
 #include <algorithm>

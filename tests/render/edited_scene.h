@@ -4,7 +4,7 @@
 
 #include "render/harness.h"
 
-#include <glint/scene_edit.h>
+#include <glint/scene.h>
 #include <glint/scene_view/material_source.h>
 #include <glint/scene_view/scene_view.h>
 

@@ -1,5 +1,5 @@
 // Tests pictures lit by environment maps whose pixels can be computed by hand.
-#include "context/context_state.h"
+#include "context/context.h"
 #include "render/pixel_test.h"
 
 #include <glint/environment.h>

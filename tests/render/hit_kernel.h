@@ -3,7 +3,7 @@
 
 #include "interop/frame.h"
 #include "render/harness.h"
-#include "scene/scene_kernel_state.h"
+#include "scene/scene_kernel.h"
 
 #include <cstdint>
 #include <memory>

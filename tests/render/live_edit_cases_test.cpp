@@ -1,10 +1,10 @@
 // What edits refuse, materials without a case, buffers that grow, and other strategies.
-#include "edit/editor_state.h"
 #include "render/edited_scene.h"
 #include "render/moving_scenes.h"
 #include "render/scene_builder.h"
+#include "scene/scene_editor.h"
 
-#include <glint/engine_scene.h>
+#include <glint/steps.h>
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 // Edits of emissive triangles in packages in which these are lights.
-#include "edit/editor_state.h"
 #include "render/edited_scene.h"
 #include "render/scene_builder.h"
 #include "scene/gpu_scene_state.h"
+#include "scene/scene_editor.h"
 
 #include <gtest/gtest.h>
 

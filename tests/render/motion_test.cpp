@@ -1,11 +1,11 @@
 // Tests scenes that move: each pose must give the picture of the same scene uploaded in that pose.
+#include "data/traversal_order.h"
 #include "gltf/motion/animatable.h"
 #include "gltf/motion/transform.h"
 #include "render/harness.h"
 #include "render/moving_scenes.h"
 #include "render/scene_builder.h"
-#include "scene/gpu_scene_state.h"
-#include "scene/leaf_order.h"
+#include "scene/scene_motion.h"
 #include "support/halved_tree.h"
 
 #include <glint/scene_view/camera.h>

@@ -1,7 +1,7 @@
 // The data that an OrderKernel reads and writes on the device.
 #pragma once
 
-#include "context/context_state.h"
+#include "context/context.h"
 #include "context/resources.h"
 #include "interop/frame.h"
 #include "render/order_kernel.h"

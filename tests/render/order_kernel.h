@@ -2,7 +2,6 @@
 #pragma once
 
 #include "context/commands.h"
-#include "context/timer.h"
 #include "emit/compile.h"
 #include "interop/frame.h"
 

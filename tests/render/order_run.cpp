@@ -1,8 +1,8 @@
 // The runs and timings of an OrderKernel.
-#include "context/context_state.h"
+#include "context/context.h"
 #include "render/order_buffers.h"
 #include "render/order_kernel.h"
-#include "renderer/pass_dependencies.h"
+#include "renderer/hit_passes.h"
 #include "renderer/tile_sort.h"
 
 #include <algorithm>

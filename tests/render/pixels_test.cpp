@@ -1,6 +1,6 @@
 // Tests pictures whose pixels can be computed by hand: orientation, colour, reflection, facing, samples. Each
 // test holds for both strategies.
-#include "context/context_state.h"
+#include "context/context.h"
 #include "render/pixel_test.h"
 #include "support/effect_bits.h"
 

@@ -8,8 +8,8 @@
 #include "support/nightly.h"
 #include "unit/gltf/gltf_builder.h"
 
+#include <glint/package_modules.h>
 #include <glint/scene_view/camera.h>
-#include <glint/strategies.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

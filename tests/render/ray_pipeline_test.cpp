@@ -1,6 +1,6 @@
 // Tests ray tracing pipelines: every strategy gives the same picture with every tracer, and so does a device
 // without ray queries.
-#include "context/context_state.h"
+#include "context/context.h"
 #include "render/hall.h"
 #include "render/pixel_test.h"
 #include "render/ways.h"

@@ -1,17 +1,15 @@
 // The steps that a host records for rays of its own.
 #include "base/files.h"
 #include "context/commands.h"
-#include "context/readback.h"
 #include "render/harness.h"
 #include "render/rooms.h"
 #include "render/scene_builder.h"
 #include "render/traced_frame.h"
-#include "renderer/pass_dependencies.h"
-#include "renderer/renderer_state.h"
+#include "renderer/renderer.h"
 #include "resolve/builtin.h"
 #include "support/temporary_folder.h"
 
-#include <glint/ray_steps.h>
+#include <glint/steps.h>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include "render/edited_scene.h"
 #include "render/replacement.h"
 #include "render/ways.h"
-#include "renderer/renderer_state.h"
+#include "renderer/renderer.h"
 
 #include <algorithm>
 #include <cstddef>

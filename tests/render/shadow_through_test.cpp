@@ -4,7 +4,6 @@
 #include "render/ways.h"
 
 #include <glint/package_modules.h>
-#include <glint/strategies.h>
 
 #include <algorithm>
 #include <cmath>

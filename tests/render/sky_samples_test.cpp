@@ -1,7 +1,7 @@
 // Samples of the sky as shaders draw them: their density is that of the choice, and integrates to 1.
 #include "render/hit_kernel.h"
 #include "render/scene_builder.h"
-#include "sky/environment_state.h"
+#include "sky/environment.h"
 
 #include <glint/environment.h>
 

@@ -9,8 +9,8 @@
 #include "scene/texture_stream.h"
 #include "unit/gltf/block_files.h"
 
+#include <glint/scene.h>
 #include <glint/scene_view/package.h>
-#include <glint/texture_stream.h>
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,6 @@
 #include "render/traced_frame.h"
 
-#include "context/readback.h"
-#include "renderer/renderer_state.h"
+#include "renderer/renderer.h"
 #include "support/effect_bits.h"
 
 #include <algorithm>

@@ -1,9 +1,9 @@
 // Tests the order of triangles and instances in acceleration structures: pictures do not depend on it, and
 // the device uses it.
-#include "context/context_state.h"
+#include "context/context.h"
+#include "data/traversal_order.h"
 #include "render/hit_kernel.h"
 #include "render/scene_builder.h"
-#include "scene/leaf_order.h"
 #include "support/halved_tree.h"
 
 #include <algorithm>

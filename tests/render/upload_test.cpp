@@ -1,16 +1,16 @@
 // Tests scenes and environments whose upload is recorded into a command buffer of the host's, and their
 // compaction.
-#include "context/context_state.h"
+#include "context/context.h"
 #include "interop/scene.h"
 #include "render/edited_scene.h"
 #include "render/moving_scenes.h"
 #include "render/scene_builder.h"
-#include "steps/engine_scene_state.h"
+#include "steps/engine_scene.h"
 
-#include <glint/engine_scene.h>
 #include <glint/environment.h>
+#include <glint/scene.h>
 #include <glint/scene_view/pose.h>
-#include <glint/texture_stream.h>
+#include <glint/steps.h>
 
 #include <gtest/gtest.h>
 

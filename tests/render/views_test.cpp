@@ -1,5 +1,5 @@
 // What views read: layers whose values can be known, equal in every strategy.
-#include "context/context_state.h"
+#include "context/context.h"
 #include "render/edited_scene.h"
 #include "render/hall.h"
 #include "render/layered_scene.h"

@@ -2,7 +2,7 @@
 // declarations.
 #pragma once
 
-#include <glint/effects.h>
+#include <glint/package_format.h>
 
 #include <cstdint>
 

@@ -2,7 +2,7 @@
 // shows without a device how good an order is.
 #pragma once
 
-#include "scene/leaf_order.h"
+#include "data/traversal_order.h"
 
 #include <cstdint>
 #include <span>

@@ -1,5 +1,5 @@
 // The shape of the source tree: how large folders are, and which part may know which.
-#include <glint/strategies.h>
+#include <glint/package_modules.h>
 
 #include <gtest/gtest.h>
 
@@ -30,12 +30,13 @@ constexpr std::string_view kParts[] = {"base",      "materials",  "plan",    "gl
 // The first part that may use the runtime and Vulkan, and not only the headers that say what a package is and
 // what a renderer is asked for.
 constexpr std::string_view kFirstWithRuntime = "inspect";
-constexpr std::string_view kPlainHeaders[] = {
-    "glint/effects.h",        "glint/alpha_states.h",    "glint/embedded_file.h",
-    "glint/layers.h",         "glint/names.h",           "glint/opacity_micromap.h",
-    "glint/package_format.h", "glint/package_modules.h", "glint/renderer_options.h",
-    "glint/result.h",         "glint/scene_view.h",      "glint/strategies.h",
-    "glint/texel_format.h"};
+constexpr std::string_view kPlainHeaders[] = {"glint/layers.h",          "glint/package_format.h",
+                                              "glint/package_modules.h", "glint/renderer_options.h",
+                                              "glint/result.h",          "glint/scene_view.h"};
+
+// The folders of the runtime, in the same order.
+constexpr std::string_view kRuntimeFolders[] = {"modules", "context", "package",  "data", "sky",
+                                                "scene",   "frame",   "renderer", "steps"};
 
 std::optional<std::size_t> rankOf(std::string_view part) {
     const auto* const found = std::ranges::find(kParts, part);
@@ -175,9 +176,9 @@ TEST(Structure, TheCompilerKnowsNoVulkan) {
 // A strategy is its row and its folder. What else names one would have to be touched for a new one.
 TEST(Structure, StrategiesAreNamedByTheirRowsAndFolders) {
     const std::set<std::string> allowed{
-        "runtime/src/modules/strategies.cpp",  // the rows
-        "runtime/include/glint/strategies.h",  // names for programs, and what is chosen without a setting
-        "tool/plan/strategy_constants.h",      // measured costs, which a script writes
+        "runtime/src/modules/strategies.cpp",       // the rows
+        "runtime/include/glint/package_modules.h",  // names for programs, and the default
+        "tool/plan/strategy_constants.h",           // measured costs, which a script writes
     };
     // Strategies in constants, quotes, options and paths, and modules in quotes.
     std::vector<std::string> namings{"kStrategyUber", "kStrategyVisibility", "kStrategySortedUber",
@@ -218,8 +219,6 @@ TEST(Structure, StrategiesAreNamedByTheirRowsAndFolders) {
 }
 
 TEST(Structure, TheRuntimeIncludesNothingOfTheTool) {
-    const std::vector<std::string> folders{"context",  "package", "scene", "motion",
-                                           "renderer", "sky",     "steps"};
     int includes = 0;
     visitSources("runtime", [&](const fs::path& source) {
         visitIncludes(source, [&](const std::string& included) {
@@ -227,7 +226,7 @@ TEST(Structure, TheRuntimeIncludesNothingOfTheTool) {
                 << source << " includes " << included;
             const std::size_t slash = included.find('/');
             const std::string folder = slash == std::string::npos ? std::string() : included.substr(0, slash);
-            if (std::ranges::find(folders, folder) != folders.end()) {
+            if (std::ranges::find(kRuntimeFolders, folder) != std::end(kRuntimeFolders)) {
                 ++includes;
                 EXPECT_TRUE(fs::exists(fs::path(GLINT_SOURCE_DIR "/runtime/src") / included))
                     << source << " includes " << included;
@@ -245,9 +244,28 @@ std::string unitOf(const std::string& included) {
     return path.substr(0, path.rfind('.'));
 }
 
+// The units that each unit includes.
+using Units = std::map<std::string, std::set<std::string>>;
+
 // Types stand below what uses them, so no unit includes itself through others.
+void expectNoCycles(const Units& includes) {
+    for (const auto& [start, direct] : includes) {
+        std::set<std::string> reached;
+        std::vector<std::string> open(direct.begin(), direct.end());
+        while (!open.empty()) {
+            const std::string unit = std::move(open.back());
+            open.pop_back();
+            if (const auto found = includes.find(unit);
+                found != includes.end() && reached.insert(unit).second) {
+                open.insert(open.end(), found->second.begin(), found->second.end());
+            }
+        }
+        EXPECT_FALSE(reached.contains(start)) << start << " includes itself through others";
+    }
+}
+
 TEST(Structure, UnitsOfTheToolIncludeNoCycles) {
-    std::map<std::string, std::set<std::string>> includes;
+    Units includes;
     for (const char* const folder : {"tool", "verify"}) {
         visitSources(folder, [&](const fs::path& source) {
             std::string path = fs::relative(source, GLINT_SOURCE_DIR).generic_string();
@@ -267,19 +285,71 @@ TEST(Structure, UnitsOfTheToolIncludeNoCycles) {
         });
     }
     EXPECT_GT(includes.size(), 200U);
-    for (const auto& [start, direct] : includes) {
-        std::set<std::string> reached;
-        std::vector<std::string> open(direct.begin(), direct.end());
-        while (!open.empty()) {
-            const std::string unit = std::move(open.back());
-            open.pop_back();
-            if (const auto found = includes.find(unit);
-                found != includes.end() && reached.insert(unit).second) {
-                open.insert(open.end(), found->second.begin(), found->second.end());
-            }
-        }
-        EXPECT_FALSE(reached.contains(start)) << start << " includes itself through others";
+    expectNoCycles(includes);
+}
+
+// Returns the units of the runtime by folder and name, such as "scene/gpu_scene". A public header belongs to
+// the source of its name, or to the folder of its name. All others are plain, as the package's modules are.
+Units unitsOfTheRuntime() {
+    std::map<std::string, std::string> folders;  // by the name of a public header
+    visitSources("runtime/src", [&](const fs::path& source) {
+        folders[source.stem().string()] = source.parent_path().filename().string();
+    });
+    for (const std::string_view folder : kRuntimeFolders) {
+        folders.emplace(folder, folder);
     }
+    const auto runtimeUnit = [&](const std::string& included) {
+        const fs::path path(included);
+        const std::string name = path.stem().string();
+        if (!included.starts_with("glint/")) {
+            return path.parent_path().filename().string() + "/" + name;
+        }
+        const auto found = folders.find(name);
+        return (found == folders.end() ? "modules" : found->second) + "/" + name;
+    };
+    Units includes;
+    visitSources("runtime", [&](const fs::path& source) {
+        const std::string path = fs::relative(source, GLINT_SOURCE_DIR "/runtime/include").generic_string();
+        const std::string unit = runtimeUnit(path);
+        std::set<std::string>& included = includes[unit];
+        visitIncludes(source, [&](const std::string& name) {
+            const std::string other = runtimeUnit(name);
+            const bool isOfRuntime = std::ranges::find(kRuntimeFolders, other.substr(0, other.find('/'))) !=
+                                     std::end(kRuntimeFolders);
+            if (isOfRuntime && other != unit) {
+                included.insert(other);
+            }
+        });
+    });
+    return includes;
+}
+
+TEST(Structure, UnitsOfTheRuntimeIncludeNoCycles) {
+    const Units includes = unitsOfTheRuntime();
+    EXPECT_GT(includes.size(), 50U);
+    expectNoCycles(includes);
+}
+
+TEST(Structure, FoldersOfTheRuntimeIncludeThoseBeforeThem) {
+    const auto rank = [](const std::string& unit) {
+        return std::ranges::find(kRuntimeFolders, unit.substr(0, unit.find('/'))) - kRuntimeFolders;
+    };
+    for (const auto& [unit, included] : unitsOfTheRuntime()) {
+        EXPECT_LT(rank(unit), std::ssize(kRuntimeFolders)) << unit;
+        for (const std::string& other : included) {
+            EXPECT_LE(rank(other), rank(unit)) << unit << " includes " << other;
+        }
+    }
+}
+
+// An engine includes few headers. Those in internal/ are for Glint's own tools, and not installed.
+TEST(Structure, TheRuntimeHasFewPublicHeaders) {
+    int headers = 0;
+    visitSources("runtime/include/glint", [&](const fs::path& source) {
+        headers += source.parent_path().filename() == "internal" ? 0 : 1;
+    });
+    EXPECT_GT(headers, 5);
+    EXPECT_LE(headers, 16);
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 
 #include "cli/table.h"
 
+#include <glint/package_modules.h>
 #include <glint/renderer_options.h>
-#include <glint/strategies.h>
 
 #include <fmt/format.h>
 

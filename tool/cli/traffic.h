@@ -3,7 +3,7 @@
 
 #include "base/json.h"
 
-#include <glint/frame_traffic.h>
+#include <glint/internal/frame_traffic.h>
 #include <glint/package.h>
 
 #include <string>

@@ -10,7 +10,7 @@
 
 #include <glint/context.h>
 #include <glint/package.h>
-#include <glint/package_pipelines.h>
+#include <glint/pipeline_statistics.h>
 #include <glint/result.h>
 
 #include <cstddef>

@@ -2,7 +2,7 @@
 // define them.
 #pragma once
 
-#include <glint/effects.h>
+#include <glint/package_format.h>
 
 #include <cstdint>
 #include <string>

@@ -3,8 +3,8 @@
 
 #include "materials/material_model.h"
 
-#include <glint/names.h>
 #include <glint/package_format.h>
+#include <glint/result.h>
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 
 #include "plan/cost.h"
 
-#include <glint/names.h>
+#include <glint/result.h>
 
 #include <cstdint>
 #include <span>

@@ -5,8 +5,8 @@
 #include "plan/plan.h"
 #include "plan/strategy_choice.h"
 
-#include <glint/names.h>
 #include <glint/package_modules.h>
+#include <glint/result.h>
 
 #include <cstdint>
 #include <filesystem>

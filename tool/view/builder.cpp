@@ -10,8 +10,8 @@
 
 #include <glint/measure/render_settings.h>
 #include <glint/measure/target.h>
+#include <glint/package_modules.h>
 #include <glint/scene_view/package.h>
-#include <glint/strategies.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

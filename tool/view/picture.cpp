@@ -4,11 +4,11 @@
 #include "settings/table.h"
 
 #include <glint/measure/render_settings.h>
+#include <glint/scene.h>
 #include <glint/scene_view/environment.h>
 #include <glint/scene_view/package.h>
 #include <glint/scene_view/pose.h>
 #include <glint/scene_view/textures.h>
-#include <glint/texture_stream.h>
 
 #include <fmt/format.h>
 

@@ -2,18 +2,15 @@
 #pragma once
 
 #include <glint/context.h>
-#include <glint/effects.h>
-#include <glint/gpu_scene.h>
 #include <glint/image.h>
 #include <glint/layers.h>
-#include <glint/memory_report.h>
 #include <glint/package.h>
-#include <glint/package_replacement.h>
-#include <glint/pass_timing.h>
-#include <glint/pipeline_progress.h>
+#include <glint/package_format.h>
+#include <glint/package_modules.h>
 #include <glint/pipeline_statistics.h>
 #include <glint/renderer_options.h>
 #include <glint/result.h>
+#include <glint/scene.h>
 #include <glint/scene_view.h>
 
 #include <vulkan/vulkan_core.h>

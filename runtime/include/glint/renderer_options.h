@@ -1,17 +1,18 @@
-// The options of a renderer and of each of its frames.
+// The options of a renderer and of each of its frames, and what it reports of them.
 #pragma once
 
-#include <glint/effects.h>
-#include <glint/names.h>
 #include <glint/package_format.h>
+#include <glint/package_modules.h>
+#include <glint/result.h>
 #include <glint/scene_view.h>
-#include <glint/strategies.h>
 
 #include <array>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace glint {
 
@@ -173,6 +174,81 @@ struct FrameOptions {
     // 1/1000 s after some two hours; wrap the time before that.
     float time = 0.0F;
     Timing timing = Timing::Frame;
+};
+
+// --- The times of a frame's passes ---
+
+// The part of a frame that a time belongs to. docs/design.md explains it in "Passes of a frame".
+enum class Pass : std::uint32_t {
+    Frame,  // the whole frame, with Timing::Frame
+    Hits,   // a round of rays, from their list to their shaded hits, with Timing::Frame
+    Gbuffer,
+    Lighting,
+    EffectWalk,
+    EffectRays,
+    PathRays,
+    RayDispatch,
+    Trace,
+    Count,
+    Offset,
+    Copy,
+    CheckOrder,
+    Shade,  // the shading of hits, except in passes of one case
+    ShadeCase,
+    ShadowDispatch,
+    Shadow,
+    Compose,
+};
+
+struct PassTiming {
+    std::string name;  // for people; it is also the debug label of the pass
+    double milliseconds = 0.0;
+    Pass pass = Pass::Frame;
+    std::uint32_t shaderId = 0;  // the shader ID of Pass::ShadeCase
+};
+
+// --- Pipelines that threads make while frames are drawn ---
+
+// The progress of the threads that make pipelines while frames are drawn.
+struct PipelineProgress {
+    std::uint32_t wanted = 0;   // pipelines that are made in the background
+    std::uint32_t made = 0;     // those that were made, or have failed
+    std::uint32_t adopted = 0;  // those that recordings use
+    // The first error. Its passes keep the fallback, or the draft.
+    std::optional<Diagnostic> error{};
+    // True if the next recording may be a draft (RendererOptions::draft), and the number of drafts so far.
+    bool draft = false;
+    std::uint64_t drafts = 0;
+};
+
+// --- Reports about a renderer whose package is replaced by another one of the same scene ---
+
+// The pipelines and buffers that Renderer::replacePackage() keeps, and those that it makes.
+struct PackageReplacement {
+    // Pipelines that the new package has in common with the earlier one: their SPIR-V is the same.
+    std::uint32_t pipelinesKept = 0;
+    // Pipelines that are made, in the call or in the background.
+    std::uint32_t pipelinesMade = 0;
+    // The shader IDs, in the new package, of the cases with a pipeline of their own that is made. Only
+    // strategies with a dispatch for each case have such pipelines.
+    std::vector<std::uint32_t> casesMade;
+    // Buffers of the frame that have the size that the new package needs, and those that are made.
+    std::uint32_t buffersKept = 0;
+    std::uint32_t buffersMade = 0;
+};
+
+// The progress of the last replacement.
+struct ReplacementProgress {
+    std::uint64_t inUse = 0;    // replacements that recordings have begun to use
+    bool pending = false;       // a package waits; recordings use the old one
+    bool ready = false;         // the next recording uses the package that waits
+    std::uint32_t missing = 0;  // pipelines that it still waits for
+    // Recordings use an early package (PackageShape::early): they show the surfaces with edited features as
+    // drafts, and all else as before the edit. The whole package follows.
+    bool early = false;
+    // Why the last replacement was given up; recordings continue with the old package. The next
+    // replacePackage() clears it.
+    std::optional<Diagnostic> error{};
 };
 
 }  // namespace glint

@@ -1,11 +1,12 @@
-// Recording, submission and waiting, and barriers.
+// Recording, submission and waiting, barriers, and the device time of stretches of a command buffer.
 #pragma once
 
-#include "context/device_handle.h"
+#include "context/device_objects.h"
 
 #include <cstdint>
 #include <functional>
 #include <type_traits>
+#include <vector>
 
 namespace glint {
 
@@ -54,6 +55,20 @@ struct MemoryDependency {
     VkAccessFlags2 toAccess = 0;
 };
 
+// Makes all later commands wait for all earlier ones. So frames run one after the other, whichever renderer
+// recorded the previous one.
+inline constexpr MemoryDependency kAllToAll{
+    VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+    VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
+
+// Orders fills and copies that write the same memory.
+inline constexpr MemoryDependency kTransferToTransfer{
+    VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+    VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT};
+
+inline constexpr MemoryDependency kCopyToHost{VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                                              VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT};
+
 void recordDependency(const Context::State& context, VkCommandBuffer commands,
                       const MemoryDependency& dependency);
 
@@ -70,5 +85,33 @@ struct ImageTransition {
 
 void recordTransition(const Context::State& context, VkCommandBuffer commands,
                       const ImageTransition& transition);
+
+class Timer {
+public:
+    // Makes a timer for at most `capacity` stretches. On a queue family without timestamps the timer records
+    // nothing.
+    static Result<Timer> create(Context::State& context, std::uint32_t capacity);
+
+    bool available() const {
+        return pool_.get() != VK_NULL_HANDLE;
+    }
+    // Forgets earlier results. It must be recorded outside a render pass, before the first stretch of a
+    // recording.
+    void recordReset(VkCommandBuffer commands) const;
+    // Each mark waits for all earlier commands, so that stretches do not overlap.
+    void recordBegin(VkCommandBuffer commands, std::uint32_t stretch) const;
+    void recordEnd(VkCommandBuffer commands, std::uint32_t stretch) const;
+    // Returns the milliseconds of stretches [0, count), which the device must have completed. Errors:
+    // "timings-unavailable", "timings-pending", "vulkan-call".
+    Result<std::vector<double>> read(std::uint32_t count) const;
+
+private:
+    explicit Timer(Context::State& context) : context_(&context) {}
+    void recordMark(VkCommandBuffer commands, std::uint32_t query) const;
+
+    Context::State* context_;
+    UniqueQueryPool pool_;
+    std::uint32_t queries_ = 0;
+};
 
 }  // namespace glint

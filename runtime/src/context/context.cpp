@@ -1,7 +1,6 @@
-#include "context/context_state.h"
-#include "context/requirements.h"
-#include "context/texel_formats.h"
-#include "context/vulkan_error.h"
+#include "context/context.h"
+
+#include "context/vulkan_table.h"
 
 #include <glint/package_modules.h>
 

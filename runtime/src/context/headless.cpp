@@ -1,7 +1,6 @@
 // A headless device that Glint makes: the instance, validation, and the choice of the physical device.
-#include "context/context_state.h"
-#include "context/requirements.h"
-#include "context/vulkan_error.h"
+#include "context/context.h"
+#include "context/vulkan_table.h"
 
 #include <algorithm>
 #include <cstring>

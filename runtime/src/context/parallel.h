@@ -15,9 +15,10 @@ inline std::uint32_t threadsOfMachine() {
     return std::max(std::thread::hardware_concurrency(), 1U);
 }
 
-// Calls `work` for 0 to count - 1, on as many threads as the machine runs at once.
+// Calls `work` for 0 to count - 1, in this order, on `threads` threads. If the system gives fewer, fewer are
+// used.
 template <typename Work>
-void forEach(std::size_t count, const Work& work) {
+void forEach(std::size_t count, const Work& work, std::uint32_t threads = threadsOfMachine()) {
     std::atomic<std::size_t> next{0};
     const auto take = [&] {
         for (std::size_t i = next++; i < count; i = next++) {
@@ -25,7 +26,7 @@ void forEach(std::size_t count, const Work& work) {
         }
     };
     std::vector<std::thread> helpers;
-    for (std::uint32_t i = 1; i < std::min<std::size_t>(threadsOfMachine(), count); ++i) {
+    for (std::uint32_t i = 1; i < std::min<std::size_t>(threads, count); ++i) {
         try {
             helpers.emplace_back(take);
         } catch (const std::system_error&) {

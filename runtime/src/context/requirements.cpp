@@ -1,8 +1,9 @@
-#include "context/requirements.h"
-
+#include "context/context.h"
+#include "context/vulkan_table.h"
 #include "interop/frame.h"
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <utility>
 
@@ -294,6 +295,202 @@ std::string joinNames(const std::vector<std::string>& names) {
         text += names[i];
     }
     return text;
+}
+
+namespace {
+
+Status queryExtensions(const InstanceTable& table, VkPhysicalDevice device, DeviceReport& report) {
+    std::vector<VkExtensionProperties> extensions;
+    VkResult result = VK_INCOMPLETE;
+    // Layers may come and go between the two calls.
+    while (result == VK_INCOMPLETE) {
+        std::uint32_t count = 0;
+        result = table.EnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+        if (result == VK_SUCCESS) {
+            extensions.resize(count);
+            result = table.EnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
+            extensions.resize(count);
+        }
+    }
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkEnumerateDeviceExtensionProperties", result);
+    }
+    for (const VkExtensionProperties& extension : extensions) {
+        report.extensions.emplace_back(extension.extensionName);
+    }
+    return okStatus();
+}
+
+// Below Vulkan 1.3 the chains of queryFeatures() are not defined, so the report then has the version only.
+void queryFeatures(const InstanceTable& table, VkPhysicalDevice device, DeviceReport& report) {
+    VkPhysicalDeviceVulkan11Properties subgroup{};
+    subgroup.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES;
+    VkPhysicalDeviceProperties2 properties{};
+    properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
+    properties.pNext = &subgroup;
+    table.GetPhysicalDeviceProperties2(device, &properties);
+    report.subgroupStages = subgroup.subgroupSupportedStages;
+    report.subgroupOperations = subgroup.subgroupSupportedOperations;
+    const VkPhysicalDeviceLimits& limits = properties.properties.limits;
+    report.maxPushConstantBytes = limits.maxPushConstantsSize;
+    report.maxWorkgroupThreads =
+        std::min(limits.maxComputeWorkGroupInvocations, limits.maxComputeWorkGroupSize[0]);
+
+    table.GetPhysicalDeviceFeatures2(device, &report.features.features);
+}
+
+bool hasGraphicsQueue(const InstanceTable& table, VkPhysicalDevice device) {
+    std::uint32_t count = 0;
+    table.GetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+    std::vector<VkQueueFamilyProperties> families(count);
+    table.GetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+    constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+    return std::ranges::any_of(families, [](const VkQueueFamilyProperties& family) {
+        return (family.queueFlags & kNeeded) == kNeeded;
+    });
+}
+
+}  // namespace
+
+Status queryDevice(const InstanceTable& table, VkPhysicalDevice device, DeviceReport& report) {
+    VkPhysicalDeviceProperties properties{};
+    table.GetPhysicalDeviceProperties(device, &properties);
+    report.apiVersion = properties.apiVersion;
+    GLINT_TRY_DO(queryExtensions(table, device, report));
+    // A device leaves structures of extensions that it lacks untouched, so the query starts from cleared
+    // features.
+    clearFeatures(report);
+    if (report.apiVersion >= DeviceRequirements::kApiVersion) {
+        queryFeatures(table, device, report);
+    }
+    report.hasQueue = hasGraphicsQueue(table, device);
+    return okStatus();
+}
+
+namespace {
+
+// Fills `report` through the system's loader. Returns the names of everything that this needs and the system
+// lacks.
+std::vector<std::string> askLoader(VkPhysicalDevice device, DeviceReport& report) {
+    if (device == VK_NULL_HANDLE) {
+        return {"a physical device"};
+    }
+    Result<std::shared_ptr<VulkanLibrary>> library = VulkanLibrary::open();
+    if (!library) {
+        return {"a Vulkan loader (libvulkan.so.1)"};
+    }
+    // The loader exports these functions for any instance, and the handle decides which driver answers.
+    InstanceTable table;
+#define GLINT_LOAD(name)                                                         \
+    table.name = reinterpret_cast<PFN_vk##name>((*library)->symbol("vk" #name)); \
+    if (table.name == nullptr) {                                                 \
+        return {"vk" #name " in the Vulkan loader"};                             \
+    }
+    GLINT_INSTANCE_FUNCTIONS(GLINT_LOAD)
+#undef GLINT_LOAD
+    if (Status status = queryDevice(table, device, report); !status) {
+        return {status.error().message};
+    }
+    return {};
+}
+
+}  // namespace
+
+std::vector<std::string> missingRequirements(VkPhysicalDevice device) {
+    DeviceReport report;
+    std::vector<std::string> missing = askLoader(device, report);
+    return missing.empty() ? missingFrom(report) : missing;
+}
+
+void DeviceRequirements::leaveOutLacking(VkPhysicalDevice device) {
+    DeviceReport report;
+    if (askLoader(device, report).empty()) {
+        glint::leaveOutLacking(report, *this);
+    }
+}
+
+std::uint32_t deviceTracers(VkPhysicalDevice device) {
+    DeviceReport report;
+    const bool complete = askLoader(device, report).empty() && missingFrom(report).empty();
+    return complete ? tracersOf(report) : 0U;
+}
+
+namespace {
+
+struct FormatPair {
+    VkFormat linear;
+    VkFormat srgb;
+};
+
+// Indexed by TexelFormat.
+constexpr std::array<FormatPair, kTexelFormatCount> kVulkanFormats{{
+    {VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R8G8B8A8_SRGB},
+    {VK_FORMAT_R16G16B16A16_UNORM, VK_FORMAT_UNDEFINED},
+    {VK_FORMAT_BC1_RGBA_UNORM_BLOCK, VK_FORMAT_BC1_RGBA_SRGB_BLOCK},
+    {VK_FORMAT_BC2_UNORM_BLOCK, VK_FORMAT_BC2_SRGB_BLOCK},
+    {VK_FORMAT_BC3_UNORM_BLOCK, VK_FORMAT_BC3_SRGB_BLOCK},
+    {VK_FORMAT_BC4_UNORM_BLOCK, VK_FORMAT_UNDEFINED},
+    {VK_FORMAT_BC5_UNORM_BLOCK, VK_FORMAT_UNDEFINED},
+    {VK_FORMAT_BC7_UNORM_BLOCK, VK_FORMAT_BC7_SRGB_BLOCK},
+    {VK_FORMAT_ETC2_R8G8B8_UNORM_BLOCK, VK_FORMAT_ETC2_R8G8B8_SRGB_BLOCK},
+    {VK_FORMAT_ETC2_R8G8B8A1_UNORM_BLOCK, VK_FORMAT_ETC2_R8G8B8A1_SRGB_BLOCK},
+    {VK_FORMAT_ETC2_R8G8B8A8_UNORM_BLOCK, VK_FORMAT_ETC2_R8G8B8A8_SRGB_BLOCK},
+    {VK_FORMAT_EAC_R11_UNORM_BLOCK, VK_FORMAT_UNDEFINED},
+    {VK_FORMAT_EAC_R11G11_UNORM_BLOCK, VK_FORMAT_UNDEFINED},
+    {VK_FORMAT_ASTC_4x4_UNORM_BLOCK, VK_FORMAT_ASTC_4x4_SRGB_BLOCK},
+    {VK_FORMAT_ASTC_5x4_UNORM_BLOCK, VK_FORMAT_ASTC_5x4_SRGB_BLOCK},
+    {VK_FORMAT_ASTC_5x5_UNORM_BLOCK, VK_FORMAT_ASTC_5x5_SRGB_BLOCK},
+    {VK_FORMAT_ASTC_6x5_UNORM_BLOCK, VK_FORMAT_ASTC_6x5_SRGB_BLOCK},
+    {VK_FORMAT_ASTC_6x6_UNORM_BLOCK, VK_FORMAT_ASTC_6x6_SRGB_BLOCK},
+    {VK_FORMAT_ASTC_8x5_UNORM_BLOCK, VK_FORMAT_ASTC_8x5_SRGB_BLOCK},
+    {VK_FORMAT_ASTC_8x6_UNORM_BLOCK, VK_FORMAT_ASTC_8x6_SRGB_BLOCK},
+    {VK_FORMAT_ASTC_8x8_UNORM_BLOCK, VK_FORMAT_ASTC_8x8_SRGB_BLOCK},
+    {VK_FORMAT_ASTC_10x5_UNORM_BLOCK, VK_FORMAT_ASTC_10x5_SRGB_BLOCK},
+    {VK_FORMAT_ASTC_10x6_UNORM_BLOCK, VK_FORMAT_ASTC_10x6_SRGB_BLOCK},
+    {VK_FORMAT_ASTC_10x8_UNORM_BLOCK, VK_FORMAT_ASTC_10x8_SRGB_BLOCK},
+    {VK_FORMAT_ASTC_10x10_UNORM_BLOCK, VK_FORMAT_ASTC_10x10_SRGB_BLOCK},
+    {VK_FORMAT_ASTC_12x10_UNORM_BLOCK, VK_FORMAT_ASTC_12x10_SRGB_BLOCK},
+    {VK_FORMAT_ASTC_12x12_UNORM_BLOCK, VK_FORMAT_ASTC_12x12_SRGB_BLOCK},
+}};
+
+VkComponentSwizzle swizzleOf(TexelChannel channel) {
+    constexpr VkComponentSwizzle kSwizzles[] = {VK_COMPONENT_SWIZZLE_R,    VK_COMPONENT_SWIZZLE_G,
+                                                VK_COMPONENT_SWIZZLE_B,    VK_COMPONENT_SWIZZLE_A,
+                                                VK_COMPONENT_SWIZZLE_ZERO, VK_COMPONENT_SWIZZLE_ONE};
+    return kSwizzles[static_cast<std::uint32_t>(channel)];
+}
+
+}  // namespace
+
+VkFormat vulkanFormat(TexelFormat format, bool srgb) {
+    const FormatPair& pair = kVulkanFormats[static_cast<std::size_t>(format)];
+    return srgb ? pair.srgb : pair.linear;
+}
+
+VkComponentMapping vulkanComponents(const TexelChannels& channels) {
+    return {swizzleOf(channels[0]), swizzleOf(channels[1]), swizzleOf(channels[2]), swizzleOf(channels[3])};
+}
+
+TexelFormats queryTexelFormats(const InstanceTable& instance, VkPhysicalDevice device) {
+    constexpr VkFormatFeatureFlags kTexture = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT |
+                                              VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT |
+                                              VK_FORMAT_FEATURE_TRANSFER_DST_BIT;
+    TexelFormats formats;
+    for (std::uint32_t i = 0; i < kTexelFormatCount; ++i) {
+        const auto format = static_cast<TexelFormat>(i);
+        for (const bool srgb : {false, true}) {
+            const VkFormat vulkan = vulkanFormat(format, srgb);
+            if (vulkan == VK_FORMAT_UNDEFINED || format == TexelFormat::Rgba16) {
+                continue;
+            }
+            VkFormatProperties properties{};
+            instance.GetPhysicalDeviceFormatProperties(device, vulkan, &properties);
+            if ((properties.optimalTilingFeatures & kTexture) == kTexture) {
+                formats.add(format, srgb);
+            }
+        }
+    }
+    return formats;
 }
 
 }  // namespace glint

@@ -240,7 +240,7 @@ void Uploader::addMips(const DeviceImage& target, std::uint32_t given) {
 
 void StagedCopies::record(VkCommandBuffer commands, std::uint64_t frameNumber) {
     frame = frameNumber;
-    staging = uploader->record(commands);
+    kept = uploader->record(commands);
     recordDependency(context, commands, kToAll);
 }
 

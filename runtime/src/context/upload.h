@@ -4,8 +4,9 @@
 #include "context/commands.h"
 #include "context/resources.h"
 
-#include <glint/texel_format.h>
+#include <glint/scene_view.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -115,23 +116,37 @@ private:
 
 // Copies that are recorded into a host's command buffer, with their staging memory.
 struct StagedCopies {
-    explicit StagedCopies(Context::State& contextState)
-        : context(contextState), pool(contextState), uploader(Uploader::createDeferred(contextState, pool)) {}
+    // `mostStaged` is as in Uploader::createDeferred().
+    explicit StagedCopies(Context::State& contextState, VkDeviceSize mostStaged = Uploader::kUnlimited)
+        : context(contextState),
+          pool(contextState),
+          uploader(Uploader::createDeferred(contextState, pool, mostStaged)) {}
 
     // Records the uploader's commands, and makes their results visible to all later commands.
     void record(VkCommandBuffer commands, std::uint64_t frameNumber);
 
     Context::State& context;
-    MemoryPool pool;  // of the staging memory. Members are destroyed in reverse order.
-    std::unique_ptr<Uploader> uploader;
-    std::vector<Buffer> staging;
-    std::uint64_t frame = 0;  // frame of the commands
+    MemoryPool pool;                     // of the staging memory. Members are destroyed in reverse order.
+    std::vector<Buffer> kept;            // staging memory, and what else the commands need
+    std::unique_ptr<Uploader> uploader;  // all commands, in their order
+    std::uint64_t frame = 0;             // frame of the commands
 };
 
 // Returns the bytes of an array of plain structures.
 template <typename T>
 std::span<const std::uint8_t> bytesOf(std::span<const T> elements) {
     return {reinterpret_cast<const std::uint8_t*>(elements.data()), elements.size_bytes()};
+}
+
+// Makes a storage buffer for records that shaders reach by address, and queues the copy. The buffer is never
+// empty, so that its address is valid.
+template <typename T>
+Status uploadRecords(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                     std::span<const T> records, Buffer& target, VkBufferUsageFlags usage = 0) {
+    GLINT_TRY(target,
+              createBuffer(context, pool, std::max(records.size_bytes(), sizeof(T)),
+                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | usage));
+    return uploader.copyToBuffer(bytesOf(records), target);
 }
 
 }  // namespace glint

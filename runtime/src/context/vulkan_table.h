@@ -191,4 +191,11 @@ Status loadRayPipelineFunctions(const InstanceTable& instance, VkDevice device, 
 Status loadPipelineStatisticsFunctions(const InstanceTable& instance, VkDevice device, DeviceTable& table);
 Status loadMicromapFunctions(const InstanceTable& instance, VkDevice device, DeviceTable& table);
 
+// Returns a name such as "VK_ERROR_DEVICE_LOST", or "VkResult -1234" for a code that this version does not
+// know.
+std::string vulkanResultName(VkResult result);
+
+// Makes the error "vulkan-call", which says which call failed and how.
+Diagnostic vulkanError(const char* call, VkResult result);
+
 }  // namespace glint

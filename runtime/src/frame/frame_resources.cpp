@@ -1,8 +1,8 @@
 #include "frame/frame_resources.h"
 
 #include "context/commands.h"
-#include "context/layouts.h"
-#include "context/vulkan_error.h"
+#include "context/device_objects.h"
+#include "context/vulkan_table.h"
 #include "frame/bounce_levels.h"
 
 #include <algorithm>

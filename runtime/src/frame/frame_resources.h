@@ -3,10 +3,11 @@
 
 #include "context/resources.h"
 #include "interop/frame.h"
-#include "sky/environment_state.h"
+#include "sky/environment.h"
 
-#include <glint/effects.h>
 #include <glint/layers.h>
+#include <glint/package_format.h>
+#include <glint/package_modules.h>
 
 #include <array>
 #include <cstddef>

@@ -1,10 +1,9 @@
 #include "frame/motion_history.h"
 
 #include "context/commands.h"
-#include "context/memory_items.h"
+#include "context/resources.h"
 
 #include <algorithm>
-#include <cstring>
 
 namespace glint {
 namespace {

@@ -6,7 +6,6 @@
 #include "interop/frame.h"
 #include "scene/gpu_scene_state.h"
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>

@@ -1,4 +1,4 @@
-#include <glint/strategies.h>
+#include <glint/package_modules.h>
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 # feed and its contents, in the order of names. The compiler puts the hash of the same text into packages (tool/emit).
 file(GLOB headers RELATIVE "${FOLDER}" "${FOLDER}/interop/*.h")
 list(SORT headers)
-set(code "// Made by embed_interop.cmake from the interop headers. Do not edit.\n#include \"package/interop_hash.h\"\n\n")
+set(code "// Made by embed_interop.cmake from the interop headers. Do not edit.\n#include \"package/package.h\"\n\n")
 string(APPEND code "namespace glint {\n\nstd::string_view interopText() {\n    return\n")
 foreach(header IN LISTS headers)
   file(READ "${FOLDER}/${header}" text)

@@ -1,9 +1,7 @@
 // Checks that the elements of tables.bin agree with each other.
-#include "package/package_state.h"
-#include "scene/material_table.h"
+#include "package/package.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <set>
@@ -84,71 +82,41 @@ Status checkModules(const Package::State& state, const std::string& where) {
 
 Status checkHeader(const Package::State& state, const std::string& where) {
     const package::PackageHeader& header = state.header;
-    const auto outside = [&](const char* what, std::uint32_t value) {
-        return altered(where, std::string(what) + " " + std::to_string(value) + " is unknown");
+    const auto number = [](auto value) { return static_cast<std::uint32_t>(value); };
+    const struct {
+        const char* what;
+        std::uint32_t value;
+        std::uint32_t least;
+        std::uint32_t most;
+    } fields[] = {
+        {"the set of strategies", header.strategies, 1, package::allStrategies()},
+        {"the set of tracers", header.tracers, 1, package::kAllTracers},
+        {"the alpha policy", number(header.alpha), 0, number(package::AlphaPolicy::Stochastic)},
+        {"the placement of shadow rays", number(header.shadows), 0,
+         number(package::ShadowPlacement::Deferred)},
+        {"what shadow rays pass", number(header.shadowThrough), 0, number(package::ShadowThrough::Glass)},
+        {"the hit record", number(header.hitRecord), 0, number(package::HitRecordFormat::Packed)},
+        {"the record of samples", number(header.sampleRecord), 0,
+         number(package::SampleRecordFormat::Packed)},
+        {"the source of positions", header.positionFetch, 0, 1},
+        {"the precision of shading", number(header.precision), 0, number(package::ShadingPrecision::Half)},
+        {"the set of passes", number(header.passes), 0, number(package::Passes::Steps)},
+        {"the answer to a ray", number(header.answer), 0, number(package::HitAnswer::Surface)},
+        {"the number of bounces", header.maxBounces, 1, package::kMaxBounces},
+        {"the kind of fallback", header.fallback, 0, 1},
+        {"the kind of package", header.early, 0, 1},
+        {"the kind of notes about textures", header.textureLevels, 0, 1},
+        {"the trust in textures", header.trustTextures, 0, 1},
+        {"the kind of movement", header.deforms, 0, 1},
+        {"the number of light samples", header.lightSamples, 0, package::kMaxLightSamples},
+        {"the kind of the sky's light", header.skyLight, 0, 1},
+        {"the kind of lights with a size", header.sizedLights, 0, 1},
+        {"the kind of sky", header.environmentMap, 0, 1},
     };
-    if (header.strategies == 0 || header.strategies > package::allStrategies()) {
-        return outside("the set of strategies", header.strategies);
-    }
-    if (header.tracers == 0 || header.tracers > package::kAllTracers) {
-        return outside("the set of tracers", header.tracers);
-    }
-    if (header.alpha > package::AlphaPolicy::Stochastic) {
-        return outside("the alpha policy", static_cast<std::uint32_t>(header.alpha));
-    }
-    if (header.shadows > package::ShadowPlacement::Deferred) {
-        return outside("the placement of shadow rays", static_cast<std::uint32_t>(header.shadows));
-    }
-    if (header.shadowThrough > package::ShadowThrough::Glass) {
-        return outside("what shadow rays pass", static_cast<std::uint32_t>(header.shadowThrough));
-    }
-    if (header.hitRecord > package::HitRecordFormat::Packed) {
-        return outside("the hit record", static_cast<std::uint32_t>(header.hitRecord));
-    }
-    if (header.sampleRecord > package::SampleRecordFormat::Packed) {
-        return outside("the record of samples", static_cast<std::uint32_t>(header.sampleRecord));
-    }
-    if (header.positionFetch > 1) {
-        return outside("the source of positions", header.positionFetch);
-    }
-    if (header.precision > package::ShadingPrecision::Half) {
-        return outside("the precision of shading", static_cast<std::uint32_t>(header.precision));
-    }
-    if (header.passes > package::Passes::Steps) {
-        return outside("the set of passes", static_cast<std::uint32_t>(header.passes));
-    }
-    if (header.answer > package::HitAnswer::Surface) {
-        return outside("the answer to a ray", static_cast<std::uint32_t>(header.answer));
-    }
-    if (header.maxBounces == 0 || header.maxBounces > package::kMaxBounces) {
-        return outside("the number of bounces", header.maxBounces);
-    }
-    if (header.fallback > 1) {
-        return outside("the kind of fallback", header.fallback);
-    }
-    if (header.early > 1) {
-        return outside("the kind of package", header.early);
-    }
-    if (header.textureLevels > 1) {
-        return outside("the kind of notes about textures", header.textureLevels);
-    }
-    if (header.trustTextures > 1) {
-        return outside("the trust in textures", header.trustTextures);
-    }
-    if (header.deforms > 1) {
-        return outside("the kind of movement", header.deforms);
-    }
-    if (header.lightSamples > package::kMaxLightSamples) {
-        return outside("the number of light samples", header.lightSamples);
-    }
-    if (header.skyLight > 1) {
-        return outside("the kind of the sky's light", header.skyLight);
-    }
-    if (header.sizedLights > 1) {
-        return outside("the kind of lights with a size", header.sizedLights);
-    }
-    if (header.environmentMap > 1) {
-        return outside("the kind of sky", header.environmentMap);
+    for (const auto& [what, value, least, most] : fields) {
+        if (value < least || value > most) {
+            return altered(where, std::string(what) + " " + std::to_string(value) + " is unknown");
+        }
     }
     return okStatus();
 }

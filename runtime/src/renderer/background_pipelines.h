@@ -2,9 +2,9 @@
 #pragma once
 
 #include "renderer/pipeline_jobs.h"
-#include "renderer/ray_passes.h"
 
-#include <glint/pipeline_progress.h>
+#include <glint/package_modules.h>
+#include <glint/renderer_options.h>
 
 #include <condition_variable>
 #include <cstddef>
@@ -13,10 +13,28 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <string>
 #include <thread>
 #include <vector>
 
 namespace glint {
+
+// The time at which a pipeline is made, in this order.
+enum class PipelineTurn : std::uint8_t {
+    First,  // frames can't begin without it
+    Fixed,  // frames are drafts without it
+    Case,   // the fallback is in its place
+    Spare,  // nothing that is drawn needs it
+};
+
+// The parts of a ray tracing pipeline, and the pass that it serves.
+struct RayPass {
+    std::string name;  // for reports
+    package::ModuleKey key;
+    RayPipelineSource source;
+    std::vector<std::uint32_t> shaderIds{};  // of the cases that a pass of cases shades
+    PipelineTurn turn = PipelineTurn::First;
+};
 
 // A pipeline to make, and the passes that it serves.
 struct PlannedPipeline {

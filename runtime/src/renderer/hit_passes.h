@@ -1,17 +1,93 @@
-// The passes that shade the rays of the list.
+// What recordings of passes work on, of renderers and of RaySteps, the dependencies between passes, and the
+// passes that shade the rays of the list.
 #pragma once
 
-#include "renderer/draw_batches.h"
-#include "renderer/pass_dependencies.h"
-#include "renderer/pass_state.h"
+#include "context/commands.h"
+#include "data/geometry.h"
+#include "frame/frame_resources.h"
+#include "renderer/pipelines.h"
 
 #include <glint/renderer_options.h>
 
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace glint {
+
+// The largest number of passes of a round: the fixed ones of the longest strategy, and one for each case.
+inline constexpr std::uint32_t kMaxFixedPasses = 27;
+
+// The label of a timer's stretch.
+struct PassLabel {
+    std::string name;  // for people
+    Pass pass = Pass::Frame;
+    std::uint32_t shaderId = 0;  // the shader ID of Pass::ShadeCase
+};
+
+struct PassState {
+    PassState(Context::State& contextState, Timer passTimer)
+        : context(contextState), timer(std::move(passTimer)), frame(contextState), pipelines(contextState) {}
+
+    Context::State& context;
+    PipelineChoice choice;
+    FrameSize size;
+    std::vector<std::string> caseNames;
+    Timer timer;
+    FrameResources frame;
+    Pipelines pipelines;
+    std::uint32_t pushOffset = 0;  // bytes
+    std::vector<PassLabel> timed;  // the last recording's label of each stretch of the timer
+    bool recorded = false;
+};
+
+// Returns the times of the last recording. Errors: "frame-not-recorded", and those of reading device times.
+Result<std::vector<PassTiming>> passTimings(PassState& state);
+
+// Makes the error "frame-not-recorded".
+Diagnostic frameNotRecorded();
+
+inline constexpr VkPipelineStageFlags2 kRasterStage = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+inline constexpr VkPipelineStageFlags2 kDepthStages =
+    VK_PIPELINE_STAGE_2_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_2_LATE_FRAGMENT_TESTS_BIT;
+inline constexpr VkPipelineStageFlags2 kRasterShaders =
+    VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+
+// The dependencies between passes, which run in `stages`.
+struct PassDependencies {
+    explicit PassDependencies(VkPipelineStageFlags2 stages)
+        // Fills count as clears or as copies, depending on the edition of the specification.
+        : clearToPasses{VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                        kRasterStage | kRasterShaders | stages,
+                        VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_SHADER_READ_BIT |
+                            VK_ACCESS_2_SHADER_WRITE_BIT},
+          // Passes may write to the memory of the depth.
+          rasterToPasses{
+              kRasterStage | kDepthStages,
+              VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT | VK_ACCESS_2_DEPTH_STENCIL_ATTACHMENT_WRITE_BIT, stages,
+              VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT},
+          passToPass{stages, VK_ACCESS_2_SHADER_WRITE_BIT, stages,
+                     VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT},
+          passToDispatch{stages, VK_ACCESS_2_SHADER_WRITE_BIT, stages | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT,
+                         VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT |
+                             VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT},
+          passToClear{
+              stages | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+              VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_READ_BIT,
+              VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT},
+          passesToCopy{stages | VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT,
+                       VK_ACCESS_2_SHADER_WRITE_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT,
+                       VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT} {}
+
+    MemoryDependency clearToPasses;
+    MemoryDependency rasterToPasses;
+    MemoryDependency passToPass;
+    MemoryDependency passToDispatch;  // after a pass that writes indirect arguments
+    MemoryDependency passToClear;     // before lists are filled anew
+    MemoryDependency passesToCopy;    // a fill wrote the counters that no pass changed
+};
 
 class PassRecorder {
 public:

@@ -1,16 +1,15 @@
 // Makes all pipelines of a package, for reports.
-#include "context/layouts.h"
-#include "context/vulkan_error.h"
-#include "motion/deformer.h"
-#include "renderer/pipeline_plan.h"
-#include "renderer/pipeline_statistics.h"
+#include "context/device_objects.h"
+#include "context/vulkan_table.h"
+#include "data/deformer.h"
+#include "renderer/pipeline_jobs.h"
+#include "renderer/pipelines.h"
 #include "renderer/renderer_choice.h"
 #include "scene/gpu_scene_state.h"
 
-#include <glint/package_pipelines.h>
+#include <glint/pipeline_statistics.h>
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <optional>
 #include <utility>

@@ -1,12 +1,10 @@
 // The passes of a frame in order.
 #include "frame/frame_constants.h"
 #include "renderer/hit_passes.h"
-#include "renderer/renderer_state.h"
+#include "renderer/renderer.h"
 
 #include <cstddef>
 #include <cstdint>
-#include <string>
-#include <vector>
 
 namespace glint {
 namespace {

@@ -1,20 +1,202 @@
 #include "renderer/pipeline_jobs.h"
 
-#include "package/package_state.h"
-#include "renderer/ray_pipelines.h"
+#include "context/parallel.h"
+#include "context/resources.h"
+#include "context/vulkan_table.h"
+#include "package/package.h"
 
 #include <xxhash.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
+#include <cstring>
 #include <numeric>
 #include <optional>
-#include <system_error>
-#include <thread>
 #include <utility>
 
 namespace glint {
+namespace {
+
+// Stages and groups of a pipeline that is being made. Groups are in the order of the source: ray generation,
+// miss, hit.
+struct Parts {
+    std::vector<UniqueShaderModule> modules;
+    std::vector<VkPipelineShaderStageCreateInfo> stages;
+    std::vector<VkRayTracingShaderGroupCreateInfoKHR> groups;
+};
+
+// Returns the index of the new stage.
+Result<std::uint32_t> addStage(Context::State& context, VkShaderStageFlagBits stage, SpirvWords words,
+                               Parts& parts) {
+    GLINT_TRY(auto module, createShaderModule(context, words));
+    parts.stages.push_back(stageOf(stage, module.get()));
+    parts.modules.push_back(std::move(module));
+    return static_cast<std::uint32_t>(parts.stages.size() - 1);
+}
+
+VkRayTracingShaderGroupCreateInfoKHR emptyGroup(VkRayTracingShaderGroupTypeKHR type) {
+    VkRayTracingShaderGroupCreateInfoKHR group{};
+    group.sType = VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR;
+    group.type = type;
+    group.generalShader = VK_SHADER_UNUSED_KHR;
+    group.closestHitShader = VK_SHADER_UNUSED_KHR;
+    group.anyHitShader = VK_SHADER_UNUSED_KHR;
+    group.intersectionShader = VK_SHADER_UNUSED_KHR;
+    return group;
+}
+
+Status addGeneral(Context::State& context, VkShaderStageFlagBits stage, std::span<const SpirvWords> shaders,
+                  Parts& parts) {
+    for (const SpirvWords words : shaders) {
+        GLINT_TRY(auto index, addStage(context, stage, words, parts));
+        VkRayTracingShaderGroupCreateInfoKHR group = emptyGroup(VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR);
+        group.generalShader = index;
+        parts.groups.push_back(group);
+    }
+    return okStatus();
+}
+
+Status addHitGroups(Context::State& context, const RayPipelineSource& source, Parts& parts) {
+    std::uint32_t anyHit = VK_SHADER_UNUSED_KHR;
+    if (!source.anyHit.empty()) {
+        GLINT_TRY(anyHit, addStage(context, VK_SHADER_STAGE_ANY_HIT_BIT_KHR, source.anyHit, parts));
+    }
+    for (const SpirvWords words : source.closestHit) {
+        GLINT_TRY(auto index, addStage(context, VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR, words, parts));
+        VkRayTracingShaderGroupCreateInfoKHR group =
+            emptyGroup(VK_RAY_TRACING_SHADER_GROUP_TYPE_TRIANGLES_HIT_GROUP_KHR);
+        group.closestHitShader = index;
+        group.anyHitShader = anyHit;
+        parts.groups.push_back(group);
+    }
+    return okStatus();
+}
+
+Result<Parts> makeParts(Context::State& context, const RayPipelineSource& source, bool halfPicture) {
+    Parts parts;
+    // The other stages use no images of light.
+    std::vector<std::uint32_t> withHalf;
+    SpirvWords rayGeneration = source.rayGeneration;
+    if (halfPicture) {
+        withHalf = withHalfImages(rayGeneration);
+        rayGeneration = withHalf;
+    }
+    GLINT_TRY_DO(addGeneral(context, VK_SHADER_STAGE_RAYGEN_BIT_KHR, std::span(&rayGeneration, 1), parts));
+    GLINT_TRY_DO(addGeneral(context, VK_SHADER_STAGE_MISS_BIT_KHR, source.miss, parts));
+    GLINT_TRY_DO(addHitGroups(context, source, parts));
+    return parts;
+}
+
+// The offsets of a table's records from its start.
+struct TableLayout {
+    // By the limits of the specification, handles have 32 bytes, alignments are at most 32 and 64, and the
+    // largest stride is at least 4096. No stride is therefore above the device's limit.
+    VkDeviceSize handleBytes = 0;
+    VkDeviceSize stride = 0;
+    VkDeviceSize missOffset = 0;
+    VkDeviceSize hitOffset = 0;
+    VkDeviceSize bytes = 0;
+};
+
+TableLayout layOutTable(const Context::State& context, const RayPipelineSource& source) {
+    const VkPhysicalDeviceRayTracingPipelinePropertiesKHR& limits = context.limits.rayPipeline;
+    TableLayout layout;
+    layout.handleBytes = limits.shaderGroupHandleSize;
+    layout.stride = alignUp(layout.handleBytes, limits.shaderGroupHandleAlignment);
+    layout.missOffset = alignUp(layout.stride, limits.shaderGroupBaseAlignment);
+    layout.hitOffset =
+        alignUp(layout.missOffset + layout.stride * source.miss.size(), limits.shaderGroupBaseAlignment);
+    layout.bytes = layout.hitOffset + layout.stride * std::max<std::size_t>(source.hitRecords.size(), 1);
+    return layout;
+}
+
+// Returns the table's bytes, made from the handles of all groups.
+std::vector<std::uint8_t> fillTable(const RayPipelineSource& source, const TableLayout& layout,
+                                    const std::vector<std::uint8_t>& handles) {
+    std::vector<std::uint8_t> bytes(layout.bytes);
+    const auto put = [&](VkDeviceSize offset, std::size_t group) {
+        std::memcpy(bytes.data() + offset, handles.data() + group * layout.handleBytes, layout.handleBytes);
+    };
+    const std::size_t firstHit = 1 + source.miss.size();
+    put(0, 0);
+    for (std::size_t i = 0; i < source.miss.size(); ++i) {
+        put(layout.missOffset + i * layout.stride, 1 + i);
+    }
+    put(layout.hitOffset, firstHit);
+    for (std::size_t i = 0; i < source.hitRecords.size(); ++i) {
+        put(layout.hitOffset + i * layout.stride, firstHit + source.hitRecords[i]);
+    }
+    return bytes;
+}
+
+Result<std::vector<std::uint8_t>> groupHandles(Context::State& context, VkPipeline pipeline,
+                                               std::size_t groupCount) {
+    std::vector<std::uint8_t> handles(groupCount * context.limits.rayPipeline.shaderGroupHandleSize);
+    const VkResult result = context.vk.GetRayTracingShaderGroupHandlesKHR(
+        context.handles.device, pipeline, 0, static_cast<std::uint32_t>(groupCount), handles.size(),
+        handles.data());
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkGetRayTracingShaderGroupHandlesKHR", result);
+    }
+    return handles;
+}
+
+}  // namespace
+
+Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayout layout,
+                                         const RayPipelineSource& source, PipelineCreation& creation) {
+    GLINT_TRY(auto parts, makeParts(context, source, creation.halfPicture));
+    const VkSpecializationInfo specialization = specializationOf(creation.constants);
+    for (VkPipelineShaderStageCreateInfo& stage : parts.stages) {
+        stage.pSpecializationInfo = &specialization;
+    }
+    const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation, parts.stages.size());
+    VkRayTracingPipelineCreateInfoKHR info{};
+    info.sType = VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR;
+    info.pNext = &feedback;
+    // Without this flag rays must not meet structures with micromaps. Ray queries need no flag.
+    info.flags =
+        creation.flags | (context.handles.opacityMicromaps
+                              ? VkPipelineCreateFlags{VK_PIPELINE_CREATE_RAY_TRACING_OPACITY_MICROMAP_BIT_EXT}
+                              : 0U);
+    info.stageCount = static_cast<std::uint32_t>(parts.stages.size());
+    info.pStages = parts.stages.data();
+    info.groupCount = static_cast<std::uint32_t>(parts.groups.size());
+    info.pGroups = parts.groups.data();
+    info.maxPipelineRayRecursionDepth = 1;
+    info.layout = layout;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    const VkResult result = context.vk.CreateRayTracingPipelinesKHR(
+        context.handles.device, VK_NULL_HANDLE, context.pipelineCache, 1, &info, nullptr, &pipeline);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreateRayTracingPipelinesKHR", result);
+    }
+    return UniquePipeline(context, pipeline);
+}
+
+Result<ShaderBindingTable> createTable(Context::State& context, MemoryPool& pool, VkPipeline pipeline,
+                                       const RayPipelineSource& source) {
+    const std::size_t groupCount = 1 + source.miss.size() + source.closestHit.size();
+    GLINT_TRY(auto handles, groupHandles(context, pipeline, groupCount));
+    const TableLayout layout = layOutTable(context, source);
+    const VkDeviceSize alignment = context.limits.rayPipeline.shaderGroupBaseAlignment;
+    // Vulkan does not guarantee this alignment for the buffer itself.
+    GLINT_TRY(auto buffer, createBuffer(context, pool, layout.bytes + alignment,
+                                        VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR, MemoryUse::Shared));
+    ShaderBindingTable table;
+    table.buffer = std::move(buffer);
+    const VkDeviceAddress start = alignUp(table.buffer.address, alignment);
+    const std::vector<std::uint8_t> bytes = fillTable(source, layout, handles);
+    std::memcpy(table.buffer.mapped + (start - table.buffer.address), bytes.data(), bytes.size());
+    table.rayGeneration = {start, layout.missOffset, layout.missOffset};
+    table.miss = {start + layout.missOffset, layout.stride, layout.stride * source.miss.size()};
+    table.hit = {start + layout.hitOffset, layout.stride, layout.bytes - layout.hitOffset};
+    if (source.hitRecords.empty()) {
+        // Instances have record offsets. With a stride of 0 all of them use the only record.
+        table.hit.stride = 0;
+    }
+    return table;
+}
 
 PipelineIdentity identify(const Package& package, VkPipelineBindPoint point, std::uint64_t number,
                           const std::vector<std::span<const std::uint32_t>>& stages) {
@@ -40,7 +222,7 @@ PipelineIdentity identify(const Package& package, const RayPipelineSource& sourc
 }
 
 std::uint32_t pipelineThreads(std::uint32_t wanted, std::size_t jobCount) {
-    const std::uint32_t most = wanted > 0 ? wanted : std::max(std::thread::hardware_concurrency(), 1U);
+    const std::uint32_t most = wanted > 0 ? wanted : threadsOfMachine();
     return static_cast<std::uint32_t>(std::clamp<std::size_t>(jobCount, 1, most));
 }
 
@@ -53,25 +235,13 @@ std::vector<Result<MadePipeline>> tryPipelines(std::span<const PipelineJob> jobs
 
     std::vector<std::optional<Result<UniquePipeline>>> results(jobs.size());
     std::vector<PipelineCreation> creations(jobs.size(), PipelineCreation{flags, {}});
-    std::atomic<std::size_t> next{0};
-    const auto work = [&] {
-        for (std::size_t taken = next++; taken < order.size(); taken = next++) {
+    forEach(
+        order.size(),
+        [&](std::size_t taken) {
             const std::size_t job = order[taken];
             results[job].emplace(jobs[job].make(creations[job]));
-        }
-    };
-    std::vector<std::thread> helpers;
-    for (std::uint32_t i = 1; i < threads; ++i) {
-        try {
-            helpers.emplace_back(work);
-        } catch (const std::system_error&) {
-            break;  // no more threads: the existing ones do all the work
-        }
-    }
-    work();
-    for (std::thread& helper : helpers) {
-        helper.join();
-    }
+        },
+        threads);
 
     std::vector<Result<MadePipeline>> made;
     made.reserve(jobs.size());
@@ -99,6 +269,121 @@ Result<std::vector<MadePipeline>> makePipelines(std::span<const PipelineJob> job
         made.push_back(std::move(*result));
     }
     return made;
+}
+
+namespace {
+
+// A driver need not terminate a text that fills its field.
+std::string textOf(const char (&field)[VK_MAX_DESCRIPTION_SIZE]) {
+    return {field, strnlen(field, sizeof(field))};
+}
+
+// Collects everything that `ask(count, list)` lists. The first call returns the number.
+template <typename Structure, typename Ask>
+VkResult listAll(const Structure& empty, const Ask& ask, std::vector<Structure>& list) {
+    VkResult result = VK_INCOMPLETE;
+    while (result == VK_INCOMPLETE) {
+        std::uint32_t count = 0;
+        result = ask(&count, nullptr);
+        if (result == VK_SUCCESS) {
+            list.assign(count, empty);
+            result = ask(&count, list.data());
+            list.resize(count, empty);
+        }
+    }
+    return result;
+}
+
+PipelineStatistic statisticOf(const VkPipelineExecutableStatisticKHR& raw) {
+    PipelineStatistic statistic{textOf(raw.name), textOf(raw.description), raw.value.u64};
+    switch (raw.format) {
+        case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_BOOL32_KHR:
+            statistic.value = raw.value.b32 != VK_FALSE;
+            break;
+        case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_INT64_KHR:
+            statistic.value = raw.value.i64;
+            break;
+        case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_FLOAT64_KHR:
+            statistic.value = raw.value.f64;
+            break;
+        default:
+            break;
+    }
+    return statistic;
+}
+
+}  // namespace
+
+Result<std::vector<PipelineExecutable>> readExecutables(const Context::State& context, VkPipeline pipeline) {
+    const DeviceTable& vk = context.vk;
+    const VkDevice device = context.handles.device;
+    VkPipelineInfoKHR info{};
+    info.sType = VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR;
+    info.pipeline = pipeline;
+    VkPipelineExecutablePropertiesKHR noProperties{};
+    noProperties.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR;
+    std::vector<VkPipelineExecutablePropertiesKHR> properties;
+    VkResult result = listAll(
+        noProperties,
+        [&](std::uint32_t* count, VkPipelineExecutablePropertiesKHR* list) {
+            return vk.GetPipelineExecutablePropertiesKHR(device, &info, count, list);
+        },
+        properties);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkGetPipelineExecutablePropertiesKHR", result);
+    }
+    std::vector<PipelineExecutable> executables;
+    for (std::uint32_t i = 0; i < properties.size(); ++i) {
+        PipelineExecutable executable{textOf(properties[i].name),
+                                      textOf(properties[i].description),
+                                      properties[i].stages,
+                                      properties[i].subgroupSize,
+                                      {}};
+        VkPipelineExecutableInfoKHR which{};
+        which.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR;
+        which.pipeline = pipeline;
+        which.executableIndex = i;
+        VkPipelineExecutableStatisticKHR noStatistic{};
+        noStatistic.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR;
+        std::vector<VkPipelineExecutableStatisticKHR> statistics;
+        result = listAll(
+            noStatistic,
+            [&](std::uint32_t* count, VkPipelineExecutableStatisticKHR* list) {
+                return vk.GetPipelineExecutableStatisticsKHR(device, &which, count, list);
+            },
+            statistics);
+        if (result != VK_SUCCESS) {
+            return vulkanError("vkGetPipelineExecutableStatisticsKHR", result);
+        }
+        for (const VkPipelineExecutableStatisticKHR& raw : statistics) {
+            executable.statistics.push_back(statisticOf(raw));
+        }
+        executables.push_back(std::move(executable));
+    }
+    return executables;
+}
+
+namespace {
+
+constexpr double kNanosecondsInMs = 1e6;
+
+bool isKnown(const VkPipelineCreationFeedback& feedback) {
+    return (feedback.flags & VK_PIPELINE_CREATION_FEEDBACK_VALID_BIT) != 0;
+}
+
+bool isCacheHit(const VkPipelineCreationFeedback& feedback) {
+    return (feedback.flags & VK_PIPELINE_CREATION_FEEDBACK_APPLICATION_PIPELINE_CACHE_HIT_BIT) != 0;
+}
+
+}  // namespace
+
+PipelineStatistics describe(const MadePipeline& pipeline) {
+    PipelineStatistics statistics{pipeline.name, {}, {}, {}};
+    if (isKnown(pipeline.feedback)) {
+        statistics.creationMs = static_cast<double>(pipeline.feedback.duration) / kNanosecondsInMs;
+        statistics.cacheHit = isCacheHit(pipeline.feedback);
+    }
+    return statistics;
 }
 
 }  // namespace glint

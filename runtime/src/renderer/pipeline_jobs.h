@@ -1,9 +1,12 @@
-// Makes pipelines with several threads at once.
+// Makes pipelines, with several threads at once, and reads the driver's report about them.
 #pragma once
 
-#include "package/shader_modules.h"
+#include "context/context.h"
+#include "context/resources.h"
+#include "context/shader_modules.h"
 
 #include <glint/package.h>
+#include <glint/pipeline_statistics.h>
 
 #include <vulkan/vulkan_core.h>
 
@@ -17,6 +20,34 @@
 #include <vector>
 
 namespace glint {
+
+using SpirvWords = std::span<const std::uint32_t>;
+
+// The modules of a pipeline and of its table. Its rays do not recurse.
+struct RayPipelineSource {
+    SpirvWords rayGeneration;
+    std::vector<SpirvWords> miss;        // indexed by miss index
+    std::vector<SpirvWords> closestHit;  // one for each hit group
+    SpirvWords anyHit;                   // shared by all hit groups; empty: there is none
+    // The hit group of each record of the table. If empty, all hits use group 0, whatever their record.
+    std::vector<std::uint32_t> hitRecords;
+};
+
+struct ShaderBindingTable {
+    Buffer buffer;
+    VkStridedDeviceAddressRegionKHR rayGeneration{};
+    VkStridedDeviceAddressRegionKHR miss{};
+    VkStridedDeviceAddressRegionKHR hit{};
+};
+
+// Error "vulkan-call".
+Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayout layout,
+                                         const RayPipelineSource& source, PipelineCreation& creation);
+
+// Makes the table of a pipeline that was made from the same source. Commands that are submitted afterwards
+// see it. `pool` must outlive the result. Errors: those of buffers, "vulkan-call".
+Result<ShaderBindingTable> createTable(Context::State& context, MemoryPool& pool, VkPipeline pipeline,
+                                       const RayPipelineSource& source);
 
 struct RayPipelineSource;
 
@@ -67,5 +98,12 @@ std::vector<Result<MadePipeline>> tryPipelines(std::span<const PipelineJob> jobs
 // As tryPipelines(). All jobs run. The error is that of the first job that failed.
 Result<std::vector<MadePipeline>> makePipelines(std::span<const PipelineJob> jobs,
                                                 VkPipelineCreateFlags flags, std::uint32_t threads);
+
+// Requires DeviceHandles::pipelineStatistics and a pipeline that was made with
+// VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR. Error "vulkan-call".
+Result<std::vector<PipelineExecutable>> readExecutables(const Context::State& context, VkPipeline pipeline);
+
+// Returns the way in which the pipeline was made, without its executables.
+PipelineStatistics describe(const MadePipeline& pipeline);
 
 }  // namespace glint

@@ -1,12 +1,10 @@
 #include "renderer/pipelines.h"
 
-#include "context/layouts.h"
-#include "context/vulkan_error.h"
+#include "context/device_objects.h"
+#include "context/shader_modules.h"
+#include "context/vulkan_table.h"
 #include "frame/frame_resources.h"
-#include "package/shader_modules.h"
 #include "renderer/background_pipelines.h"
-#include "renderer/pipeline_plan.h"
-#include "renderer/ray_passes.h"
 #include "renderer/tile_sort.h"
 
 #include <algorithm>
@@ -22,6 +20,233 @@ namespace glint {
 namespace {
 
 using package::ModuleRole;
+
+// Returns the part of the package's shape that decides which of its modules the choice needs.
+package::PackageShape chosenShape(const Package& package, const PipelineChoice& choice) {
+    package::PackageShape shape = package.shape();
+    shape.strategies = choice.strategy;
+    shape.tracers = choice.tracer;
+    shape.deforms = false;  // the scene has that pass itself
+    shape.maxBounces = choice.bounces;
+    return shape;
+}
+
+// Returns the time at which pipelines of that role are made.
+PipelineTurn turnOf(const PipelineChoice& choice, package::ModuleRole role) {
+    // The hit shaders of a ray generation shader's pipeline have the code of its strategy's cases.
+    const package::RoleInfo& info = *package::findRole(role);
+    if (choice.background &&
+        (info.fallback != ModuleRole::None || info.kind == package::ShaderKind::RayGeneration)) {
+        return PipelineTurn::Case;
+    }
+    // A draft is rasterised, lit and composed.
+    const bool isOfDraft = info.purpose == package::Purpose::Draft || role == ModuleRole::Compose;
+    return choice.draft && !isOfDraft ? PipelineTurn::Fixed : PipelineTurn::First;
+}
+
+// Returns whether the choice needs a pipeline of a fallback's role. It is true for other roles.
+bool runsFallback(const PipelineChoice& choice, package::ModuleRole role) {
+    // A fallback with a pass shades hits whose shader ID no case has. Shaders with a switch contain the
+    // fallback.
+    const package::RoleInfo& info = *package::findRole(role);
+    return choice.background || info.purpose != package::Purpose::Fallback ||
+           info.over != package::Over::Nothing;
+}
+
+SpirvWords rayWords(const Package& package, ModuleRole role, std::uint32_t index = 0) {
+    return package.spirv({role, index, package::kTracerRayPipeline});
+}
+
+// Returns the source of passes that only trace. Other passes shade the hits of their rays.
+RayPipelineSource tracingSource(const Package& package, SpirvWords rayGeneration) {
+    RayPipelineSource source;
+    source.rayGeneration = rayGeneration;
+    source.miss = {rayWords(package, ModuleRole::TraceMiss)};
+    source.closestHit = {rayWords(package, ModuleRole::TraceClosestHit)};
+    source.anyHit = rayWords(package, ModuleRole::TraceAnyHit);
+    return source;
+}
+
+// The roles of a strategy with a pipeline of its own.
+struct HitShaderRoles {
+    ModuleRole rayGeneration{};
+    ModuleRole caseHit{};     // closest hit of a case
+    ModuleRole unknownHit{};  // of a geometry whose shader ID no case has
+    ModuleRole fallbackHit{};
+    ModuleRole miss{};
+    ModuleRole anyHit{};
+};
+
+HitShaderRoles hitShaderRoles(package::Strategy strategy) {
+    HitShaderRoles roles;
+    for (const package::RoleInfo& info : package::rolesOf(strategy)) {
+        switch (info.kind) {
+            case package::ShaderKind::RayGeneration:
+                roles.rayGeneration = info.role;
+                break;
+            case package::ShaderKind::ClosestHit:
+                if (info.fallback != ModuleRole::None) {
+                    roles.caseHit = info.role;
+                    roles.fallbackHit = info.fallback;
+                } else if (info.purpose != package::Purpose::Fallback) {
+                    roles.unknownHit = info.role;
+                }
+                break;
+            case package::ShaderKind::Miss:
+                roles.miss = info.role;
+                break;
+            case package::ShaderKind::AnyHit:
+                roles.anyHit = info.role;
+                break;
+            default:
+                break;
+        }
+    }
+    return roles;
+}
+
+// Returns the source of a pipeline of a strategy's own, without closest-hit shaders.
+RayPipelineSource hitShaderStart(const Package& package, const HitShaderRoles& roles) {
+    RayPipelineSource source;
+    source.rayGeneration = rayWords(package, roles.rayGeneration);
+    // The miss indices are those of rays in the list and of shadow rays, in this order.
+    source.miss = {rayWords(package, roles.miss), rayWords(package, ModuleRole::TraceMiss)};
+    source.anyHit = rayWords(package, package.shape().shadowsApart ? roles.anyHit : ModuleRole::TraceAnyHit);
+    return source;
+}
+
+// Returns the source of a strategy's own pipeline. Each geometry has a record, with the hit group of its
+// shader ID.
+RayPipelineSource hitShaderSource(const Package& package, const HitShaderRoles& roles,
+                                  std::span<const std::uint32_t> shaderIds) {
+    RayPipelineSource source = hitShaderStart(package, roles);
+    std::map<std::uint32_t, std::uint32_t> groups;  // by shader ID; retired ones have none
+    std::map<const std::uint32_t*, std::uint32_t> byWords;
+    for (std::uint32_t shaderId = 0; shaderId < package.caseCount(); ++shaderId) {
+        const SpirvWords words = rayWords(package, roles.caseHit, shaderId);
+        if (words.empty()) {
+            continue;
+        }
+        const auto [known, fresh] =
+            byWords.emplace(words.data(), static_cast<std::uint32_t>(source.closestHit.size()));
+        if (fresh) {
+            source.closestHit.push_back(words);
+        }
+        groups[shaderId] = known->second;
+    }
+    const auto unknown = static_cast<std::uint32_t>(source.closestHit.size());
+    const SpirvWords fallback = rayWords(package, roles.fallbackHit);
+    source.closestHit.push_back(fallback.empty() ? rayWords(package, roles.unknownHit) : fallback);
+    for (const std::uint32_t shaderId : shaderIds) {
+        const auto group = groups.find(shaderId);
+        source.hitRecords.push_back(group != groups.end() ? group->second : unknown);
+    }
+    return source;
+}
+
+// Returns the source of a strategy's own pipeline with the fallback for every hit.
+RayPipelineSource hitFallbackSource(const Package& package, const HitShaderRoles& roles) {
+    RayPipelineSource source = hitShaderStart(package, roles);
+    source.closestHit = {rayWords(package, roles.fallbackHit)};
+    return source;
+}
+
+// Plans the cases that trace their own shadow rays. Each distinct module has a pipeline, so that threads can
+// make several at once: one pipeline for all took a driver six times as long for 256 cases (docs/live.md).
+std::vector<RayPass> planCases(const Package& package, const PipelineChoice& choice, ModuleRole role) {
+    std::vector<RayPass> passes;
+    std::map<const std::uint32_t*, std::size_t> byWords;
+    for (std::uint32_t shaderId = 0; shaderId < package.caseCount(); ++shaderId) {
+        const SpirvWords words = rayWords(package, role, shaderId);
+        if (words.empty()) {
+            continue;
+        }
+        const auto [known, fresh] = byWords.emplace(words.data(), passes.size());
+        if (fresh) {
+            RayPass& pass = passes.emplace_back();
+            pass.key = {role, shaderId, package::kTracerRayPipeline};
+            pass.name = pipelineName(package, pass.key);
+            pass.source = tracingSource(package, words);
+            pass.turn = turnOf(choice, role);
+        }
+        passes[known->second].shaderIds.push_back(shaderId);
+    }
+    return passes;
+}
+
+// Plans the ray passes of the choice. `shaderIds` are those of the scene's geometry records, in their order.
+// The sources point into the package.
+std::vector<RayPass> planRayPasses(const Package& package, const PipelineChoice& choice,
+                                   std::span<const std::uint32_t> shaderIds) {
+    std::vector<RayPass> passes;
+    ModuleRole ofCases = ModuleRole::None;  // of cases that trace their own shadow rays
+    for (const package::ModuleKey& key : package::requiredModules(chosenShape(package, choice))) {
+        const package::RoleInfo& info = *package::findRole(key.role);
+        const bool generatesRays = info.kind == package::ShaderKind::Tracing ||
+                                   info.kind == package::ShaderKind::Shading ||
+                                   info.kind == package::ShaderKind::RayGeneration;
+        if (key.tracer != package::kTracerRayPipeline || !generatesRays || !runsFallback(choice, key.role)) {
+            continue;
+        }
+        if (info.over == package::Over::Buckets) {
+            ofCases = key.role;
+            continue;
+        }
+        RayPass pass;
+        pass.name = pipelineName(package, key);
+        pass.key = key;
+        pass.turn = turnOf(choice, key.role);
+        if (info.kind != package::ShaderKind::RayGeneration) {
+            pass.source = tracingSource(package, package.spirv(key));
+        } else {
+            const HitShaderRoles roles = hitShaderRoles(choice.strategy);
+            if (choice.background) {
+                RayPass& fallback = passes.emplace_back(pass);
+                fallback.name = pipelineName(package, {roles.fallbackHit, 0, key.tracer});
+                fallback.turn = choice.draft ? PipelineTurn::Fixed : PipelineTurn::First;
+                fallback.source = hitFallbackSource(package, roles);
+            }
+            pass.source = hitShaderSource(package, roles, shaderIds);
+        }
+        passes.push_back(std::move(pass));
+    }
+    if (ofCases != ModuleRole::None) {
+        std::ranges::move(planCases(package, choice, ofCases), std::back_inserter(passes));
+    }
+    return passes;
+}
+
+// Returns the number of SPIR-V words of all stages.
+std::size_t wordCount(const RayPipelineSource& source) {
+    std::size_t count = source.rayGeneration.size() + source.anyHit.size();
+    for (const auto* const stages : {&source.miss, &source.closestHit}) {
+        for (const SpirvWords words : *stages) {
+            count += words.size();
+        }
+    }
+    return count;
+}
+
+// Makes the shader binding table of the pass and adds the pass to `pipelines`, which must own `pipeline`.
+// Errors: those of buffers, "vulkan-call".
+Status addRayPass(Context::State& context, const RayPass& pass, VkPipeline pipeline, Pipelines& pipelines) {
+    GLINT_TRY(auto table, createTable(context, pipelines.pool, pipeline, pass.source));
+    const PassPipeline made{pipeline, true, table.rayGeneration, table.miss, table.hit};
+    if (package::findRole(pass.key.role)->over == package::Over::Buckets) {
+        for (const std::uint32_t shaderId : pass.shaderIds) {
+            pipelines.cases[shaderId] = made;
+        }
+    } else {
+        pipelines.add(pass.key, made);
+    }
+    pipelines.tables.push_back(std::move(table.buffer));
+    return okStatus();
+}
+
+// Returns the stages that push constants are for.
+VkShaderStageFlags pushStages(const Context::State& context) {
+    return VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | passStages(context);
+}
 
 Status createLayout(Context::State& context, const LayoutSource& source, Pipelines& pipelines) {
     if (source.given != VK_NULL_HANDLE) {
@@ -269,11 +494,6 @@ bool hasUnknown(const Package& package, std::span<const std::uint32_t> shaderIds
            });
 }
 
-Pipelines::Pipelines(Context::State& context) : pool(context) {}
-Pipelines::Pipelines(Pipelines&&) noexcept = default;
-Pipelines& Pipelines::operator=(Pipelines&&) noexcept = default;
-Pipelines::~Pipelines() = default;
-
 void Pipelines::add(const package::ModuleKey& key, const PassPipeline& pass) {
     const package::Repeated repeated = package::findRole(key.role)->repeated;
     if (repeated == package::Repeated::ByEffect || repeated == package::Repeated::ByWalk) {
@@ -281,45 +501,6 @@ void Pipelines::add(const package::ModuleKey& key, const PassPipeline& pass) {
     } else {
         passes[key.role] = pass;
     }
-}
-
-package::PackageShape chosenShape(const Package& package, const PipelineChoice& choice) {
-    package::PackageShape shape = package.shape();
-    shape.strategies = choice.strategy;
-    shape.tracers = choice.tracer;
-    shape.deforms = false;  // the scene has that pass itself
-    shape.maxBounces = choice.bounces;
-    return shape;
-}
-
-PipelineTurn turnOf(const PipelineChoice& choice, package::ModuleRole role) {
-    // The hit shaders of a ray generation shader's pipeline have the code of its strategy's cases.
-    const package::RoleInfo& info = *package::findRole(role);
-    if (choice.background &&
-        (info.fallback != ModuleRole::None || info.kind == package::ShaderKind::RayGeneration)) {
-        return PipelineTurn::Case;
-    }
-    // A draft is rasterised, lit and composed.
-    const bool isOfDraft = info.purpose == package::Purpose::Draft || role == ModuleRole::Compose;
-    return choice.draft && !isOfDraft ? PipelineTurn::Fixed : PipelineTurn::First;
-}
-
-bool runsFallback(const PipelineChoice& choice, package::ModuleRole role) {
-    // A fallback with a pass shades hits whose shader ID no case has. Shaders with a switch contain the
-    // fallback.
-    const package::RoleInfo& info = *package::findRole(role);
-    return choice.background || info.purpose != package::Purpose::Fallback ||
-           info.over != package::Over::Nothing;
-}
-
-VkShaderStageFlags pushStages(const Context::State& context) {
-    return VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | passStages(context);
-}
-
-Result<UniquePipelineLayout> createPassLayout(Context::State& context,
-                                              std::span<const VkDescriptorSetLayout> sets,
-                                              std::uint32_t pushBytes) {
-    return createPipelineLayout(context, sets, {pushStages(context), 0, pushBytes});
 }
 
 std::string pipelineName(const Package& package, const package::ModuleKey& key) {
@@ -342,6 +523,12 @@ std::string pipelineName(const Package& package, const package::ModuleKey& key) 
             break;
     }
     return name;
+}
+
+Result<UniquePipelineLayout> createPassLayout(Context::State& context,
+                                              std::span<const VkDescriptorSetLayout> sets,
+                                              std::uint32_t pushBytes) {
+    return createPipelineLayout(context, sets, {pushStages(context), 0, pushBytes});
 }
 
 Result<Pipelines> createPipelines(Context::State& context, const Package& package,

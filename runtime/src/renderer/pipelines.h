@@ -1,7 +1,9 @@
-// The pipelines of a strategy.
+// The pipelines of a strategy: the plan of what a choice of a package's modules consists of, and the passes
+// that they serve.
 #pragma once
 
 #include "context/resources.h"
+#include "renderer/background_pipelines.h"
 #include "renderer/pipeline_jobs.h"
 
 #include <glint/package.h>
@@ -43,14 +45,6 @@ inline VkPipelineStageFlags2 stagesOf(const PipelineChoice& choice) {
            (rayPipeline ? VK_PIPELINE_STAGE_2_RAY_TRACING_SHADER_BIT_KHR : VK_PIPELINE_STAGE_2_NONE);
 }
 
-// The time at which a pipeline is made, in this order.
-enum class PipelineTurn : std::uint8_t {
-    First,  // frames can't begin without it
-    Fixed,  // frames are drafts without it
-    Case,   // the fallback is in its place
-    Spare,  // nothing that is drawn needs it
-};
-
 // The settings for making pipelines.
 struct PipelineMaking {
     std::uint32_t threads = 0;       // 0: as many as the machine runs at once
@@ -66,16 +60,9 @@ struct PassPipeline {
     VkStridedDeviceAddressRegionKHR hit{};
 };
 
-class BackgroundPipelines;
-
 // Members are destroyed in reverse order: first the threads end, and the pool's memory is freed last.
 struct Pipelines {
-    explicit Pipelines(Context::State& context);
-    Pipelines(Pipelines&&) noexcept;
-    Pipelines& operator=(Pipelines&&) noexcept;
-    ~Pipelines();
-    Pipelines(const Pipelines&) = delete;
-    Pipelines& operator=(const Pipelines&) = delete;
+    explicit Pipelines(Context::State& context) : pool(context) {}
 
     MemoryPool pool;
     std::vector<Buffer> tables;  // shader binding tables
@@ -114,18 +101,6 @@ struct LayoutSource {
     VkShaderStageFlags givenPushStages = 0;
 };
 
-// Returns the part of the package's shape that decides which of its modules the choice needs.
-package::PackageShape chosenShape(const Package& package, const PipelineChoice& choice);
-
-// Returns the time at which pipelines of that role are made.
-PipelineTurn turnOf(const PipelineChoice& choice, package::ModuleRole role);
-
-// Returns whether the choice needs a pipeline of a fallback's role. It is true for other roles.
-bool runsFallback(const PipelineChoice& choice, package::ModuleRole role);
-
-// Returns the stages that push constants are for.
-VkShaderStageFlags pushStages(const Context::State& context);
-
 // Makes a layout with push constants for all stages. Error "vulkan-call".
 Result<UniquePipelineLayout> createPassLayout(Context::State& context,
                                               std::span<const VkDescriptorSetLayout> sets,
@@ -145,5 +120,21 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
 // fixed passes together. The passes that are recorded afterwards use them. Errors: those of buffers,
 // "vulkan-call".
 Status adoptPipelines(Context::State& context, Pipelines& pipelines);
+
+// Returns the pipelines of the choice. Their jobs read `package`. `shaderIds` are those of the scene's
+// geometry records, in their order.
+std::vector<PlannedPipeline> planPipelines(Context::State& context, const Package& package,
+                                           const PipelineChoice& choice,
+                                           std::span<const std::uint32_t> shaderIds, VkPipelineLayout layout);
+
+// Takes a pipeline, and lets the passes that it serves use it. Errors: those of buffers, "vulkan-call".
+Status addPipeline(Context::State& context, const PlannedPipeline& planned, MadePipeline made,
+                   Pipelines& pipelines);
+
+// Lets the fallback replace the pipelines that are made later.
+void addFallback(const Package& package, const PipelineChoice& choice, Pipelines& pipelines);
+
+// Returns whether the package's fallback shades some of `shaderIds`, because no case has them.
+bool hasUnknown(const Package& package, std::span<const std::uint32_t> shaderIds);
 
 }  // namespace glint

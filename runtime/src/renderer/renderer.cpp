@@ -1,16 +1,20 @@
 // Renderer: creation, frame constants, results.
-#include "context/readback.h"
-#include "context/vulkan_error.h"
+#include "renderer/renderer.h"
+
+#include "context/resources.h"
+#include "context/vulkan_table.h"
 #include "frame/frame_constants.h"
+#include "frame/motion_history.h"
 #include "renderer/background_pipelines.h"
-#include "renderer/camera.h"
+#include "renderer/pipeline_jobs.h"
 #include "renderer/renderer_choice.h"
-#include "renderer/renderer_state.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
 namespace glint {
@@ -334,6 +338,86 @@ package::Ordering Renderer::ordering() const {
 
 Renderer::State& Renderer::state() {
     return *state_;
+}
+
+namespace {
+
+// Names of the images by binding.
+constexpr std::string_view kImageNames[] = {"surface", "radiance", "accumulated", "residual", "position"};
+static_assert(std::size(kImageNames) == gpu::kFrameImageCount);
+
+}  // namespace
+
+std::vector<MemoryItem> Renderer::memory() const {
+    std::vector<MemoryItem> items;
+    const FrameResources& frame = state_->frame;
+    for (std::size_t binding = 0; binding < frame.images.size(); ++binding) {
+        addTo(items, std::string(kImageNames[binding]), frame.images[binding]);
+    }
+    for (std::size_t i = 0; i < frame.layers.size(); ++i) {
+        addTo(items, "layer " + state_->size.layers[i].name, frame.layers[i]);
+    }
+    // Memory that buffers share with the depth image counts as the buffers' memory.
+    VkDeviceSize shared = 0;
+    for (const auto& [name, buffer] : frame.buffers()) {
+        const bool shares =
+            buffer->handle.get() != VK_NULL_HANDLE && buffer->memory.memory == frame.depth.memory.memory;
+        shared += shares ? buffer->bytes : 0;
+    }
+    if (frame.depth.handle.get() != VK_NULL_HANDLE) {
+        addTo(items, {"depth", MemoryUse::Device, true, 1, frame.depth.bytes - shared});
+    }
+    for (const auto& [name, buffer] : frame.buffers()) {
+        addTo(items, name, *buffer);
+    }
+    if (state_->history != nullptr) {
+        state_->history->addMemory(items);
+    }
+    for (const Buffer& table : state_->pipelines.tables) {
+        addTo(items, "shader binding tables", table);
+    }
+    return items;
+}
+
+Renderer::Footprint Renderer::footprint() const {
+    Footprint footprint;
+    footprint.pipelines = static_cast<std::uint32_t>(state_->pipelines.owned.size());
+    for (const MemoryItem& item : memory()) {
+        (item.isImage ? footprint.images : footprint.buffers) += item.count;
+        footprint.bytes += item.bytes;
+    }
+    footprint.allocatedBytes = (state_->history != nullptr ? state_->history->allocatedBytes() : 0) +
+                               glint::allocatedBytes(state_->frame) + state_->pipelines.pool.bytes();
+    return footprint;
+}
+
+Renderer::PipelineMaking Renderer::pipelineMaking() const {
+    const Pipelines& pipelines = state_->pipelines;
+    PipelineMaking making{pipelines.threads, pipelines.creationMs, 0};
+    for (const MadePipeline& pipeline : pipelines.owned) {
+        const std::optional<bool> hit = describe(pipeline).cacheHit;
+        if (!hit) {
+            making.cacheHits.reset();
+            break;
+        }
+        *making.cacheHits += *hit ? 1 : 0;
+    }
+    return making;
+}
+
+Result<std::vector<PipelineStatistics>> Renderer::pipelineStatistics() const {
+    if (!state_->pipelines.captureStatistics) {
+        return makeError("pipeline-statistics", "",
+                         "the renderer was made without statistics of its pipelines",
+                         "set RendererOptions::pipelineStatistics");
+    }
+    std::vector<PipelineStatistics> list;
+    for (const MadePipeline& pipeline : state_->pipelines.owned) {
+        GLINT_TRY(auto executables, readExecutables(state_->context, pipeline.handle->get()));
+        list.push_back(describe(pipeline));
+        list.back().executables = std::move(executables);
+    }
+    return list;
 }
 
 }  // namespace glint

@@ -1,7 +1,7 @@
 // The properties of the ordering tile-sort that depend on the device.
 #pragma once
 
-#include "context/context_state.h"
+#include "context/context.h"
 
 #include <glint/package_modules.h>
 

@@ -1,8 +1,9 @@
 // Compaction: copies of the BLASes, and the TLAS over them.
-#include "context/vulkan_error.h"
-#include "edit/editor_state.h"
-#include "renderer/pass_dependencies.h"
+#include "context/commands.h"
+#include "context/vulkan_table.h"
 #include "scene/gpu_scene_state.h"
+#include "scene/scene_editor.h"
+#include "scene/scene_motion.h"
 #include "scene/scene_upload.h"
 
 #include <map>

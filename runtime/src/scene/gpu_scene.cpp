@@ -1,17 +1,20 @@
 // GpuScene: the steps of an upload.
-#include "edit/editor_state.h"
-#include "opacity/opacity_split.h"
-#include "renderer/pass_dependencies.h"
+#include "context/commands.h"
+#include "context/resources.h"
+#include "data/deformer.h"
+#include "data/instance_math.h"
+#include "data/materials.h"
+#include "data/opacity_split.h"
+#include "data/scene_checks.h"
+#include "data/traversal_order.h"
+#include "package/package.h"
 #include "scene/gpu_scene_state.h"
-#include "scene/instance_math.h"
-#include "scene/material_table.h"
-#include "scene/scene_checks.h"
+#include "scene/scene_editor.h"
+#include "scene/scene_motion.h"
+#include "scene/scene_package.h"
 #include "scene/texture_stream.h"
-#include "scene/textures.h"
-#include "scene/traversal_order.h"
 
 #include <chrono>
-#include <cstring>
 #include <utility>
 
 namespace glint {
@@ -23,14 +26,11 @@ double millisecondsSince(Clock::time_point begin) {
     return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
-// Uploads an array of records that shaders reach by address. The buffer is never empty, so that its address
-// is valid.
+// Uploads records that a replacement may copy from.
 template <typename T>
 Status uploadRecords(GpuScene::State& state, Uploader& uploader, std::span<const T> records, Buffer& target) {
-    GLINT_TRY(target, createBuffer(state.context, state.pool, std::max(records.size_bytes(), sizeof(T)),
-                                   VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-                                       VK_BUFFER_USAGE_TRANSFER_SRC_BIT));
-    return uploader.copyToBuffer(bytesOf(records), target);
+    return glint::uploadRecords(state.context, state.pool, uploader, records, target,
+                                VK_BUFFER_USAGE_TRANSFER_SRC_BIT);
 }
 
 // Makes the hierarchy over lights and emissive triangles, and the records of the triangles, in packages that
@@ -154,10 +154,7 @@ Status uploadData(GpuScene::State& state, const Package& package, const SceneVie
                 {geometry.positions, deforms ? state.primitives[primitive].vertexCount : 0});
         }
     }
-    std::vector<gpu::LightRecord> lights;
-    for (const LightView& light : scene.lights) {
-        lights.push_back(makeLightRecord(light));
-    }
+    const std::vector<gpu::LightRecord> lights = makeLightRecords(scene.lights);
     state.lightCount = static_cast<std::uint32_t>(lights.size());
 
     using Geometries = std::span<const gpu::GeometryRecord>;
@@ -304,24 +301,6 @@ Status uploadStill(GpuScene::State& state, const Package& package, const Package
 
 }  // namespace
 
-VkAccelerationStructureInstanceKHR makePlaced(bool doubleSided, const PartInstance& placed,
-                                              const std::array<float, 12>& objectToWorld,
-                                              VkDeviceAddress blas) {
-    VkAccelerationStructureInstanceKHR instance{};
-    static_assert(sizeof(instance.transform) == sizeof(objectToWorld));
-    std::memcpy(&instance.transform, objectToWorld.data(), sizeof(objectToWorld));
-    // A custom index has 24 bits and the mask 8. layOutScene() has checked that the index fits.
-    instance.instanceCustomIndex = placed.customIndex & 0xFFFFFFU;
-    // A shader binding table that has hit records has one for each geometry record.
-    instance.instanceShaderBindingTableRecordOffset = placed.customIndex & 0xFFFFFFU;
-    instance.mask = 0xFF;
-    // Facing is determined in object space, so that a mirroring transform changes nothing. The default agrees
-    // with glTF: a front is clockwise to a left-handed eye, which is counter-clockwise to a right-handed one.
-    instance.flags = doubleSided ? VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR & 0xFFU : 0U;
-    instance.accelerationStructureReference = blas;
-    return instance;
-}
-
 namespace {
 
 // Makes a scene and records its upload. If its staging memory would exceed `mostStaged`, parts of the upload
@@ -424,6 +403,9 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
     return uploaded;
 }
 
+GpuScene::State::State(Context::State& contextState) : context(contextState), pool(contextState) {}
+GpuScene::State::~State() = default;
+
 GpuScene::GpuScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
 GpuScene::~GpuScene() = default;
 
@@ -483,6 +465,107 @@ Result<MotionStatistics> GpuScene::motion() const {
 
 GpuScene::State& GpuScene::state() {
     return *state_;
+}
+
+namespace {
+
+void addMotion(std::vector<MemoryItem>& items, const SceneMotion& motion) {
+    if (motion.deformer != nullptr) {
+        motion.deformer->addMemory(items);
+    }
+    if (motion.blases != nullptr) {
+        motion.blases->addMemory(items);
+    }
+    addTo(items, "instances of the top level", motion.placedBuffer);
+    addTo(items, "scratch of structures", motion.tlasScratch.buffer);
+    addTo(items, "poses on their way", motion.staging);
+}
+
+void addEditor(std::vector<MemoryItem>& items, const SceneEditor::State& editor) {
+    editor.meshes.forEach([&](MeshHandle /*handle*/, const EditedMesh& mesh) {
+        for (const EditedMeshPrimitive& primitive : mesh.primitives) {
+            addTo(items, "vertices and indices", primitive.device.buffer);
+            for (const EditedPart& part : primitive.parts) {
+                addTo(items, "bottom levels", part.blas.buffer);
+            }
+        }
+    });
+    addTo(items, "textures", editor.white);
+    addTo(items, "scratch of structures", editor.tlasScratch.buffer);
+    for (const Buffer& staging : editor.uploader->staging()) {
+        addTo(items, "edits on their way", staging);
+    }
+    if (editor.retired.count() > 0) {
+        addTo(items,
+              {"retired by edits", MemoryUse::Device, false, editor.retired.count(), editor.retired.bytes()});
+    }
+}
+
+}  // namespace
+
+std::vector<MemoryItem> GpuScene::memory() const {
+    std::vector<MemoryItem> items;
+    for (const GpuPrimitive& primitive : state_->primitives) {
+        addTo(items, "vertices and indices", primitive.buffer);
+    }
+    for (const Buffer& buffer : state_->deformed.buffers) {
+        addTo(items, "deformed vertices", buffer);
+    }
+    for (const DeviceImage& texture : state_->textures) {
+        addTo(items, "textures", texture);
+    }
+    if (state_->stream != nullptr) {
+        addTo(items, {"levels on their way", MemoryUse::Upload, false, 1, state_->stream->retiredBytes()});
+    }
+    for (const AccelerationStructure& blas : state_->blases) {
+        addTo(items, "bottom levels", blas.buffer);
+    }
+    for (const auto& [primitive, micromap] : state_->micromaps) {
+        addTo(items, "opacity micromaps", micromap.buffer);
+        addTo(items, "opacity micromaps", micromap.indices);
+    }
+    addTo(items, "top level", state_->tlas.buffer);
+    addTo(items, "geometry records", state_->geometries);
+    addTo(items, "instance records", state_->instances);
+    addTo(items, "material records", state_->materials);
+    addTo(items, "light records", state_->lights);
+    if (state_->lightNodes.address != 0) {
+        addTo(items, "light nodes", state_->lightNodes);
+    }
+    if (state_->emitterRecords.address != 0) {
+        addTo(items, "emissive triangles", state_->emitterRecords);
+        addTo(items, "emissive triangles", state_->firstEmitters);
+    }
+    if (state_->motion != nullptr) {
+        addMotion(items, *state_->motion);
+    }
+    if (state_->upload != nullptr) {
+        for (const Buffer& buffer : state_->upload->kept) {
+            addTo(items, "upload on its way", buffer);
+        }
+    }
+    if (state_->compaction != nullptr) {
+        for (const AccelerationStructure& blas : state_->compaction->replaced) {
+            addTo(items, "bottom levels before compaction", blas.buffer);
+        }
+    }
+    if (state_->editor != nullptr) {
+        addEditor(items, state_->editor->state());
+    }
+    return items;
+}
+
+std::uint64_t GpuScene::allocatedBytes() const {
+    const SceneMotion* const motion = state_->motion.get();
+    std::uint64_t bytes = state_->pool.bytes();
+    bytes += state_->package.pool != nullptr ? state_->package.pool->bytes() : 0;
+    bytes += state_->upload != nullptr ? state_->upload->pool.bytes() : 0;
+    bytes += state_->compaction != nullptr ? state_->compaction->pool.bytes() : 0;
+    if (motion != nullptr) {
+        bytes +=
+            motion->pool.bytes() + (motion->deformer != nullptr ? motion->deformer->allocatedBytes() : 0);
+    }
+    return bytes;
 }
 
 }  // namespace glint

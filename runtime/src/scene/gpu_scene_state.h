@@ -1,31 +1,30 @@
 // The part of a GpuScene that the renderer sees.
 #pragma once
 
-#include "context/layouts.h"
+#include "context/device_objects.h"
 #include "context/resources.h"
-#include "lights/emitters.h"
-#include "lights/light_tree.h"
-#include "motion/scene_motion.h"
-#include "opacity/micromap_build.h"
-#include "renderer/draw_batches.h"
-#include "replacement/scene_package.h"
-#include "scene/acceleration.h"
-#include "scene/geometry.h"
-#include "scene/scene_materials.h"
+#include "data/acceleration.h"
+#include "data/emitters.h"
+#include "data/geometry.h"
+#include "data/light_tree.h"
+#include "data/materials.h"
+#include "data/traversal_order.h"
 #include "scene/scene_upload.h"
-#include "scene/traversal_order.h"
 
-#include <glint/gpu_scene.h>
-#include <glint/scene_edit.h>
-#include <glint/texture_stream.h>
+#include <glint/package.h>
+#include <glint/scene.h>
 
 #include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace glint {
+
+struct SceneMotion;
 
 // The place of a geometry record's positions.
 struct GeometryPositions {
@@ -33,9 +32,58 @@ struct GeometryPositions {
     std::uint32_t vertexCount = 0;  // of those that follow joints or morph weights; 0 for others
 };
 
+// The data that the upload took from the package. Another package may replace it if it agrees with the data
+// that is on the device and that a package does not contain: vertices, textures and acceleration structures.
+struct ScenePackage {
+    // An attribute of packs, as it is in the vertices.
+    struct Attribute {
+        std::string name;
+        std::uint32_t channels = 0;
+        std::array<float, 4> fallback{};
+
+        friend bool operator==(const Attribute&, const Attribute&) = default;
+    };
+    // The emission of a material, in packages with emissive lights.
+    struct Emission {
+        std::array<float, 3> factor{};
+        float strength = 1.0F;
+        std::uint32_t texture = package::EmissionEntry::kNone;
+
+        friend bool operator==(const Emission&, const Emission&) = default;
+    };
+
+    // A primitive some of whose triangles need no alpha test, and the inputs of that decision
+    // (alphaInputs()).
+    struct Decided {
+        std::uint32_t entry = 0;
+        std::vector<std::uint8_t> inputs;
+    };
+
+    std::uint64_t number = 0;  // of replacements so far
+    std::string scene;         // name in the package
+    std::vector<package::PrimitiveEntry> entries;
+    std::vector<std::uint32_t> entryOf;          // by geometry record: index into `entries`
+    std::vector<std::uint32_t> entryOfUploaded;  // by SceneView::primitives
+    std::vector<package::TextureEntry> textures;
+    std::vector<std::array<float, 2>> texels;  // sizes of the textures
+    std::vector<package::SamplerEntry> samplers;
+    std::vector<Attribute> attributes;
+    std::vector<ChangingMaterial> hostMaterials;  // of scenes that do not move: those of SceneView::materials
+    bool positionFetch = false;
+    bool lightTree = false;
+    std::optional<package::EmissionEntry> emission{};
+    std::vector<Emission> emissions;  // by material
+    std::vector<Decided> decided;
+    // The memory of GpuScene::State::materials, once it was replaced by a buffer of another size.
+    std::shared_ptr<MemoryPool> pool;
+};
+
 // Members are destroyed in reverse order: the pool's memory last.
 struct GpuScene::State {
-    explicit State(Context::State& contextState) : context(contextState), pool(contextState) {}
+    explicit State(Context::State& contextState);
+    ~State();
+    State(const State&) = delete;
+    State& operator=(const State&) = delete;
 
     Context::State& context;
     MemoryPool pool;

@@ -1,10 +1,11 @@
+#include "scene/scene_kernel.h"
+
 #include "context/commands.h"
-#include "context/context_state.h"
-#include "context/layouts.h"
-#include "context/vulkan_error.h"
-#include "package/shader_modules.h"
+#include "context/context.h"
+#include "context/device_objects.h"
+#include "context/shader_modules.h"
+#include "context/vulkan_table.h"
 #include "scene/gpu_scene_state.h"
-#include "scene/scene_kernel_state.h"
 
 #include <algorithm>
 #include <cstring>

@@ -2,16 +2,18 @@
 // follows.
 #pragma once
 
-#include "context/timer.h"
+#include "context/commands.h"
 #include "context/upload.h"
-#include "motion/deformer.h"
-#include "scene/acceleration.h"
+#include "data/acceleration.h"
+#include "data/deformer.h"
+#include "data/opacity_micromap.h"
 
-#include <glint/scene_edit.h>
+#include <glint/scene.h>
 
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -50,12 +52,9 @@ void completeCompaction(GpuScene::State& state, std::uint64_t frame);
 
 // --- The upload ---
 
-struct SceneUpload {
-    // `mostStaged` is as in Uploader::createDeferred().
-    SceneUpload(Context::State& contextState, VkDeviceSize mostStaged)
-        : context(contextState),
-          pool(contextState),
-          uploader(Uploader::createDeferred(contextState, pool, mostStaged)) {}
+// Its pool holds scratch and the inputs of acceleration structures, too.
+struct SceneUpload : StagedCopies {
+    using StagedCopies::StagedCopies;
 
     // Keeps a buffer of `pool`, if there is one, until the upload is complete.
     void keep(Buffer&& buffer) {
@@ -68,17 +67,35 @@ struct SceneUpload {
     static constexpr std::uint32_t kBlasStretch = 0;
     static constexpr std::uint32_t kTlasStretch = 1;
 
-    Context::State& context;
-    // It holds staging, scratch, and the inputs of acceleration structures. Members are destroyed in reverse
-    // order: the pool's memory last.
-    MemoryPool pool;
-    std::vector<Buffer> kept;
-    std::unique_ptr<Uploader> uploader;  // all commands of the upload, in their order
     std::unique_ptr<Deformer> deformer;  // of a scene that does not move and is not in its rest pose
     std::optional<Timer> timer;
     std::uint32_t stretches = 0;             // recorded ones
     std::unique_ptr<Compaction> compaction;  // null if there is no BLAS to compact
-    std::uint64_t frame = 0;                 // frame of the commands
 };
+
+// --- Structures ---
+
+struct BlasStatistics {
+    std::uint64_t bytes = 0;  // before compaction
+};
+// Creates a BLAS for each input, and queues their builds in the upload. They are in the memory of the
+// upload's Compaction, which is made here, and stay at their full size until it is recorded. Errors: those of
+// memory and Vulkan's calls.
+Result<std::vector<AccelerationStructure>> addBlases(SceneUpload& upload, std::span<const BlasInput> inputs,
+                                                     BlasStatistics& statistics);
+
+// Creates a TLAS in memory of `pool`, and queues its build in the upload. `instances` may be empty. Error
+// "tlas-limit".
+Result<AccelerationStructure> addTlas(SceneUpload& upload, MemoryPool& pool,
+                                      std::span<const VkAccelerationStructureInstanceKHR> instances);
+
+// Returns the highest level that the device takes, at most opacity::kMaxLevel; 0 without the extension.
+std::uint32_t micromapLevel(const Context::State& context);
+
+// Creates a micromap for each array, and queues their builds in the upload. Requires
+// DeviceHandles::opacityMicromaps, and arrays within micromapLevel(). `pool` must outlive the result. Errors:
+// those of memory and Vulkan's calls.
+Result<std::vector<DeviceMicromap>> addMicromaps(SceneUpload& upload, MemoryPool& pool,
+                                                 std::span<const opacity::MicromapArray> arrays);
 
 }  // namespace glint

@@ -1,11 +1,10 @@
 #include "scene/texture_stream.h"
 
-#include "edit/editor_state.h"
+#include "scene/scene_editor.h"
 
 #include <algorithm>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace glint {
 namespace {

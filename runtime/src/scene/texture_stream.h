@@ -2,11 +2,11 @@
 #pragma once
 
 #include "context/upload.h"
-#include "edit/retired.h"
+#include "data/materials.h"
+#include "data/retired.h"
 #include "scene/gpu_scene_state.h"
-#include "scene/textures.h"
 
-#include <glint/texture_stream.h>
+#include <glint/scene.h>
 
 #include <cstdint>
 #include <map>

@@ -1,11 +1,10 @@
 // Environment: the map and its levels of roughness on the device.
+#include "sky/environment.h"
+
 #include "context/upload.h"
-#include "context/vulkan_error.h"
-#include "scene/half_float.h"
-#include "sky/environment_state.h"
+#include "context/vulkan_table.h"
 #include "sky/map_filter.h"
 #include "sky/radiance_map.h"
-#include "sky/sky_counts.h"
 
 #include <algorithm>
 #include <chrono>
@@ -92,11 +91,8 @@ Status uploadLevels(Environment::State& state, Uploader& uploader, const std::ve
 Status uploadCounts(Environment::State& state, Uploader& uploader, const SkyCounts& distribution) {
     state.countColumns = distribution.columns;
     state.countRows = distribution.rows;
-    const std::span<const std::uint8_t> bytes = bytesOf(std::span<const std::uint32_t>(distribution.counts));
-    GLINT_TRY(state.counts,
-              createBuffer(state.context, state.pool, bytes.size(),
-                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT));
-    return uploader.copyToBuffer(bytes, state.counts);
+    return uploadRecords(state.context, state.pool, uploader,
+                         std::span<const std::uint32_t>(distribution.counts), state.counts);
 }
 
 // Makes an environment, and queues its copies.

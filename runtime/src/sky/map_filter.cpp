@@ -1,16 +1,72 @@
 #include "sky/map_filter.h"
 
-#include "sky/map_distribution.h"
+#include "context/parallel.h"
 
 #include <algorithm>
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <numbers>
-#include <system_error>
-#include <thread>
+#include <span>
 
 namespace glint {
+namespace {
+
+struct Cell {
+    std::size_t index = 0;
+    double fraction = 0.0;  // position in the cell, [0, 1)
+};
+
+// Returns the cell of running sums that `target` falls into. It never returns a cell without weight.
+Cell findCell(std::span<const double> sums, double target) {
+    const auto after = std::upper_bound(sums.begin(), sums.end(), target);
+    std::size_t index = static_cast<std::size_t>(after - sums.begin());
+    // Rounding may bring the target up to the last sum.
+    index = std::clamp<std::size_t>(index, 1, sums.size() - 1);
+    while (index > 1 && sums[index] == sums[index - 1]) {
+        --index;
+    }
+    const double width = sums[index] - sums[index - 1];
+    return {index - 1, std::clamp((target - sums[index - 1]) / width, 0.0, 1.0)};
+}
+
+}  // namespace
+
+MapDistribution::MapDistribution(const RadianceMap& map) : width_(map.width), height_(map.height) {
+    weights_.reserve(map.texels.size());
+    for (const Radiance& radiance : map.texels) {
+        weights_.push_back(luminance(radiance));
+    }
+    if (std::ranges::all_of(weights_, [](float weight) { return weight <= 0.0F; })) {
+        std::ranges::fill(weights_, 1.0F);
+    }
+    rowSums_.assign(1, 0.0);
+    columnSums_.reserve(std::size_t{width_ + 1} * height_);
+    for (std::uint32_t row = 0; row < height_; ++row) {
+        double sum = 0.0;
+        columnSums_.push_back(sum);
+        for (std::uint32_t column = 0; column < width_; ++column) {
+            sum += weights_[std::size_t{row} * width_ + column];
+            columnSums_.push_back(sum);
+        }
+        rowSums_.push_back(rowSums_.back() + sum * texelSolidAngle(row, width_, height_));
+    }
+    total_ = rowSums_.back();
+}
+
+MapSample MapDistribution::sample(double row, double column) const {
+    const Cell inRows = findCell(rowSums_, row * total_);
+    const std::span<const double> sums(&columnSums_[inRows.index * (width_ + 1)], width_ + 1);
+    const Cell inColumns = findCell(sums, column * sums.back());
+    const auto rowIndex = static_cast<std::uint32_t>(inRows.index);
+    const double above = cosineAbove(rowIndex, height_);
+    const double cosine = above + inRows.fraction * (cosineAbove(rowIndex + 1, height_) - above);
+    const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
+    const double u = (static_cast<double>(inColumns.index) + inColumns.fraction) / width_;
+    const double azimuth = 2.0 * std::numbers::pi * (u - 0.5);
+    const std::size_t texel = inRows.index * width_ + inColumns.index;
+    return {{sine * std::cos(azimuth), cosine, sine * std::sin(azimuth)}, texel, pdf(texel)};
+}
+
 namespace {
 
 // The number of samples for all texels of a level together, and the least number for one texel. A level takes
@@ -20,7 +76,6 @@ constexpr std::uint32_t kMinSamples = 32;
 constexpr std::uint32_t kMaxSamples = 1024;
 // The number of map samples, which all texels share. A lamp that has a tenth of the light gets 100.
 constexpr std::uint32_t kMapSamples = 1024;
-constexpr std::uint32_t kRowsAtOnce = 4;
 constexpr std::uint32_t kMaxThreads = 64;
 
 struct Vec3 {
@@ -223,45 +278,25 @@ Radiance lobeMean(const Source& source, const Lobe& lobe, const std::vector<Vec3
     return mean.value();
 }
 
-// Calls `work` for each row from several threads.
-template <typename Work>
-void forEachRow(std::uint32_t rows, const Work& work) {
-    std::atomic<std::uint32_t> next{0};
-    const auto loop = [&] {
-        for (std::uint32_t first = next.fetch_add(kRowsAtOnce); first < rows;
-             first = next.fetch_add(kRowsAtOnce)) {
-            for (std::uint32_t row = first; row < std::min(first + kRowsAtOnce, rows); ++row) {
-                work(row);
-            }
-        }
-    };
-    const std::uint32_t threads = std::clamp(std::thread::hardware_concurrency(), 1U, kMaxThreads);
-    std::vector<std::jthread> helpers;
-    for (std::uint32_t i = 1; i < threads; ++i) {
-        try {
-            helpers.emplace_back(loop);
-        } catch (const std::system_error&) {
-            break;  // the threads that exist do the work
-        }
-    }
-    loop();
-}
-
 RadianceMap filterLevel(const Source& source, double roughness, std::uint32_t width, std::uint32_t height) {
     const Lobe lobe(roughness);
     const std::vector<Vec3> samples =
         sampleLobe(lobe, std::clamp(kLevelSamples / (width * height), kMinSamples, kMaxSamples));
     RadianceMap level{width, height, {}};
     level.texels.resize(std::size_t{width} * height);
-    forEachRow(height, [&](std::uint32_t row) {
-        for (std::uint32_t x = 0; x < width; ++x) {
-            // The additive recurrence of the plastic number fills the plane evenly (Roberts 2018).
-            const double turn = 0.7548776662466927 * x + 0.5698402909980532 * row;
-            level.texels[std::size_t{row} * width + x] =
-                lobeMean(source, lobe, samples, std::numbers::pi * (row + 0.5) / height,
-                         2.0 * std::numbers::pi * ((x + 0.5) / width - 0.5), 2.0 * std::numbers::pi * turn);
-        }
-    });
+    forEach(
+        height,
+        [&](std::size_t index) {
+            const auto row = static_cast<std::uint32_t>(index);
+            for (std::uint32_t x = 0; x < width; ++x) {
+                // The additive recurrence of the plastic number fills the plane evenly (Roberts 2018).
+                const double turn = 0.7548776662466927 * x + 0.5698402909980532 * row;
+                level.texels[std::size_t{row} * width + x] = lobeMean(
+                    source, lobe, samples, std::numbers::pi * (row + 0.5) / height,
+                    2.0 * std::numbers::pi * ((x + 0.5) / width - 0.5), 2.0 * std::numbers::pi * turn);
+            }
+        },
+        std::min(threadsOfMachine(), kMaxThreads));
     return level;
 }
 

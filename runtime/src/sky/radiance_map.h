@@ -1,11 +1,11 @@
-// Equirectangular maps of radiance on the host: directions, solid angles, sizes.
+// Equirectangular maps of radiance on the host: directions, solid angles, sizes, their diffuse light, and the
+// distribution by which surfaces sample them.
 #pragma once
 
 #include <glint/image.h>
 #include <glint/result.h>
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -48,5 +48,47 @@ double texelSolidAngle(std::uint32_t row, std::uint32_t width, std::uint32_t hei
 inline float luminance(const Radiance& radiance) {
     return 0.2126F * radiance[0] + 0.7152F * radiance[1] + 0.0722F * radiance[2];
 }
+
+// --- The diffuse light of a map in real spherical harmonics ---
+
+// The irradiance over π of a surface with the normal (x, y, z), as a polynomial. It has coefficients of 1, x,
+// y, z, 3y² - 1, xy, yz, xz, x² - z², each for red, green and blue.
+using SkyHarmonics = std::array<std::array<double, 3>, 9>;
+
+// Returns orders 0 to 2 with the cosine lobe folded in (Ramamoorthi and Hanrahan 2001, "An Efficient
+// Representation for Irradiance Environment Maps"). The integrals over each texel are exact.
+SkyHarmonics skyHarmonics(const RadianceMap& map);
+
+// Returns the harmonics of the map turned about +Y by `angle` radians, counter-clockwise as seen from above.
+SkyHarmonics turned(const SkyHarmonics& harmonics, double angle);
+
+// --- The distribution by which surfaces sample an environment map as a light (shaders/host/sky.glsl) ---
+
+// The largest size in cells.
+inline constexpr std::uint32_t kMostSkyColumns = 1024;
+inline constexpr std::uint32_t kMostSkyRows = 512;
+
+// A distribution that is constant in each cell (pbrt-v4, PiecewiseConstant2D). Cells divide azimuth and polar
+// angle evenly. A row is chosen first, then a column of it. `counts` holds running sums: of the rows, then
+// for each row of its columns. Each of these lists ends with gpu::kSkyCounts, and each cell has a count of at
+// least 1. A random number of 24 bits falls on a cell with a probability of exactly count / kSkyCounts, so
+// the density that shaders compute from the counts is that of their samples, however bright a cell is.
+struct SkyCounts {
+    std::uint32_t columns = 0;
+    std::uint32_t rows = 0;
+    std::vector<std::uint32_t> counts;  // rows * (1 + columns)
+};
+
+// Returns the distribution of a map that fits the device. The weight of a cell is the integral of the
+// luminance that bilinear lookups see, and one hundredth of its mean over the sphere, so that other
+// directions than those of a small sun stay likely. A black map has a uniform distribution.
+SkyCounts skyCounts(const RadianceMap& map);
+
+// --- Conversion to 16-bit floats ---
+
+inline constexpr float kMaxHalf = 65504.0F;
+
+// Converts to IEC 60559 binary16, rounded to the nearest, ties to even. Requires 0 <= value <= kMaxHalf.
+std::uint16_t toHalf(float value);
 
 }  // namespace glint

@@ -1,11 +1,12 @@
+#include "steps/engine_scene.h"
+
+#include "context/commands.h"
 #include "context/upload.h"
+#include "data/instance_math.h"
+#include "data/materials.h"
+#include "data/scene_checks.h"
 #include "interop/frame.h"
-#include "renderer/pass_dependencies.h"
 #include "scene/gpu_scene_state.h"
-#include "scene/instance_math.h"
-#include "scene/scene_checks.h"
-#include "scene/textures.h"
-#include "steps/engine_scene_state.h"
 
 #include <algorithm>
 #include <array>
@@ -74,21 +75,8 @@ Result<std::vector<gpu::GeometryRecord>> makeGeometries(const PackageScene& know
             return outOfRange(geometryPlace(i), "instance", view.instance, scene.instances.size());
         }
         GLINT_TRY_DO(checkAddresses(view, *entry, geometryPlace(i)));
-        gpu::GeometryRecord record{};
-        record.shaderId = entry->shaderId;
-        record.materialIndex = entry->materialIndex;
-        record.featureLobes = entry->featureLobes;
-        record.featureInputs = entry->featureInputs;
-        record.instanceIndex = view.instance;
-        record.flags = entry->geometryFlags | std::uint32_t{view.hostFlags} << gpu::kGeometryHostFlagsShift;
-        record.indices = view.indices;
-        record.positions = view.positions;
-        record.normals = view.normals;
-        record.tangents = view.tangents;
-        record.texCoords0 = view.texCoords0;
-        record.texCoords1 = view.texCoords1;
-        record.colors = view.colors;
-        record.attributes = view.attributes;
+        gpu::GeometryRecord record = recordOf(*entry, view, view.instance);
+        record.flags |= std::uint32_t{view.hostFlags} << gpu::kGeometryHostFlagsShift;
         records.push_back(record);
     }
     return records;
@@ -118,11 +106,7 @@ std::vector<Rows> movedBack(std::vector<Rows> instances, const std::array<double
 
 Result<std::vector<gpu::LightRecord>> makeLights(std::span<const LightView> lights) {
     GLINT_TRY_DO(checkLights(lights));
-    std::vector<gpu::LightRecord> records;
-    for (const LightView& light : lights) {
-        records.push_back(makeLightRecord(light));
-    }
-    return records;
+    return makeLightRecords(lights);
 }
 
 // The package's materials, with the host's numbers of textures and samplers.
@@ -186,14 +170,11 @@ Status findShaderIds(std::span<const gpu::GeometryRecord> geometries,
     return okStatus();
 }
 
-// The buffer is never empty, so that its address is valid.
 template <typename T>
-Status upload(EngineScene::State& state, Uploader& uploader, const std::vector<T>& records,
-              VkBufferUsageFlags usage, Buffer& target) {
-    GLINT_TRY(target,
-              createBuffer(state.context, state.pool, std::max(records.size(), std::size_t{1}) * sizeof(T),
-                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | usage));
-    return uploader.copyToBuffer(bytesOf(std::span<const T>(records)), target);
+Status upload(EngineScene::State& state, const std::vector<T>& records, VkBufferUsageFlags usage,
+              Buffer& target) {
+    return uploadRecords(state.context, state.pool, *state.upload->uploader, std::span<const T>(records),
+                         target, usage);
 }
 
 // Records new contents of a buffer. The bytes travel in the command buffer.
@@ -235,15 +216,13 @@ Result<std::unique_ptr<EngineScene>> EngineScene::record(Context& context, const
     state->lightCount = state->lightCapacity = static_cast<std::uint32_t>(lights.size());
     state->recordsBy = scene.recordsBy;
     state->upload = std::make_unique<StagedCopies>(context.state());
-    Uploader& uploader = *state->upload->uploader;
     const std::vector<std::uint32_t> firstRecords(scene.firstRecords.begin(), scene.firstRecords.end());
     for (const Status& status :
-         {upload(*state, uploader, geometries, 0, state->geometries),
-          upload(*state, uploader, instances, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, state->instances),
-          upload(*state, uploader, instances, 0, state->previousInstances),
-          upload(*state, uploader, lights, 0, state->lights),
-          upload(*state, uploader, materials, 0, state->materials),
-          upload(*state, uploader, firstRecords, 0, state->firstRecords)}) {
+         {upload(*state, geometries, 0, state->geometries),
+          upload(*state, instances, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, state->instances),
+          upload(*state, instances, 0, state->previousInstances), upload(*state, lights, 0, state->lights),
+          upload(*state, materials, 0, state->materials),
+          upload(*state, firstRecords, 0, state->firstRecords)}) {
         if (!status) {
             return status.error();
         }

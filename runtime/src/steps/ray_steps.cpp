@@ -1,10 +1,9 @@
-#include "context/readback.h"
 #include "frame/frame_constants.h"
 #include "renderer/hit_passes.h"
 #include "renderer/renderer_choice.h"
-#include "steps/engine_scene_state.h"
+#include "steps/engine_scene.h"
 
-#include <glint/ray_steps.h>
+#include <glint/steps.h>
 
 #include <cstddef>
 #include <cstring>

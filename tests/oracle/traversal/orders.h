@@ -1,7 +1,7 @@
 // Makes orders of leaves to compare the driver's own order with. They have the form of halvingOrder().
 #pragma once
 
-#include "scene/leaf_order.h"
+#include "data/traversal_order.h"
 
 #include <cstdint>
 #include <span>

@@ -1,8 +1,8 @@
 #include "oracle/traversal/trace_kernel.h"
 
-#include "context/context_state.h"
-#include "context/vulkan_error.h"
-#include "package/shader_modules.h"
+#include "context/context.h"
+#include "context/shader_modules.h"
+#include "context/vulkan_table.h"
 #include "spirv/compiler.h"
 
 #include <cstring>

@@ -3,7 +3,6 @@
 
 #include "context/commands.h"
 #include "context/resources.h"
-#include "context/timer.h"
 #include "oracle/traversal/rays.h"
 #include "scene/gpu_scene_state.h"
 

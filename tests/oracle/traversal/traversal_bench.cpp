@@ -2,13 +2,13 @@
 // instances, for scenes as they are and shuffled. It compares them with Embree, which traces the same rays
 // with as many threads. Each round measures everything once, one after the other, so that other work on the
 // machine slows all alike.
-#include "context/context_state.h"
+#include "context/context.h"
+#include "data/traversal_order.h"
 #include "emit/compile.h"
 #include "gltf/import.h"
 #include "oracle/traversal/orders.h"
 #include "oracle/traversal/trace_kernel.h"
 #include "resolve/resolve.h"
-#include "scene/traversal_order.h"
 #include "support/halved_tree.h"
 #include "support/quantile.h"
 

@@ -3,7 +3,7 @@
 
 #include "base/files.h"
 
-#include <glint/texel_format.h>
+#include <glint/scene_view.h>
 
 #include <cstdint>
 #include <random>

@@ -2,7 +2,7 @@
 // micro-triangles whose state it contradicts. It shares no code with what it checks.
 #pragma once
 
-#include <glint/alpha_states.h>
+#include "data/alpha_states.h"
 
 #include <cstdint>
 #include <string>

@@ -1,9 +1,9 @@
 // Tests contexts, uploads and what upload refuses.
-#include "context/context_state.h"
+#include "context/context.h"
+#include "data/acceleration.h"
 #include "device_fixture.h"
 #include "host_device.h"
 #include "interop/scene.h"
-#include "scene/acceleration.h"
 #include "scene/gpu_scene_state.h"
 
 #include <functional>

@@ -1,8 +1,7 @@
 // Where a scene that is edited keeps its entries and records.
-#include "edit/record_store.h"
-#include "edit/slots.h"
+#include "scene/record_store.h"
 
-#include <glint/scene_edit.h>
+#include <glint/scene.h>
 
 #include <gtest/gtest.h>
 

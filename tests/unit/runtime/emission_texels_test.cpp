@@ -1,5 +1,5 @@
 // Tests the means of emissive textures, without a device.
-#include "lights/emission_texels.h"
+#include "data/emitters.h"
 
 #include <gtest/gtest.h>
 

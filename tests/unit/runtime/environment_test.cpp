@@ -1,8 +1,7 @@
 // Tests environment maps on the host: which are accepted, sizes, importance, diffuse light, 16-bit floats.
 #include "sample_maps.h"
-#include "scene/half_float.h"
 #include "sky/map_filter.h"
-#include "sky/sky_harmonics.h"
+#include "sky/radiance_map.h"
 
 #include <gtest/gtest.h>
 

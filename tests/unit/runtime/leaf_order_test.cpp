@@ -1,7 +1,5 @@
 // Tests orders for drivers that halve the leaves they are given: the trees that result, without a device.
-#include "scene/leaf_order.h"
-
-#include "scene/traversal_order.h"
+#include "data/traversal_order.h"
 #include "support/halved_tree.h"
 
 #include <gtest/gtest.h>

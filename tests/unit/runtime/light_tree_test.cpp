@@ -1,5 +1,5 @@
 // Tests the hierarchy over lights: its shape and its bounds, without a device.
-#include "lights/light_tree.h"
+#include "data/light_tree.h"
 
 #include <gtest/gtest.h>
 

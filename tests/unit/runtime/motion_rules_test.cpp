@@ -1,7 +1,5 @@
 // Tests boxes of deformed meshes, and the rules that depend on them.
-#include "motion/motion_rules.h"
-
-#include "motion/motion_bounds.h"
+#include "data/motion_bounds.h"
 
 #include <gtest/gtest.h>
 

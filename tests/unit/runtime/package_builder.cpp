@@ -1,6 +1,6 @@
 #include "package_builder.h"
 
-#include "package/interop_hash.h"
+#include "package/package.h"
 #include "support/effect_bits.h"
 
 #include <xxhash.h>

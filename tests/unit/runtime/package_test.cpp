@@ -1,5 +1,6 @@
 // The loader accepts what a compiler writes, and nothing else.
-#include "package/package_state.h"
+#include "package/package.h"
+
 #include "package_builder.h"
 
 #include <glint/package.h>

@@ -1,7 +1,5 @@
 // Tests that data which a driver stored for pipelines is told from anything else before the driver gets it.
-#include "renderer/pipeline_cache.h"
-
-#include "context/context_state.h"
+#include "context/context.h"
 #include "device_fixture.h"
 
 #include <algorithm>

@@ -1,10 +1,9 @@
 // Tests reading what a driver reports about a pipeline, with a made-up driver, because few real ones report
 // anything.
-#include "renderer/pipeline_statistics.h"
-
 #include "device_fixture.h"
+#include "renderer/pipeline_jobs.h"
 #include "renderer/pipelines.h"
-#include "renderer/renderer_state.h"
+#include "renderer/renderer.h"
 
 #include <algorithm>
 #include <cstring>

@@ -1,5 +1,5 @@
 // Positions of 16 bits: grids that keep what a file has, and grids over the box of a mesh.
-#include "vertices/position_grid.h"
+#include "data/vertex_format.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Maps that the tests of environments share.
 #pragma once
 
-#include "sky/map_distribution.h"
+#include "sky/map_filter.h"
 #include "sky/radiance_map.h"
 
 #include <array>

@@ -1,8 +1,7 @@
 // Tests the distribution by which surfaces sample environment maps.
-#include "sky/sky_counts.h"
-
 #include "interop/lights.h"
 #include "sample_maps.h"
+#include "sky/radiance_map.h"
 
 #include <gtest/gtest.h>
 

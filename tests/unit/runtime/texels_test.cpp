@@ -1,5 +1,5 @@
 // Conversions of 16-bit texels.
-#include "scene/texels.h"
+#include "data/materials.h"
 
 #include <gtest/gtest.h>
 

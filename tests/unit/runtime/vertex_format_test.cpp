@@ -1,5 +1,5 @@
 // The compact forms of vertices keep their values within the bounds that vertex_format.h states.
-#include "vertices/vertex_format.h"
+#include "data/vertex_format.h"
 
 #include <gtest/gtest.h>
 

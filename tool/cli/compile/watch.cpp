@@ -9,7 +9,7 @@
 #include "cli/options/settings_option.h"
 #include "emit/package/write.h"
 
-#include <glint/package_watch.h>
+#include <glint/package.h>
 
 #include <fmt/format.h>
 

@@ -48,7 +48,7 @@ void describeRun(const compiler::CompiledPackage& package, WatchedRun& run);
 
 // Calls `compileOnce`, which reports and returns an exit code, at the start and after each change of an
 // input, until SIGINT or SIGTERM. After each run it prints a line, and after each new package it counts the
-// stamp up (glint/package_watch.h). Returns the exit code of the command, which is 0.
+// stamp up (glint/package.h). Returns the exit code of the command, which is 0.
 using CompileOnce = std::function<int(const Console&, const CompileArguments&, WatchedRun&)>;
 int watchInputs(const Console& console, const CompileArguments& arguments, const CompileOnce& compileOnce);
 

@@ -4,7 +4,7 @@
 #include "cli/console.h"
 #include "cli/options/usage.h"
 
-#include <glint/names.h>
+#include <glint/result.h>
 
 #include <CLI/CLI.hpp>
 

@@ -5,7 +5,7 @@
 #include "cli/report.h"
 #include "inspect/pipelines.h"
 
-#include <glint/memory_report.h>
+#include <glint/context.h>
 #include <glint/pipeline_statistics.h>
 #include <glint/renderer.h>
 

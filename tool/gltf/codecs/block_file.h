@@ -4,7 +4,7 @@
 #include "gltf/document/files.h"
 #include "gltf/scene.h"
 
-#include <glint/texel_format.h>
+#include <glint/scene_view.h>
 
 #include <cstdint>
 #include <optional>

@@ -5,7 +5,7 @@
 #include "gltf/texels/texture_use.h"
 
 #include <glint/result.h>
-#include <glint/texel_format.h>
+#include <glint/scene_view.h>
 
 #include <cstdint>
 #include <vector>

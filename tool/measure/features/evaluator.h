@@ -4,10 +4,10 @@
 #include "emit/feature_kernel.h"
 
 #include <glint/context.h>
+#include <glint/internal/scene_kernel.h>
 #include <glint/measure/check_materials.h>
 #include <glint/package.h>
 #include <glint/renderer.h>
-#include <glint/scene_kernel.h>
 #include <glint/scene_view/scene_view.h>
 
 #include <cstdint>

@@ -16,7 +16,7 @@
 #include "view/script.h"
 #include "view/settings_panel.h"
 
-#include <glint/package_watch.h>
+#include <glint/package.h>
 
 #include <array>
 #include <cstdint>

@@ -1,11 +1,11 @@
-// Makes the arguments of SceneEditor (glint/scene_edit.h) from a glTF material: a record, keys and textures.
+// Makes the arguments of SceneEditor (glint/scene.h) from a glTF material: a record, keys and textures.
 #pragma once
 
 #include "emit/material_layout.h"
 #include "gltf/scene.h"
 
 #include <glint/package.h>
-#include <glint/scene_edit.h>
+#include <glint/scene.h>
 
 #include <cstdint>
 #include <span>

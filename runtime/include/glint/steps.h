@@ -1,0 +1,272 @@
+// Traces, orders and shades the rays of a host, in the host's command buffer, with the host's bindings, over
+// a scene that the host keeps on the device by itself: its vertex buffers, acceleration structures, textures
+// and samplers stay where they are. docs/engine.md shows how to use it.
+#pragma once
+
+#include <glint/context.h>
+#include <glint/package.h>
+#include <glint/renderer_options.h>
+#include <glint/result.h>
+#include <glint/scene.h>
+#include <glint/scene_view.h>
+
+#include <vulkan/vulkan_core.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace glint {
+
+// --- The scene of a host ---
+
+// One geometry of one instance, which a ray can hit. Addresses are device addresses in the formats that the
+// package's shaders read; by default they are tightly packed: three uint32 a triangle, three floats a
+// position and a normal, four a tangent and a colour, two a UV. The address of an attribute may be 0 only if
+// the package's key of this primitive lacks the attribute.
+struct EngineGeometryView {
+    std::uint32_t mesh = 0;       // mesh of the package's scene that gives material and key
+    std::uint32_t primitive = 0;  // within the mesh
+    std::uint32_t instance = 0;   // index into EngineSceneView::instances
+    VkDeviceAddress indices = 0;
+    VkDeviceAddress positions = 0;
+    VkDeviceAddress normals = 0;
+    VkDeviceAddress tangents = 0;
+    VkDeviceAddress texCoords0 = 0;
+    VkDeviceAddress texCoords1 = 0;
+    VkDeviceAddress colors = 0;
+    VkDeviceAddress attributes = 0;  // of packs: the floats of Package::attributes(), vertex by vertex
+    // Bits for a host's own functions (`glint compile --host`), such as the format of its vertices. They are
+    // the upper half of GeometryRecord::flags.
+    std::uint16_t hostFlags = 0;
+};
+
+// A texture of the package's scene (PackageScene::textures) as the host has it.
+struct EngineTextureView {
+    std::uint32_t index = 0;  // in the host's array of images, Bindings::textures
+    std::uint32_t width = 0;  // texels of mip 0
+    std::uint32_t height = 0;
+};
+
+// A sampler of the package's scene (PackageScene::samplers) as the host has it.
+struct EngineSamplerView {
+    std::uint32_t index = 0;     // in the host's array of samplers, Bindings::samplers
+    float maxAnisotropy = 1.0F;  // of its filter; 1 without
+};
+
+// The rule by which the shaders find the geometry of a hit. A geometry's index in EngineSceneView::geometries
+// is the number of the instance's first geometry plus the index of the geometry in its BLAS.
+enum class RecordsBy : std::uint32_t {
+    CustomIndex = 0,       // instanceCustomIndex is the number of the instance's first geometry
+    CustomIndexTable = 1,  // firstRecords[instanceCustomIndex] is that number
+    InstanceTable = 2,     // firstRecords[place of the instance in the TLAS] is that number
+};
+
+struct EngineSceneView {
+    std::uint32_t packageScene = 0;  // index of the scene in the package
+    std::span<const EngineGeometryView> geometries;
+    std::span<const std::array<float, 12>> instances;  // objectToWorld, three rows of four
+    std::span<const EngineTextureView> textures;       // one for each of PackageScene::textures
+    std::span<const EngineSamplerView> samplers;       // one for each of PackageScene::samplers
+    std::span<const LightView> lights;
+    RecordsBy recordsBy = RecordsBy::CustomIndex;
+    std::span<const std::uint32_t> firstRecords{};
+    // For strategies with a pipeline of their own: for each hit record of the shader binding table, the
+    // number of the geometry that it is for. A hit's record is instanceShaderBindingTableRecordOffset plus
+    // the index of the geometry in its BLAS. If empty, record i is for geometry i.
+    std::span<const std::uint32_t> hitRecords{};
+};
+
+// The tables that Glint's shaders read of such a scene: a record for each geometry, instance, material and
+// light. The Context must outlive it; the host keeps the objects that it points to alive.
+class EngineScene {
+public:
+    // Makes the records, and records their upload. Nothing waits for the device. The requirements of
+    // `commands` and `frame`, and when the scene may be used and destroyed, are as in GpuScene::record(). The
+    // spans are not kept. Errors: "scene-package" (the package has no such scene or primitive),
+    // "engine-scene" (a number is out of range, an attribute that a key needs is missing, or a transform is
+    // not finite), "scene-light", and those of memory and Vulkan's calls.
+    static Result<std::unique_ptr<EngineScene>> record(Context& context, const Package& package,
+                                                       const EngineSceneView& scene, VkCommandBuffer commands,
+                                                       std::uint64_t frame);
+    // Says that the device has completed all commands of frames up to `frame`, and frees the staging memory.
+    void complete(std::uint64_t frame);
+    // Records the same into a command buffer of its own, submits it and waits for the device.
+    static Result<std::unique_ptr<EngineScene>> create(Context& context, const Package& package,
+                                                       const EngineSceneView& scene);
+    // The records of a scene that Glint has uploaded, for a host that brings rays of its own and no scene
+    // yet. The GpuScene must outlive it, and update() is GpuScene's. Rays are relative to its
+    // SceneView::origin. The host binds GpuScene::descriptorSet(). Error "scene-edit-share": the scene can be
+    // edited.
+    static Result<std::unique_ptr<EngineScene>> share(Context& context, GpuScene& scene);
+    ~EngineScene();
+    EngineScene(const EngineScene&) = delete;
+    EngineScene& operator=(const EngineScene&) = delete;
+
+    // Records new transforms, as many as at creation, and new lights, at most as many. Motion is then
+    // measured from the previous transforms. All places are relative to an origin of the engine's choice,
+    // which may follow its camera: `originMoved` says in metres how far it has moved since the previous
+    // transforms, which then count from the new one. The values are stored in the command buffer, so they
+    // need not be kept and any number of frames may be in flight. Errors: "engine-scene" (also for a shared
+    // scene), "scene-light".
+    Status update(VkCommandBuffer commands, std::span<const std::array<float, 12>> instances,
+                  std::span<const LightView> lights, const std::array<double, 3>& originMoved = {});
+
+    // The address of the material records, with the host's numbers of textures and samplers:
+    // glintHostMaterials() of the library.
+    VkDeviceAddress materials() const;
+    std::uint64_t bytes() const;  // on the device
+
+    struct State;  // for the runtime's own sources
+    State& state();
+
+private:
+    explicit EngineScene(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+// --- The steps ---
+
+// A ray of the host's list.
+struct EngineRay {
+    std::array<float, 3> origin{};
+    std::uint32_t slot = 0;            // where its answer goes
+    std::array<float, 3> direction{};  // unit
+    float coneWidth = 0.0F;   // footprint at the origin, metres; 0 reads the finest level of textures
+    float coneSpread = 0.0F;  // growth of the footprint in a metre
+};
+static_assert(sizeof(EngineRay) == 36);
+
+// The answer of a package with HitAnswer::Radiance: radiance, and how it was found.
+struct EngineRadiance {
+    std::array<float, 3> radiance{};
+    float path = 0.0F;  // 2: the ray hit, 3: it left the scene
+};
+static_assert(sizeof(EngineRadiance) == 16);
+
+// The answer of a package with HitAnswer::Surface. Vectors are in the world.
+struct EngineSurface {
+    std::array<float, 3> position{};         // of a miss: the direction of the ray
+    std::uint32_t shaderId = 0;              // of the case, or one of the numbers below
+    std::array<float, 3> normal{};           // unit, of shading, on the viewer's side
+    float roughness = 0.0F;                  // square root of the larger alpha
+    std::array<float, 3> geometricNormal{};  // unit, on the viewer's side
+    float clearance = 0.0F;  // metres along geometricNormal at which a ray that leaves the surface starts
+    std::array<float, 3> albedo{};    // of the diffuse reflection
+    float occlusion = 0.0F;           // of ambient light
+    std::array<float, 3> f0{};        // reflectance at normal incidence, of metal and dielectric together
+    float f90 = 0.0F;                 // and at grazing angles
+    std::array<float, 3> emission{};  // radiance; of an unlit material, its colour
+    float transmission = 0.0F;        // share of the light that passes, specularly or diffusely
+    std::array<float, 3> motion{};  // since the transforms before EngineScene::update(), metres; docs/host.md
+                                    // says how it follows vertices that move
+    std::uint32_t material = 0;     // index of the material in its file
+
+    static constexpr std::uint32_t kMiss = 0xFFFFFFFF;
+    static constexpr std::uint32_t kUnknown = 0xFFFFFFFE;  // no case has the shader ID of what it hit
+};
+static_assert(sizeof(EngineSurface) == 112);
+
+struct RayStepsOptions {
+    package::Strategy strategy = package::kDefaultStrategy;
+    // The same option as in RendererOptions.
+    std::optional<package::Tracer> tracer{};
+    std::optional<package::Ordering> ordering{};
+    bool checkOrder = false;
+    std::uint32_t pipelineThreads = 0;
+    bool backgroundPipelines = false;  // as in RendererOptions; begin() uses what was made by then
+    std::uint32_t maxRays = 0;         // in a batch, at least 1
+    // The layout of the host's pipelines. Its sets have the bindings of Package::bindings(), visible to
+    // compute shaders, or to the stages of ray tracing pipelines if they trace. Its range of push constants
+    // has RaySteps::kPushBytes bytes at Bindings::pushOffset for `pushStages`. It must outlive the RaySteps.
+    VkPipelineLayout layout = VK_NULL_HANDLE;
+    VkShaderStageFlags pushStages = VK_SHADER_STAGE_COMPUTE_BIT;  // of the range that overlaps those bytes
+};
+
+// The rays of one call.
+struct RayBatch {
+    VkDeviceAddress rays = 0;    // EngineRay[], aligned to 4 bytes
+    std::uint32_t rayCount = 0;  // at most RayStepsOptions::maxRays
+    // If not null, the device knows the number of rays: a uint32 at countOffset, at most maxRays. rayCount is
+    // then not used. The buffer needs VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
+    VkBuffer countBuffer = VK_NULL_HANDLE;
+    VkDeviceSize countOffset = 0;
+    VkDeviceAddress answers = 0;    // EngineRadiance[] (16-byte aligned) or EngineSurface[], by slot
+    std::uint32_t sampleIndex = 0;  // random numbers differ by slot, sample and seed
+    std::uint32_t seed = 0;
+    std::uint8_t mask = 0xFF;  // instances that share no bit with it are not hit
+    VkDeviceAddress tlas = 0;  // the acceleration structure, if Bindings::tlas is kByAddress
+    // The light for rays that leave the scene, with HitAnswer::Radiance.
+    SkyView sky{};
+    // With a package that reads an environment map. The host binds Environment's image at
+    // Bindings::environment.
+    const Environment* environment = nullptr;
+    float environmentRotation = 0.0F;  // radians, as in FrameOptions
+    float environmentIntensity = 1.0F;
+    float time = 0.0F;  // seconds that materials of packs may follow
+    Timing timing = Timing::Frame;
+};
+
+// The counters of a batch.
+struct RayStepsCounters {
+    std::uint32_t rays = 0;
+    std::uint32_t shadowRays = 0;             // deferred ones
+    std::uint32_t unknownShader = 0;          // hits whose shader ID no case has, without a fallback
+    std::uint32_t orderErrors = 0;            // with RayStepsOptions::checkOrder
+    std::vector<std::uint32_t> bucketCounts;  // misses, then hits by shader ID; filled if hits are ordered
+};
+
+// The pipelines and buffers that shade a host's rays. Context, EngineScene and the layout must outlive it. It
+// has no image, no camera and no descriptor set.
+//
+// The host records, in this order: its own descriptor sets for the bind points that the passes use (compute,
+// and ray tracing with that tracer), then either record() or begin(), trace(), order() and shade(), with
+// commands of its own between them if it likes. Afterwards the command buffer has another pipeline bound at
+// these bind points and other push constants in the package's bytes; nothing else of its state has changed.
+// Each step is a debug label, in which its passes are labels.
+class RaySteps {
+public:
+    static constexpr std::uint32_t kPushBytes = 24;
+
+    // Errors: "package-passes" (the package draws frames), "renderer-options", "package-strategy",
+    // "package-tracer", "device-tracer", "device-ordering", "ray-steps" (no rays, no layout, or more rays
+    // than the device can dispatch), and those of memory and Vulkan's calls.
+    static Result<std::unique_ptr<RaySteps>> create(Context& context, const Package& package,
+                                                    EngineScene& scene, const RayStepsOptions& options);
+    ~RaySteps();
+    RaySteps(const RaySteps&) = delete;
+    RaySteps& operator=(const RaySteps&) = delete;
+
+    // Starts a batch: waits for all earlier commands that write memory, and sets the constants. The values
+    // are stored in the command buffer. Batches share buffers, so on several queues the host orders them
+    // itself. Errors: "ray-steps", "sky", "environment-missing", "environment-unread".
+    Status begin(VkCommandBuffer commands, const RayBatch& batch);
+    // Traces the rays. Strategies that order no hits trace and shade in one pass, in shade(), so with them
+    // this and order() do nothing.
+    void trace(VkCommandBuffer commands);
+    // Orders the hits by shader.
+    void order(VkCommandBuffer commands);
+    // Shades the hits and writes the answers, which later commands may read at any stage.
+    void shade(VkCommandBuffer commands);
+    // Records all of these steps.
+    Status record(VkCommandBuffer commands, const RayBatch& batch);
+
+    // The results of the last batch, which the device must have completed. Error "frame-not-recorded".
+    Result<RayStepsCounters> counters();
+    Result<std::vector<PassTiming>> timings();
+
+    package::Tracer tracer() const;
+    package::Ordering ordering() const;
+    std::uint64_t bytes() const;  // of its buffers
+
+    struct State;  // for the runtime's own sources
+
+private:
+    explicit RaySteps(std::unique_ptr<State> state);
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace glint

@@ -1,0 +1,483 @@
+#include "data/emitters.h"
+
+#include "data/instance_math.h"
+#include "package/package.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <set>
+#include <span>
+#include <tuple>
+#include <utility>
+
+namespace glint {
+namespace {
+
+// A triangle's texels are looked up on a level where its box has no more than so many in each axis.
+constexpr std::uint32_t kMostCells = 16;
+// Levels that are larger than this along an axis are not kept.
+constexpr std::uint32_t kMostKept = 256;
+// SamplerEntry::wrapU.
+constexpr std::uint32_t kWrapRepeat = 0;
+constexpr std::uint32_t kWrapClamp = 1;
+
+// Returns the linear value of each number that a channel may have.
+std::vector<float> channelValues(bool isWide, bool isColor) {
+    const std::size_t count = isWide ? 65536 : 256;
+    std::vector<float> values(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const double value = static_cast<double>(i) / static_cast<double>(count - 1);
+        const double linear = value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+        values[i] = static_cast<float>(isColor ? linear : value);
+    }
+    return values;
+}
+
+// Texels [first, last] of an axis.
+struct TexelRange {
+    std::uint32_t first = 0;
+    std::uint32_t last = 0;
+};
+
+TexelRange rangeOf(double lower, double upper, std::uint32_t size, std::uint32_t wrap) {
+    const TexelRange whole{0, size - 1};
+    // A linear filter reaches half a texel further, and coordinates are rounded.
+    double first = std::floor(lower * size - 1.0);
+    double last = std::floor(upper * size + 1.0);
+    if (!(last - first < size)) {
+        return whole;
+    }
+    const double end = size - 1.0;
+    if (wrap == kWrapClamp) {
+        first = std::clamp(first, 0.0, end);
+        last = std::clamp(last, 0.0, end);
+    } else if (wrap == kWrapRepeat) {
+        const double turns = std::floor(first / size) * size;
+        first -= turns;
+        last -= turns;
+    }
+    if (first < 0.0 || last > end) {
+        return whole;
+    }
+    return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)};
+}
+
+}  // namespace
+
+EmissionTexels::Level EmissionTexels::halfOf(const Level& level) {
+    Level half{(level.width + 1) / 2, (level.height + 1) / 2, {}};
+    half.values.reserve(std::size_t{half.width} * half.height);
+    for (std::uint32_t y = 0; y < half.height; ++y) {
+        for (std::uint32_t x = 0; x < half.width; ++x) {
+            double sum = 0.0;
+            int count = 0;
+            for (std::uint32_t row = 2 * y; row < std::min(2 * y + 2, level.height); ++row) {
+                for (std::uint32_t column = 2 * x; column < std::min(2 * x + 2, level.width); ++column) {
+                    sum += level.values[std::size_t{row} * level.width + column];
+                    ++count;
+                }
+            }
+            half.values.push_back(static_cast<float>(sum / count));
+        }
+    }
+    return half;
+}
+
+EmissionTexels::EmissionTexels(const ImageView& image, bool isColor)
+    : width_(image.width), height_(image.height) {
+    const bool isWide = image.format == ImageView::Format::Rgba16;
+    const std::span<const std::uint8_t> pixels = isBlockFormat(image.format) ? image.decoded : image.pixels;
+    const std::vector<float> values = channelValues(isWide, isColor);
+    const auto channelAt = [&](std::size_t index) {
+        if (!isWide) {
+            return values[pixels[index]];
+        }
+        std::uint16_t number = 0;
+        std::memcpy(&number, &pixels[2 * index], sizeof number);
+        return values[number];
+    };
+    while (((std::max(width_, height_) - 1) >> skipped_) >= kMostKept) {
+        ++skipped_;
+    }
+    const std::uint32_t side = 1U << skipped_;
+    Level level{((width_ - 1) >> skipped_) + 1, ((height_ - 1) >> skipped_) + 1, {}};
+    level.values.reserve(std::size_t{level.width} * level.height);
+    for (std::uint32_t top = 0; top < height_; top += side) {
+        const std::uint32_t rows = std::min(side, height_ - top);
+        std::vector<double> sums(level.width);
+        for (std::uint32_t y = top; y < top + rows; ++y) {
+            for (std::uint32_t x = 0; x < width_; ++x) {
+                const std::size_t texel = 4 * (std::size_t{y} * width_ + x);
+                sums[x >> skipped_] += 0.2126F * channelAt(texel) + 0.7152F * channelAt(texel + 1) +
+                                       0.0722F * channelAt(texel + 2);
+            }
+        }
+        for (std::uint32_t x = 0; x < level.width; ++x) {
+            const std::uint32_t columns = std::min(side, width_ - (x << skipped_));
+            level.values.push_back(static_cast<float>(sums[x] / (static_cast<double>(rows) * columns)));
+        }
+    }
+    while (level.values.size() > 1) {
+        Level half = halfOf(level);
+        levels_.push_back(std::move(level));
+        level = std::move(half);
+    }
+    levels_.push_back(std::move(level));
+}
+
+double EmissionTexels::mean(const TexelBox& box, std::uint32_t wrapU, std::uint32_t wrapV) const {
+    const TexelRange u = rangeOf(box.lower[0], box.upper[0], width_, wrapU);
+    const TexelRange v = rangeOf(box.lower[1], box.upper[1], height_, wrapV);
+    std::uint32_t number = skipped_;
+    while ((u.last >> number) - (u.first >> number) >= kMostCells ||
+           (v.last >> number) - (v.first >> number) >= kMostCells) {
+        ++number;
+    }
+    const Level& level = levels_[number - skipped_];
+    double sum = 0.0;
+    int count = 0;
+    for (std::uint32_t y = v.first >> number; y <= v.last >> number; ++y) {
+        for (std::uint32_t x = u.first >> number; x <= u.last >> number; ++x) {
+            sum += level.values[std::size_t{y} * level.width + x];
+            ++count;
+        }
+    }
+    return sum / count;
+}
+
+namespace {
+
+using package::EmissionEntry;
+
+// Two NaNs count as the same, too.
+bool same(const gpu::vec3& a, const gpu::vec3& b) {
+    return std::ranges::equal(std::as_bytes(std::span(&a, 1)), std::as_bytes(std::span(&b, 1)));
+}
+
+bool showsSame(const EmitterTexture& a, const EmitterTexture& b) {
+    return a.texels == b.texels && same(a.record.rowU, b.record.rowU) && same(a.record.rowV, b.record.rowV) &&
+           a.sampler.wrapU == b.sampler.wrapU && a.sampler.wrapV == b.sampler.wrapV && a.second == b.second &&
+           a.animated == b.animated;
+}
+
+double meanOf(const EmitterShape& shape, const EmitterTexture& texture, std::size_t triangle) {
+    const std::vector<std::array<float, 2>>& set = shape.texCoords[texture.second ? 1 : 0];
+    if (set.empty() || texture.animated) {
+        return texture.texels->mean();
+    }
+    const gpu::TextureRecord& record = texture.record;
+    TexelBox box{{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+        const std::array<float, 2>& place = set[shape.indices[3 * triangle + corner]];
+        const double u = place[0];
+        const double v = place[1];
+        const double at[2] = {record.rowU.x * u + record.rowU.y * v + record.rowU.z,
+                              record.rowV.x * u + record.rowV.y * v + record.rowV.z};
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            box.lower[axis] = std::min(box.lower[axis], at[axis]);
+            box.upper[axis] = std::max(box.upper[axis], at[axis]);
+        }
+    }
+    return texture.texels->mean(box, texture.sampler.wrapU, texture.sampler.wrapV);
+}
+
+}  // namespace
+
+EmitterShape::EmitterShape(const EmissionEntry& emission, const PrimitiveView& view,
+                           std::span<const std::uint32_t> ordered)
+    : positions(view.positions.begin(), view.positions.end()), indices(ordered.begin(), ordered.end()) {
+    if (emission.texture != EmissionEntry::kNone) {
+        texCoords[0].assign(view.texCoords0.begin(), view.texCoords0.end());
+        texCoords[1].assign(view.texCoords1.begin(), view.texCoords1.end());
+    }
+}
+
+std::optional<EmitterTexture> emitterTexture(const EmissionEntry& emission, std::uint32_t featureInputs,
+                                             const gpu::TextureRecord& record,
+                                             std::span<const package::SamplerEntry> samplers,
+                                             std::shared_ptr<const EmissionTexels> texels) {
+    if (texels == nullptr || (featureInputs & emission.textureInput) == 0 ||
+        emission.texture == EmissionEntry::kNone) {
+        return std::nullopt;
+    }
+    // This is the choice of readsSecondSet() in hit/texture.glsl.
+    const bool second = (featureInputs & emission.texCoord1Input) != 0 &&
+                        ((featureInputs & emission.texCoord0Input) == 0 || record.texCoord == 1);
+    return EmitterTexture{std::move(texels), record, samplers[record.samplerIndex], second, false};
+}
+
+TexelMeans EmitterMeans::find(const std::shared_ptr<const EmitterShape>& shape, std::uint32_t material,
+                              const std::optional<EmitterTexture>& texture) {
+    if (!texture) {
+        return nullptr;
+    }
+    const std::pair key(shape.get(), material);
+    const auto known = known_.find(key);
+    if (known != known_.end() && showsSame(known->second.texture, *texture)) {
+        known->second.used = true;
+        return known->second.means;
+    }
+    auto means = std::make_shared<std::vector<float>>(shape->indices.size() / 3);
+    for (std::size_t i = 0; i < means->size(); ++i) {
+        (*means)[i] = static_cast<float>(meanOf(*shape, *texture, i));
+    }
+    known_[key] = {shape, *texture, means, true};
+    return means;
+}
+
+void EmitterMeans::forgetUnused() {
+    std::erase_if(known_, [](const auto& entry) { return !entry.second.used; });
+    for (auto& [key, known] : known_) {
+        known.used = false;
+    }
+}
+
+namespace {
+
+using Double3 = std::array<double, 3>;
+using package::EmissionEntry;
+
+Double3 differenceOf(const Double3& a, const Double3& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+Double3 crossOf(const Double3& a, const Double3& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Double3 pointAt(const std::array<float, 12>& rows, const std::array<float, 3>& point) {
+    Double3 result{};
+    for (std::size_t row = 0; row < 3; ++row) {
+        result[row] = rows[4 * row + 3];
+        for (std::size_t column = 0; column < 3; ++column) {
+            result[row] += static_cast<double>(rows[4 * row + column]) * point[column];
+        }
+    }
+    return result;
+}
+
+EmitterBounds boundsOf(const std::array<Double3, 3>& corners, bool twoSided, bool mirrored,
+                       double luminance) {
+    EmitterBounds bounds;
+    bounds.lower = bounds.upper = corners[0];
+    for (const Double3& corner : corners) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            bounds.lower[axis] = std::min(bounds.lower[axis], corner[axis]);
+            bounds.upper[axis] = std::max(bounds.upper[axis], corner[axis]);
+        }
+    }
+    const Double3 normal =
+        crossOf(differenceOf(corners[1], corners[0]), differenceOf(corners[2], corners[0]));
+    const double length = std::hypot(normal[0], normal[1], normal[2]);
+    bounds.twoSided = twoSided;
+    if (std::isfinite(length) && length > 0.0) {
+        bounds.intensity = 0.5 * length * luminance;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            bounds.normal[axis] = (mirrored ? -normal[axis] : normal[axis]) / length;
+        }
+    }
+    return bounds;
+}
+
+}  // namespace
+
+double emittedLuminance(std::span<const std::uint8_t> record, const EmissionEntry& emission) {
+    std::array<float, 3> color{};
+    float strength = 1.0F;
+    if (emission.factor != EmissionEntry::kNone) {
+        std::memcpy(color.data(), &record[emission.factor], sizeof color);
+    }
+    if (emission.strength != EmissionEntry::kNone) {
+        std::memcpy(&strength, &record[emission.strength], sizeof strength);
+    }
+    const double sum = 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2];
+    return std::isfinite(sum * strength) ? std::max(sum * strength, 0.0) : 0.0;
+}
+
+Emitters::Emitters(const EmissionEntry& emission, std::vector<EmitterPart> parts)
+    : emission_(emission), parts_(std::move(parts)) {
+    std::ranges::sort(parts_, {}, [](const EmitterPart& part) {
+        return std::tuple(part.instance, part.primitive, part.first);
+    });
+    for (const EmitterPart& part : parts_) {
+        for (std::uint32_t i = 0; i < part.count; ++i) {
+            records.push_back({part.geometry, i, gpu::kNoEmitter});
+        }
+    }
+}
+
+std::vector<std::uint32_t> Emitters::firstsOf(std::size_t geometries) const {
+    std::vector<std::uint32_t> firsts(geometries, gpu::kNoEmitter);
+    std::uint32_t next = 0;
+    for (const EmitterPart& part : parts_) {
+        firsts[part.geometry] = next;
+        next += part.count;
+    }
+    return firsts;
+}
+
+std::vector<EmitterBounds> Emitters::boundsAt(std::span<const InstanceView> instances) const {
+    std::vector<EmitterBounds> all;
+    all.reserve(records.size());
+    for (const EmitterPart& part : parts_) {
+        const InstanceView& instance = instances[part.instance];
+        const std::array<float, 12>& rows = instance.objectToWorld;
+        const bool shown = instance.visible && isInvertible(rows);
+        const bool mirrored = (makeInstanceRecord(rows).flags & gpu::kInstanceMirrored) != 0;
+        const Box box = part.motion != nullptr ? part.motion->at(instance) : Box::nothing();
+        for (std::size_t i = part.first; i < std::size_t{part.first} + part.count; ++i) {
+            std::array<Double3, 3> corners{};
+            for (std::size_t corner = 0; corner < 3; ++corner) {
+                corners[corner] = pointAt(rows, part.shape->positions[part.shape->indices[3 * i + corner]]);
+            }
+            const double texels = part.texels != nullptr ? (*part.texels)[i] : 1.0;
+            const double luminance = shown ? part.luminance * texels : 0.0;
+            all.push_back(boundsOf(corners, part.twoSided, mirrored, luminance));
+            if (part.motion != nullptr) {
+                // Only the device knows where in the box the triangle is, and where it faces.
+                all.back().lower = box.min;
+                all.back().upper = box.max;
+                all.back().normal = {};
+            }
+        }
+    }
+    return all;
+}
+
+void Emitters::takeMaterials(std::span<const ChangingMaterial> changing) {
+    for (EmitterPart& part : parts_) {
+        const auto found = std::ranges::lower_bound(changing, part.material, {}, &ChangingMaterial::material);
+        if (found != changing.end() && found->material == part.material) {
+            part.luminance = emittedLuminance(found->record, emission_);
+        }
+    }
+}
+
+void Emitters::setLeaves(const LightTree& tree) {
+    for (gpu::EmitterRecord& record : records) {
+        record.leaf = gpu::kNoEmitter;
+    }
+    for (std::uint32_t node = 0; node < tree.treeNodes; ++node) {
+        const std::uint32_t next = tree.nodes[node].next;
+        if ((next & gpu::kLightLeaf) != 0 && (next & gpu::kLightEmitter) != 0) {
+            records[next & ~(gpu::kLightLeaf | gpu::kLightEmitter)].leaf = node;
+        }
+    }
+}
+
+void Emitters::setLeaves(std::span<const EmitterBounds> bounds) {
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        records[i].leaf = bounds[i].intensity > 0.0 ? 0 : gpu::kNoEmitter;
+    }
+}
+
+namespace {
+
+// Makes the parts of a scene that is not edited.
+class PartsOfScene {
+public:
+    PartsOfScene(const EmissionEntry& emission, const PackageScene& known, const SceneView& scene,
+                 std::span<const std::vector<std::uint32_t>> ordered, std::span<const std::uint8_t> materials)
+        : emission_(emission),
+          known_(known),
+          scene_(scene),
+          ordered_(ordered),
+          materials_(tableWith(known.materials, materials)) {
+        for (const MaterialView& material : scene.materials) {
+            if (scene.moves) {
+                changing_.insert(material.material);
+            }
+        }
+    }
+
+    EmitterPart part(const TriangleRange& range, const package::PrimitiveEntry& entry, bool deforms) {
+        EmitterPart part;
+        part.primitive = entry.primitive;
+        part.material = entry.materialIndex;
+        part.first = range.first;
+        part.count = range.count;
+        part.twoSided = (entry.geometryFlags & gpu::kGeometryDoubleSided) != 0;
+        part.luminance = emittedLuminance(
+            materials_.bytes.subspan(std::size_t{entry.materialIndex} * materials_.recordBytes,
+                                     materials_.recordBytes),
+            emission_);
+        std::shared_ptr<const EmitterShape>& shape = shapes_[range.primitive];
+        if (shape == nullptr) {
+            const PrimitiveView& view = scene_.primitives[range.primitive];
+            const bool sorted = !ordered_.empty() && !ordered_[range.primitive].empty();
+            shape = std::make_shared<EmitterShape>(
+                emission_, view, sorted ? std::span(ordered_[range.primitive]) : view.indices);
+        }
+        part.shape = shape;
+        part.texels = means_.find(shape, entry.materialIndex, textureOf(entry));
+        if (deforms) {
+            std::shared_ptr<const MotionBounds>& bounds = motions_[entry.mesh];
+            if (bounds == nullptr) {
+                const PrimitiveRange mesh = primitivesOf(scene_.primitives, entry.mesh);
+                bounds = std::make_shared<MotionBounds>(
+                    scene_.primitives.subspan(mesh.first, mesh.end - mesh.first));
+            }
+            part.motion = bounds;
+        }
+        return part;
+    }
+
+private:
+    std::optional<EmitterTexture> textureOf(const package::PrimitiveEntry& entry) {
+        if ((entry.featureInputs & emission_.textureInput) == 0 ||
+            emission_.texture == EmissionEntry::kNone) {
+            return std::nullopt;
+        }
+        const gpu::TextureRecord record = textureAt(materials_, entry.materialIndex, emission_.texture);
+        std::shared_ptr<const EmissionTexels>& texels = texels_[record.textureIndex];
+        if (texels == nullptr) {
+            const package::TextureEntry& texture = known_.textures[record.textureIndex];
+            texels = std::make_shared<EmissionTexels>(scene_.images[texture.image], texture.srgb != 0);
+        }
+        std::optional<EmitterTexture> result =
+            emitterTexture(emission_, entry.featureInputs, record, known_.samplers, texels);
+        // An animation may move the texture.
+        result->animated = changing_.contains(entry.materialIndex);
+        return result;
+    }
+
+    const EmissionEntry& emission_;
+    const PackageScene& known_;
+    const SceneView& scene_;
+    std::span<const std::vector<std::uint32_t>> ordered_;
+    MaterialTable materials_;
+    std::set<std::uint32_t> changing_;
+    std::map<std::uint32_t, std::shared_ptr<const EmitterShape>> shapes_;    // by primitive of the scene
+    std::map<std::uint32_t, std::shared_ptr<const EmissionTexels>> texels_;  // by texture
+    std::map<std::uint32_t, std::shared_ptr<const MotionBounds>> motions_;   // by mesh
+    EmitterMeans means_;
+};
+
+}  // namespace
+
+Emitters emittersOf(const Package& package, const PackageScene& known, const SceneView& scene,
+                    const SceneLayout& layout, const DeformedAddresses& deformed,
+                    std::span<const std::vector<std::uint32_t>> ordered,
+                    std::span<const std::uint8_t> materials) {
+    PartsOfScene maker(*package.emission(), known, scene, ordered, materials);
+    std::vector<EmitterPart> parts;
+    for (const PartInstance& placed : layout.partInstances) {
+        std::uint32_t geometry = placed.customIndex;
+        for (const TriangleRange& range : layout.parts[placed.part].ranges) {
+            const std::uint32_t own = geometry++;
+            const PrimitiveView& view = scene.primitives[range.primitive];
+            const package::PrimitiveEntry& entry = *known.findPrimitive(view.mesh, view.primitive);
+            if ((entry.geometryFlags & gpu::kGeometryEmitter) != 0) {
+                parts.push_back(
+                    maker.part(range, entry, deformed.contains({placed.instance, range.primitive})));
+                parts.back().geometry = own;
+                parts.back().instance = placed.instance;
+            }
+        }
+    }
+    return {*package.emission(), std::move(parts)};
+}
+
+}  // namespace glint

@@ -1,0 +1,510 @@
+#include "data/geometry.h"
+
+#include "data/instance_math.h"
+#include "data/vertex_format.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <set>
+
+namespace glint {
+namespace {
+
+// Vectors of four floats get an alignment of their size, which suits every device.
+constexpr VkDeviceSize kAttributeAlignment = 16;
+constexpr std::size_t kMostShortVertices = std::size_t{1} << 16;
+
+struct AttributeUpload {
+    std::span<const std::uint8_t> bytes;
+    VkDeviceAddress GpuPrimitive::*address;
+    VkDeviceSize offset = 0;
+};
+
+// The words of attributes in a compact form. An attribute in another form has none.
+struct CompactWords {
+    std::vector<std::uint32_t> indices;
+    std::vector<std::uint32_t> normals;
+    std::vector<std::uint32_t> tangents;
+    std::vector<std::uint32_t> texCoords0;
+    std::vector<std::uint32_t> texCoords1;
+    std::vector<std::uint32_t> colors;
+    std::uint32_t forms = 0;
+};
+
+// Returns two indices in each word.
+std::vector<std::uint32_t> shortIndices(std::span<const std::uint32_t> indices) {
+    std::vector<std::uint32_t> words((indices.size() + 1) / 2);
+    for (std::size_t i = 0; i < indices.size(); ++i) {
+        words[i / 2] |= indices[i] << (i % 2 * 16);
+    }
+    return words;
+}
+
+CompactWords compactWords(const PrimitiveView& view) {
+    CompactWords compact;
+    const auto keep = [&](std::optional<std::vector<std::uint32_t>> words, std::uint32_t form,
+                          std::vector<std::uint32_t>& target) {
+        if (words && !words->empty()) {
+            target = std::move(*words);
+            compact.forms |= form;
+        }
+    };
+    const bool deforms = !view.joints.empty() || !view.targets.empty();
+    if (!deforms) {
+        keep(packNormals(view.normals), gpu::kGeometryPackedNormals, compact.normals);
+        keep(packTangents(view.tangents), gpu::kGeometryPackedTangents, compact.tangents);
+    }
+    if (!view.texCoords0.empty()) {
+        keep(packTexCoords(view.texCoords0), gpu::kGeometryPackedTexCoords0, compact.texCoords0);
+    }
+    if (!view.texCoords1.empty()) {
+        keep(packTexCoords(view.texCoords1), gpu::kGeometryPackedTexCoords1, compact.texCoords1);
+    }
+    if (std::optional<PackedColors> colors = packColors(view.colors)) {
+        keep(std::move(colors->words), colors->bits == 8 ? gpu::kGeometryColors8 : gpu::kGeometryColors16,
+             compact.colors);
+    }
+    return compact;
+}
+
+std::vector<AttributeUpload> attributesOf(const PrimitiveView& view, const CompactWords& compact,
+                                          const PrimitiveContent& content) {
+    const auto either = [](const std::vector<std::uint32_t>& words, const auto& values) {
+        return words.empty() ? bytesOf(values) : bytesOf(std::span(words));
+    };
+    const std::span<const std::uint32_t> positions = content.positionWords;
+    return {{either(compact.indices, content.indices), &GpuPrimitive::indices},
+            {positions.empty() ? bytesOf(view.positions) : bytesOf(positions), &GpuPrimitive::positions},
+            {either(compact.normals, view.normals), &GpuPrimitive::normals},
+            {either(compact.tangents, view.tangents), &GpuPrimitive::tangents},
+            {either(compact.texCoords0, view.texCoords0), &GpuPrimitive::texCoords0},
+            {either(compact.texCoords1, view.texCoords1), &GpuPrimitive::texCoords1},
+            {either(compact.colors, view.colors), &GpuPrimitive::colors},
+            {bytesOf(content.declared), &GpuPrimitive::attributes}};
+}
+
+// Uploads the positions that acceleration structures are built from.
+Status uploadBuildInput(Context::State& context, Uploader& uploader, const PrimitiveView& view,
+                        MemoryPool& pool, GpuPrimitive& primitive) {
+    GLINT_TRY(auto buffer, createBuffer(context, pool, bytesOf(view.positions).size(),
+                                        VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
+                                            VK_BUFFER_USAGE_TRANSFER_DST_BIT));
+    primitive.buildPositions = buffer.address;
+    primitive.buildInput = std::move(buffer);
+    return uploader.copyToBuffer(bytesOf(view.positions), primitive.buildInput, 0);
+}
+
+}  // namespace
+
+VkDeviceAddress indicesFrom(const GpuPrimitive& primitive, std::uint32_t triangle) {
+    const bool isShort = (primitive.forms & gpu::kGeometryShortIndices) != 0;
+    const VkDeviceSize bytes = isShort ? sizeof(std::uint16_t) : sizeof(std::uint32_t);
+    return primitive.indices + VkDeviceSize{3} * triangle * bytes;
+}
+
+BlasGeometry blasGeometry(const GpuPrimitive& primitive, std::uint32_t first, std::uint32_t count) {
+    BlasGeometry geometry;
+    geometry.positions = primitive.buildPositions;
+    geometry.indices = indicesFrom(primitive, first);
+    geometry.shortIndices = (primitive.forms & gpu::kGeometryShortIndices) != 0;
+    geometry.vertexCount = primitive.vertexCount;
+    geometry.triangleCount = count;
+    return geometry;
+}
+
+Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                                     const PrimitiveView& view, const PrimitiveContent& content,
+                                     const PrimitiveUpload& how) {
+    GpuPrimitive primitive;
+    primitive.vertexCount = static_cast<std::uint32_t>(view.positions.size());
+    primitive.triangleCount = static_cast<std::uint32_t>(view.indices.size() / 3);
+    if (primitive.triangleCount == 0) {
+        return primitive;
+    }
+    CompactWords compact = how.form == VertexForm::Full ? CompactWords{} : compactWords(view);
+    // Shaders read words, so triangles of 16-bit indices must begin where the primitive does.
+    if (how.form != VertexForm::Full && primitive.vertexCount <= kMostShortVertices &&
+        primitive.triangleCount <= how.unsplitTriangles) {
+        compact.indices = shortIndices(content.indices);
+        compact.forms |= gpu::kGeometryShortIndices;
+    }
+    if (!content.positionWords.empty()) {
+        compact.forms |= gpu::kGeometryPackedPositions;
+    }
+    primitive.forms = compact.forms;
+    std::vector<AttributeUpload> attributes = attributesOf(view, compact, content);
+    VkDeviceSize bytes = 0;
+    for (AttributeUpload& attribute : attributes) {
+        attribute.offset = bytes;
+        bytes +=
+            (attribute.bytes.size() + kAttributeAlignment - 1) / kAttributeAlignment * kAttributeAlignment;
+    }
+    // The addresses of a buffer are aligned for its usage only. The slack aligns them for attributes too.
+    GLINT_TRY(auto buffer,
+              createBuffer(context, pool, bytes + kAttributeAlignment,
+                           VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
+                               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT));
+    const VkDeviceSize slack =
+        (kAttributeAlignment - buffer.address % kAttributeAlignment) % kAttributeAlignment;
+    for (const AttributeUpload& attribute : attributes) {
+        if (attribute.bytes.empty()) {
+            continue;
+        }
+        const VkDeviceSize offset = slack + attribute.offset;
+        primitive.*attribute.address = buffer.address + offset;
+        GLINT_TRY_DO(uploader.copyToBuffer(attribute.bytes, buffer, offset));
+    }
+    primitive.buffer = std::move(buffer);
+    primitive.buildPositions = primitive.positions;
+    if (!content.positionWords.empty()) {
+        GLINT_TRY_DO(uploadBuildInput(context, uploader, view, *how.builds, primitive));
+    }
+    return primitive;
+}
+
+gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, const GpuPrimitive& primitive,
+                                       std::uint32_t firstTriangle, std::uint32_t instance) {
+    gpu::GeometryRecord record = recordOf(entry, primitive, instance);
+    record.flags |= primitive.forms;
+    record.indices = indicesFrom(primitive, firstTriangle);
+    return record;
+}
+
+namespace {
+
+// The parts of a mesh, as indices into SceneLayout::parts.
+struct PartIndices {
+    std::vector<std::uint32_t> main;
+    std::vector<std::uint32_t> decided;  // of opaque triangles whose primitives have others in `main`
+};
+// The parts of each mesh that has triangles.
+using PartsOfMesh = std::map<std::uint32_t, PartIndices>;
+
+// Appends the triangles of a primitive to `ranges`. It begins a new part when one is full.
+void appendRanges(std::uint32_t primitive, std::uint32_t triangleCount, const BlasCapacity& capacity,
+                  std::vector<std::vector<TriangleRange>>& ranges) {
+    const auto room = [&]() -> std::uint64_t {
+        if (ranges.empty() || ranges.back().size() >= capacity.geometries) {
+            return 0;
+        }
+        std::uint64_t held = 0;
+        for (const TriangleRange& range : ranges.back()) {
+            held += range.count;
+        }
+        return capacity.triangles - held;
+    };
+    for (std::uint32_t first = 0; first < triangleCount;) {
+        // A primitive that fits into one part is not split.
+        if (room() < std::min<std::uint64_t>(triangleCount - first, capacity.triangles)) {
+            ranges.emplace_back();
+        }
+        const auto count = static_cast<std::uint32_t>(std::min<std::uint64_t>(triangleCount - first, room()));
+        ranges.back().push_back({primitive, first, count, count});
+        first += count;
+    }
+}
+
+// Parts by whether they are seen from both sides.
+using PartRanges = std::map<bool, std::vector<std::vector<TriangleRange>>>;
+
+// Appends the range of a primitive, which fits into one part. It begins a new part when one is full.
+void appendRange(const TriangleRange& range, const BlasCapacity& capacity,
+                 std::vector<std::vector<TriangleRange>>& ranges) {
+    appendRanges(range.primitive, range.count, capacity, ranges);
+    ranges.back().back() = range;
+}
+
+// The inputs of a scene's partition.
+struct PartitionInput {
+    const PackageScene& known;
+    const SceneView& scene;
+    std::span<const GpuPrimitive> primitives;
+    const BlasCapacity& capacity;
+    const std::map<std::uint32_t, OpacitySplit>& splits;
+};
+
+// Appends the parts of a mesh and returns their indices. If `instance` is given, it alone uses these parts.
+PartIndices partition(const PartitionInput& input, std::uint32_t mesh, std::optional<std::uint32_t> instance,
+                      std::vector<MeshPart>& parts) {
+    PartRanges members;
+    PartRanges decided;
+    const PrimitiveRange own = primitivesOf(input.scene.primitives, mesh);
+    for (std::uint32_t i = own.first; i < own.end; ++i) {
+        const PrimitiveView& view = input.scene.primitives[i];
+        const std::uint32_t count = input.primitives[i].triangleCount;
+        if (count == 0) {
+            continue;
+        }
+        const std::uint32_t flags = input.known.findPrimitive(view.mesh, view.primitive)->geometryFlags;
+        const bool doubleSided = (flags & gpu::kGeometryDoubleSided) != 0;
+        const auto split = input.splits.find(i);
+        if (split == input.splits.end()) {
+            appendRanges(i, count, input.capacity, members[doubleSided]);
+            continue;
+        }
+        const auto [tested, opaque] = split->second;
+        if (tested == 0) {
+            appendRange({i, 0, opaque, count, true}, input.capacity, members[doubleSided]);
+            continue;
+        }
+        appendRange({i, 0, tested, count, false}, input.capacity, members[doubleSided]);
+        if (opaque > 0) {
+            appendRange({i, tested, opaque, 0, true}, input.capacity, decided[doubleSided]);
+        }
+    }
+    PartIndices indices;
+    const auto append = [&](PartRanges& from, std::vector<std::uint32_t>& target) {
+        for (auto& [doubleSided, blases] : from) {
+            for (std::vector<TriangleRange>& ranges : blases) {
+                target.push_back(static_cast<std::uint32_t>(parts.size()));
+                parts.push_back({mesh, doubleSided, std::move(ranges), instance});
+            }
+        }
+    };
+    append(members, indices.main);
+    append(decided, indices.decided);
+    return indices;
+}
+
+// Makes the parts that instances share. A mesh gets such parts unless all its instances deform it.
+PartsOfMesh sharedParts(const PartitionInput& input, const std::vector<bool>& deforms,
+                        std::vector<MeshPart>& parts) {
+    const SceneView& scene = input.scene;
+    std::set<std::uint32_t> meshes;
+    for (const PrimitiveView& view : scene.primitives) {
+        meshes.insert(view.mesh);
+    }
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+        if (deforms[i]) {
+            meshes.erase(scene.instances[i].mesh);
+        }
+    }
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+        if (!deforms[i]) {
+            meshes.insert(scene.instances[i].mesh);
+        }
+    }
+    PartsOfMesh partsOfMesh;
+    for (const std::uint32_t mesh : meshes) {
+        PartIndices indices = partition(input, mesh, std::nullopt, parts);
+        if (!indices.main.empty()) {
+            partsOfMesh[mesh] = std::move(indices);
+        }
+    }
+    return partsOfMesh;
+}
+
+void placeDeformed(const DeformedAddresses& deformed, std::uint32_t instance, std::uint32_t primitive,
+                   gpu::GeometryRecord& record) {
+    if (const auto found = deformed.find({instance, primitive}); found != deformed.end()) {
+        record.positions = found->second.positions;
+        record.normals = found->second.normals;
+        record.tangents = found->second.tangents;
+        record.flags &=
+            ~(gpu::kGeometryPackedPositions | gpu::kGeometryPackedNormals | gpu::kGeometryPackedTangents);
+    }
+}
+
+// Appends the records and draws of a part of an instance.
+void placePart(const PartitionInput& input, const DeformedAddresses& deformed, std::uint32_t part,
+               std::uint32_t instance, bool hidden, SceneLayout& layout) {
+    const bool mirrored = (layout.instances[instance].flags & gpu::kInstanceMirrored) != 0;
+    const MeshPart& placed = layout.parts[part];
+    layout.partInstances.push_back({part, instance, static_cast<std::uint32_t>(layout.geometries.size())});
+    for (const TriangleRange& range : placed.ranges) {
+        const PrimitiveView& view = input.scene.primitives[range.primitive];
+        const package::PrimitiveEntry& entry = *input.known.findPrimitive(view.mesh, view.primitive);
+        if (range.drawn > 0) {
+            layout.draws.push_back({static_cast<std::uint32_t>(layout.geometries.size()), 3 * range.drawn,
+                                    placed.doubleSided, mirrored, instance, hidden, range.primitive});
+            layout.triangles += range.drawn;
+        }
+        layout.geometries.push_back(
+            makeGeometryRecord(entry, input.primitives[range.primitive], range.first, instance));
+        layout.primitives.push_back(range.primitive);
+        placeDeformed(deformed, instance, range.primitive, layout.geometries.back());
+    }
+}
+
+Diagnostic tooManyGeometries(std::string where) {
+    return makeError("scene-geometries", std::move(where),
+                     "the scene's instances have more than 2^24 - 2 primitives altogether",
+                     "join primitives of a material, or use fewer instances");
+}
+
+}  // namespace
+
+std::vector<float> joinAttributes(const Package& package, const package::PrimitiveEntry& entry,
+                                  const PrimitiveView& view) {
+    const std::uint64_t key = std::uint64_t{entry.featureInputs} << 32U | entry.featureLobes;
+    const std::span<const package::AttributeEntry> known = package.attributes();
+    if (std::ranges::none_of(known, [&](const auto& row) { return (row.feature & key) != 0; })) {
+        return {};
+    }
+    return joinAllAttributes(package, view);
+}
+
+std::vector<float> joinAllAttributes(const Package& package, const PrimitiveView& view) {
+    const std::span<const package::AttributeEntry> known = package.attributes();
+    std::size_t stride = 0;
+    for (const package::AttributeEntry& row : known) {
+        stride += row.channels;
+    }
+    std::vector<float> joined(stride * view.positions.size());
+    std::size_t offset = 0;
+    for (const package::AttributeEntry& row : known) {
+        const auto given = std::ranges::find(view.attributes, package.string(row.name), &AttributeView::name);
+        for (std::size_t vertex = 0; vertex < view.positions.size(); ++vertex) {
+            float* const target = &joined[vertex * stride + offset];
+            if (given == view.attributes.end()) {
+                std::copy_n(row.fallback, row.channels, target);
+            } else {
+                std::copy_n(&given->values[vertex * row.channels], row.channels, target);
+            }
+        }
+        offset += row.channels;
+    }
+    return joined;
+}
+
+Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, MemoryPool& pool,
+                                                   Uploader& uploader, const Package& package,
+                                                   const PackageScene& known,
+                                                   std::span<const PrimitiveView> primitives,
+                                                   std::span<const GridPositions> positions,
+                                                   const PrimitiveUpload& how,
+                                                   std::span<const std::vector<std::uint32_t>> ordered) {
+    std::vector<GpuPrimitive> uploaded;
+    uploaded.reserve(primitives.size());
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+        const PrimitiveView& view = primitives[i];
+        const std::span<const std::uint32_t> indices =
+            ordered.empty() || ordered[i].empty() ? view.indices : std::span(ordered[i]);
+        const std::vector<float> attributes =
+            joinAttributes(package, *known.findPrimitive(view.mesh, view.primitive), view);
+        GLINT_TRY(auto primitive, uploadPrimitive(context, pool, uploader, view,
+                                                  {indices, attributes, positions[i].words}, how));
+        uploaded.push_back(std::move(primitive));
+    }
+    return uploaded;
+}
+
+PrimitiveRange primitivesOf(std::span<const PrimitiveView> primitives, std::uint32_t mesh) {
+    const auto first = std::ranges::lower_bound(primitives, mesh, {}, &PrimitiveView::mesh);
+    const auto end = std::ranges::upper_bound(primitives, mesh, {}, &PrimitiveView::mesh);
+    return {static_cast<std::uint32_t>(first - primitives.begin()),
+            static_cast<std::uint32_t>(end - primitives.begin())};
+}
+
+Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scene,
+                                std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
+                                const DeformedAddresses& deformed,
+                                const std::map<std::uint32_t, OpacitySplit>& splits) {
+    SceneLayout layout;
+    const PartitionInput input{known, scene, primitives, capacity, splits};
+    std::vector<bool> deforms(scene.instances.size());
+    for (const auto& [place, vertices] : deformed) {
+        deforms[place.first] = true;
+    }
+    const PartsOfMesh partsOfMesh = sharedParts(input, deforms, layout.parts);
+    // The parts of decided triangles, each with its instance. They are placed after all others.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> decided;
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+        const InstanceView& instance = scene.instances[i];
+        const gpu::InstanceRecord record = makeInstanceRecord(instance.objectToWorld);
+        layout.instances.push_back(record);
+        PartIndices parts;
+        if (deforms[i]) {
+            parts = partition(input, instance.mesh, i, layout.parts);
+        } else if (const auto shared = partsOfMesh.find(instance.mesh); shared != partsOfMesh.end()) {
+            parts = shared->second;
+        }
+        // An instance that is not visible is left out. A flattened one can't be in a TLAS, whose transforms
+        // must be invertible. It is not drawn either: a surface that the camera sees and reflections don't
+        // would be worse than none. In a scene that moves, such an instance keeps its place but is hidden,
+        // because it may be whole again in the next frame.
+        const bool hidden = !instance.visible || !isInvertible(instance.objectToWorld);
+        if (hidden && !scene.moves) {
+            continue;
+        }
+        for (const std::uint32_t part : parts.main) {
+            placePart(input, deformed, part, i, hidden, layout);
+        }
+        for (const std::uint32_t part : parts.decided) {
+            decided.emplace_back(part, i);
+        }
+        if (layout.geometries.size() > kMostGeometries) {
+            return tooManyGeometries("instance " + std::to_string(i));
+        }
+    }
+    for (const auto& [part, instance] : decided) {
+        placePart(input, deformed, part, instance, false, layout);
+    }
+    if (layout.geometries.size() > kMostGeometries) {
+        return tooManyGeometries("");
+    }
+    return layout;
+}
+
+namespace {
+
+// Returns one past the last draw of the instance whose draws begin at `first`.
+std::size_t endOfInstance(std::span<const Draw> draws, std::size_t first) {
+    std::size_t end = first + 1;
+    while (end < draws.size() && draws[end].instance == draws[first].instance) {
+        ++end;
+    }
+    return end;
+}
+
+bool isAlike(const Draw& a, const Draw& b) {
+    return a.primitive == b.primitive && a.vertexCount == b.vertexCount && a.doubleSided == b.doubleSided &&
+           a.mirrored == b.mirrored && a.hidden == b.hidden;
+}
+
+}  // namespace
+
+std::vector<DrawBatch> batchDraws(std::span<const Draw> draws) {
+    std::vector<DrawBatch> batches;
+    for (std::size_t first = 0; first < draws.size();) {
+        const std::size_t stride = endOfInstance(draws, first) - first;
+        const std::span<const Draw> own = draws.subspan(first, stride);
+        std::size_t end = first + stride;
+        while (
+            end < draws.size() && endOfInstance(draws, end) - end == stride &&
+            draws[end].geometry == draws[end - stride].geometry + stride &&
+            std::equal(own.begin(), own.end(), draws.begin() + static_cast<std::ptrdiff_t>(end), isAlike)) {
+            end += stride;
+        }
+        for (const Draw& draw : own) {
+            if (!draw.hidden) {
+                batches.push_back({draw.geometry, static_cast<std::uint32_t>(stride),
+                                   static_cast<std::uint32_t>((end - first) / stride), draw.vertexCount,
+                                   draw.doubleSided, draw.mirrored});
+            }
+        }
+        first = end;
+    }
+    return batches;
+}
+
+VkAccelerationStructureInstanceKHR makePlaced(bool doubleSided, const PartInstance& placed,
+                                              const std::array<float, 12>& objectToWorld,
+                                              VkDeviceAddress blas) {
+    VkAccelerationStructureInstanceKHR instance{};
+    static_assert(sizeof(instance.transform) == sizeof(objectToWorld));
+    std::memcpy(&instance.transform, objectToWorld.data(), sizeof(objectToWorld));
+    // A custom index has 24 bits and the mask 8. layOutScene() has checked that the index fits.
+    instance.instanceCustomIndex = placed.customIndex & 0xFFFFFFU;
+    // A shader binding table that has hit records has one for each geometry record.
+    instance.instanceShaderBindingTableRecordOffset = placed.customIndex & 0xFFFFFFU;
+    instance.mask = 0xFF;
+    // Facing is determined in object space, so that a mirroring transform changes nothing. The default agrees
+    // with glTF: a front is clockwise to a left-handed eye, which is counter-clockwise to a right-handed one.
+    instance.flags = doubleSided ? VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR & 0xFFU : 0U;
+    instance.accelerationStructureReference = blas;
+    return instance;
+}
+
+}  // namespace glint

@@ -1,0 +1,226 @@
+// Vertex data on the device, and its partition into acceleration structures.
+#pragma once
+
+#include "context/resources.h"
+#include "context/upload.h"
+#include "data/acceleration.h"
+#include "data/vertex_format.h"
+#include "interop/scene.h"
+
+#include <glint/package.h>
+#include <glint/scene_view.h>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace glint {
+
+// The most geometry records of a scene. Custom indices have 24 bits. Packed records of samples have two
+// numbers of them that stand for no geometry.
+inline constexpr std::uint32_t kMostGeometries = (1U << 24) - 2;
+
+// A primitive's attributes in one buffer. The address of an attribute that it lacks is 0.
+struct GpuPrimitive {
+    Buffer buffer;
+    // The positions from which acceleration structures are built. They are in memory of their own, and needed
+    // for the builds alone, if shaders read others (kGeometryPackedPositions).
+    Buffer buildInput;
+    VkDeviceAddress buildPositions = 0;
+    VkDeviceAddress indices = 0;
+    VkDeviceAddress positions = 0;
+    VkDeviceAddress normals = 0;
+    VkDeviceAddress tangents = 0;
+    VkDeviceAddress texCoords0 = 0;
+    VkDeviceAddress texCoords1 = 0;
+    VkDeviceAddress colors = 0;
+    VkDeviceAddress attributes = 0;  // of packs, as AttributeEntry describes
+    std::uint32_t vertexCount = 0;
+    std::uint32_t triangleCount = 0;
+    // kGeometryPacked*, kGeometryColors* and kGeometryShortIndices: the compact attributes.
+    std::uint32_t forms = 0;
+};
+
+// Returns the address of the indices of a triangle.
+VkDeviceAddress indicesFrom(const GpuPrimitive& primitive, std::uint32_t triangle);
+// Returns the triangles [first, first + count) as a geometry of a BLAS, with the flags of an opaque one.
+BlasGeometry blasGeometry(const GpuPrimitive& primitive, std::uint32_t first, std::uint32_t count);
+
+// The settings of the upload of primitives.
+struct PrimitiveUpload {
+    VertexForm form = VertexForm::Compact;
+    // A primitive with more triangles becomes several geometries, which may begin at any of them.
+    std::uint64_t unsplitTriangles = 0;
+    MemoryPool* builds = nullptr;  // for GpuPrimitive::buildInput
+};
+
+// Returns the values of the package's attributes vertex by vertex; none if the primitive's key reads none.
+std::vector<float> joinAttributes(const Package& package, const package::PrimitiveEntry& entry,
+                                  const PrimitiveView& view);
+
+// Returns the attributes' values, too, whatever a key reads. If the primitive lacks an attribute, its
+// fallback or 0 is used.
+std::vector<float> joinAllAttributes(const Package& package, const PrimitiveView& view);
+
+// The parts of a primitive that are uploaded beside the attributes of its view.
+struct PrimitiveContent {
+    std::span<const std::uint32_t> indices;
+    std::span<const float> declared;               // the joined attributes
+    std::span<const std::uint32_t> positionWords;  // of packPositions(); empty: the view's positions
+};
+
+// Queues the copies in `uploader`. A primitive without triangles gets no buffer. Unless the form is the full
+// one, an attribute gets a compact form (vertices/vertex_format.h) if that nearly keeps its values.
+// Attributes that joints and morph targets change stay as they are.
+Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                                     const PrimitiveView& view, const PrimitiveContent& content,
+                                     const PrimitiveUpload& how);
+
+// Queues the copies in `uploader`. Primitives without triangles get no buffer. `positions` are those of
+// packPositions(), whose values the primitives have. `ordered` holds the indices of each primitive in another
+// order of its triangles; if it is empty, the primitives' own indices are used.
+Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, MemoryPool& pool,
+                                                   Uploader& uploader, const Package& package,
+                                                   const PackageScene& known,
+                                                   std::span<const PrimitiveView> primitives,
+                                                   std::span<const GridPositions> positions,
+                                                   const PrimitiveUpload& how,
+                                                   std::span<const std::vector<std::uint32_t>> ordered = {});
+
+// Makes the record of a geometry whose addresses `source` has: a primitive, or the view of a host's geometry.
+template <typename Source>
+gpu::GeometryRecord recordOf(const package::PrimitiveEntry& entry, const Source& source,
+                             std::uint32_t instance) {
+    gpu::GeometryRecord record{};
+    record.shaderId = entry.shaderId;
+    record.materialIndex = entry.materialIndex;
+    record.featureLobes = entry.featureLobes;
+    record.featureInputs = entry.featureInputs;
+    record.instanceIndex = instance;
+    record.flags = entry.geometryFlags;
+    record.indices = source.indices;
+    record.positions = source.positions;
+    record.normals = source.normals;
+    record.tangents = source.tangents;
+    record.texCoords0 = source.texCoords0;
+    record.texCoords1 = source.texCoords1;
+    record.colors = source.colors;
+    record.attributes = source.attributes;
+    return record;
+}
+
+// Makes the record of a geometry: triangles of `primitive` from `firstTriangle` on.
+gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, const GpuPrimitive& primitive,
+                                       std::uint32_t firstTriangle, std::uint32_t instance);
+
+// The deformed vertices of one primitive of one instance. The address of an attribute that it lacks is 0.
+struct DeformedVertices {
+    VkDeviceAddress positions = 0;
+    VkDeviceAddress normals = 0;
+    VkDeviceAddress tangents = 0;
+};
+// Keyed by indices into SceneView::instances and SceneView::primitives. An instance that is in the map has
+// its own parts.
+using DeformedAddresses = std::map<std::pair<std::uint32_t, std::uint32_t>, DeformedVertices>;
+
+// Consecutive triangles of a primitive, which form a geometry of a BLAS.
+struct TriangleRange {
+    std::uint32_t primitive = 0;  // index into SceneView::primitives
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;  // in the BLAS
+    std::uint32_t drawn = 0;  // triangles of the raster pass, from `first` on; 0: another geometry draws them
+    bool opaque = false;      // every ray stops there, although the material is tested for alpha
+};
+
+// The triangles of a mesh that are seen from one side, or those seen from both sides. A part is one BLAS,
+// because culling is a property of the BLAS's instances. A mesh above the capacity of a BLAS has several
+// parts of a kind. Primitives without triangles are in no part.
+struct MeshPart {
+    std::uint32_t mesh = 0;
+    bool doubleSided = false;
+    std::vector<TriangleRange> ranges;
+    std::optional<std::uint32_t> instance{};  // the only instance that uses the part, as it deforms the mesh
+};
+
+// The triangles of a primitive whose alpha test was decided. They come in this order; those through which
+// every ray passes come last and are in no BLAS, but are drawn.
+struct OpacitySplit {
+    std::uint32_t tested = 0;
+    std::uint32_t opaque = 0;
+};
+
+// A part placed in the world, which is an instance of the TLAS.
+struct PartInstance {
+    std::uint32_t part = 0;
+    std::uint32_t instance = 0;     // index into SceneView::instances
+    std::uint32_t customIndex = 0;  // index of its first geometry record
+};
+
+// A draw of the raster pass. It shows one geometry record.
+struct Draw {
+    std::uint32_t geometry = 0;  // GeometryRecord index
+    std::uint32_t vertexCount = 0;
+    bool doubleSided = false;
+    bool mirrored = false;
+    std::uint32_t instance = 0;   // index into SceneView::instances
+    bool hidden = false;          // the instance is flattened or not visible at present
+    std::uint32_t primitive = 0;  // index into SceneView::primitives
+};
+
+// The primitives of a mesh, as indices [first, end). The primitives are sorted as SceneView::primitives are.
+struct PrimitiveRange {
+    std::uint32_t first = 0;
+    std::uint32_t end = 0;
+};
+PrimitiveRange primitivesOf(std::span<const PrimitiveView> primitives, std::uint32_t mesh);
+
+// The instance and the primitive of a geometry record.
+struct GeometryPlace {
+    std::uint32_t instance = 0;  // index into SceneView::instances
+    std::uint32_t mesh = 0;
+    std::uint32_t primitive = 0;  // of the mesh
+};
+
+struct SceneLayout {
+    std::vector<MeshPart> parts;  // in the order of meshes; single-sided parts first
+    std::vector<PartInstance> partInstances;
+    std::vector<Draw> draws;  // at most one for each geometry record, in their order
+    std::vector<gpu::GeometryRecord> geometries;
+    std::vector<std::uint32_t> primitives;       // of each geometry record: index into SceneView::primitives
+    std::vector<gpu::InstanceRecord> instances;  // one for each instance of the scene
+    std::uint64_t triangles = 0;                 // of all instances
+};
+
+// Pure. `primitives` are those of uploadPrimitives(). The capacity must be at least one triangle. `splits`
+// has one for each primitive whose alpha test was decided, by index; the records of its opaque triangles
+// follow those of all others, so that a split changes the number of no other record. Error
+// "scene-geometries": there are more records than the 24 bits of a custom index can number.
+Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scene,
+                                std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
+                                const DeformedAddresses& deformed = {},
+                                const std::map<std::uint32_t, OpacitySplit>& splits = {});
+
+// Instance i of the batch shows the GeometryRecord geometry + i * stride.
+struct DrawBatch {
+    std::uint32_t geometry = 0;
+    std::uint32_t stride = 0;
+    std::uint32_t count = 0;
+    std::uint32_t vertexCount = 0;
+    bool doubleSided = false;
+    bool mirrored = false;
+};
+
+// Joins draws into batches whose instances and geometry records follow each other and have the same
+// primitives. Batches are in the order of their first draws. Hidden draws are left out. `draws` are those of
+// SceneLayout, instance by instance. Pure; O(draws).
+std::vector<DrawBatch> batchDraws(std::span<const Draw> draws);
+
+// Makes an instance of the TLAS.
+VkAccelerationStructureInstanceKHR makePlaced(bool doubleSided, const PartInstance& placed,
+                                              const std::array<float, 12>& objectToWorld,
+                                              VkDeviceAddress blas);
+
+}  // namespace glint

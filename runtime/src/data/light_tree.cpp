@@ -1,0 +1,412 @@
+#include "data/light_tree.h"
+
+#include "context/parallel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <future>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace glint {
+namespace {
+
+using Double3 = std::array<double, 3>;
+
+constexpr double kLightPi = std::numbers::pi;
+constexpr std::size_t kLightBins = 12;
+// Trees of fewer lights are built by one thread, because a thread costs more than it saves.
+constexpr std::size_t kLightsOfThread = 8192;
+// Keeps sums of importances finite on the device, where squared distances are at least 1e-20 m².
+constexpr double kMaxIntensity = 1e16;
+// The bounds are rounded to float. A range grows by this factor, so that they stay bounds.
+constexpr double kReachSlack = 1.0 + 1e-5;
+
+double dotOf(const Double3& a, const Double3& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+Double3 doublesOf(const gpu::vec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+// Directions within an angle of an axis.
+struct Cone {
+    Double3 axis{0.0, 0.0, 1.0};
+    double angle = kLightPi;
+};
+
+// The properties that the cost of a set of lights depends on.
+struct LightExtent {
+    Double3 lower{};
+    Double3 upper{};
+    Cone axes;               // holds the axes of all
+    double emission = 0.0;   // the most angle between a light's axis and a direction in which it shines
+    double intensity = 0.0;  // sum, candela
+    bool isEmpty = true;
+};
+
+// The properties of a set of lights.
+struct LightBounds : LightExtent {
+    Double3 mean{};         // of the positions, weighted by intensity
+    Double3 variance{};     // of the positions, by axis
+    double reach = 0.0;     // metres; infinite if a light has no range
+    bool twoSided = false;  // a light shines along its axis and against it
+};
+
+// Returns a cone that holds both: pbrt-v4, "Direction Cone" (DirectionCone::Union).
+Cone unite(const Cone& a, const Cone& b) {
+    if (a.angle < b.angle) {
+        return unite(b, a);
+    }
+    if (a.angle >= kLightPi) {
+        return a;
+    }
+    const double between = std::acos(std::clamp(dotOf(a.axis, b.axis), -1.0, 1.0));
+    if (std::min(between + b.angle, kLightPi) <= a.angle) {
+        return a;
+    }
+    const double angle = (a.angle + between + b.angle) / 2.0;
+    Double3 across{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        across[i] = b.axis[i] - dotOf(a.axis, b.axis) * a.axis[i];
+    }
+    const double length = std::sqrt(dotOf(across, across));
+    if (angle >= kLightPi || length < 1e-9) {
+        return {};
+    }
+    const double turn = angle - a.angle;
+    Cone cone{{}, angle};
+    for (std::size_t i = 0; i < 3; ++i) {
+        cone.axis[i] = std::cos(turn) * a.axis[i] + std::sin(turn) * across[i] / length;
+    }
+    return cone;
+}
+
+void extend(LightExtent& all, const LightExtent& other) {
+    if (all.isEmpty || other.isEmpty) {
+        all = all.isEmpty ? other : all;
+        return;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+        all.lower[i] = std::min(all.lower[i], other.lower[i]);
+        all.upper[i] = std::max(all.upper[i], other.upper[i]);
+    }
+    all.axes = unite(all.axes, other.axes);
+    all.emission = std::max(all.emission, other.emission);
+    all.intensity += other.intensity;
+}
+
+LightBounds unite(const LightBounds& a, const LightBounds& b) {
+    if (a.isEmpty || b.isEmpty) {
+        return a.isEmpty ? b : a;
+    }
+    LightBounds both;
+    static_cast<LightExtent&>(both) = static_cast<const LightExtent&>(a);
+    extend(both, b);
+    const double whole = a.intensity + b.intensity;
+    const double share = whole > 0.0 ? b.intensity / whole : 0.5;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double apart = b.mean[i] - a.mean[i];
+        both.mean[i] = a.mean[i] + share * apart;
+        both.variance[i] =
+            (1.0 - share) * a.variance[i] + share * b.variance[i] + share * (1.0 - share) * apart * apart;
+    }
+    both.reach = std::max(a.reach, b.reach);
+    both.twoSided = a.twoSided || b.twoSided;
+    return both;
+}
+
+// The light comes from everywhere in the box alike.
+void fillBox(LightBounds& bounds) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double size = bounds.upper[i] - bounds.lower[i];
+        bounds.mean[i] = bounds.lower[i] + 0.5 * size;
+        bounds.variance[i] = size * size / 12.0;
+    }
+}
+
+LightBounds boundsOfLight(const gpu::LightRecord& light) {
+    LightBounds bounds;
+    bounds.isEmpty = false;
+    bounds.lower = bounds.upper = doublesOf(light.position);
+    // The upper part of a light may shine on a surface that its centre is below.
+    for (std::size_t i = 0; i < 3; ++i) {
+        bounds.lower[i] -= light.size;
+        bounds.upper[i] += light.size;
+    }
+    fillBox(bounds);
+    bounds.emission = kLightPi / 2.0;
+    const Double3 color = doublesOf(light.intensity);
+    // The luminance of linear Rec. 709, as in bsdf/constants.glsl.
+    bounds.intensity = std::clamp(dotOf({0.2126, 0.7152, 0.0722}, color), 0.0, kMaxIntensity);
+    bounds.reach = light.range > 0.0F ? light.range * kReachSlack : std::numeric_limits<double>::infinity();
+    const Double3 axis = doublesOf(light.direction);
+    const double length = std::sqrt(dotOf(axis, axis));
+    if (light.type == gpu::kLightSpot && length > 0.5 && light.spotScale > 0.0F) {
+        const double cosOuter = -static_cast<double>(light.spotOffset) / light.spotScale;
+        bounds.axes = {{axis[0] / length, axis[1] / length, axis[2] / length}, 0.0};
+        bounds.emission = std::acos(std::clamp(cosOuter, -1.0, 1.0));
+    }
+    return bounds;
+}
+
+LightBounds boundsOfEmitter(const EmitterBounds& emitter) {
+    LightBounds bounds;
+    bounds.isEmpty = false;
+    bounds.lower = emitter.lower;
+    bounds.upper = emitter.upper;
+    fillBox(bounds);
+    bounds.emission = kLightPi / 2.0;
+    bounds.intensity = std::clamp(emitter.intensity, 0.0, kMaxIntensity);
+    bounds.reach = std::numeric_limits<double>::infinity();
+    if (dotOf(emitter.normal, emitter.normal) > 0.5) {
+        bounds.axes = {emitter.normal, 0.0};
+        bounds.twoSided = emitter.twoSided;
+    }
+    return bounds;
+}
+
+gpu::vec3 floatsOf(const Double3& v) {
+    return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+// Numbers in [0, 1], one for each axis, in 10 bits each.
+std::uint32_t packShares(const Double3& shares) {
+    std::uint32_t packed = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double share = std::clamp(shares[i], 0.0, 1.0) * gpu::kLightShares;
+        packed |= static_cast<std::uint32_t>(std::lround(share)) << (10 * i);
+    }
+    return packed;
+}
+
+gpu::LightNode makeLightNode(const LightBounds& bounds, std::uint32_t next) {
+    gpu::LightNode node{};
+    node.lower = floatsOf(bounds.lower);
+    node.upper = floatsOf(bounds.upper);
+    node.intensity = static_cast<float>(bounds.intensity);
+    node.reach = static_cast<float>(bounds.twoSided ? -bounds.reach : bounds.reach);
+    node.axis = floatsOf(bounds.axes.axis);
+    node.cosAxes = static_cast<float>(std::cos(bounds.axes.angle));
+    node.cosEmission = static_cast<float>(std::cos(bounds.emission));
+    node.next = next;
+    Double3 mean{};
+    Double3 deviation{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double size = bounds.upper[i] - bounds.lower[i];
+        mean[i] = size > 0.0 ? (bounds.mean[i] - bounds.lower[i]) / size : 0.5;
+        deviation[i] = size > 0.0 ? 2.0 * std::sqrt(std::max(bounds.variance[i], 0.0)) / size : 0.0;
+    }
+    node.mean3x10 = packShares(mean);
+    node.deviation3x10 = packShares(deviation);
+    return node;
+}
+
+struct LightMember {
+    std::uint32_t light = 0;
+    LightBounds bounds;
+};
+
+// The cost of a set of lights: intensity, times the measure of the directions in which they shine, times the
+// area of their box. The measure is pbrt-v4's closed form of Conty Estevez and Kulla's integral. `stretch`
+// prefers splits across the longest axis.
+double costOf(const LightExtent& bounds, double stretch) {
+    if (bounds.isEmpty) {
+        return 0.0;
+    }
+    const double axes = bounds.axes.angle;
+    const double whole = std::min(axes + bounds.emission, kLightPi);
+    const double directions = 2.0 * kLightPi * (1.0 - std::cos(axes)) +
+                              kLightPi / 2.0 *
+                                  (2.0 * whole * std::sin(axes) - std::cos(axes - 2.0 * whole) -
+                                   2.0 * axes * std::sin(axes) + std::cos(axes));
+    Double3 size{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        size[i] = bounds.upper[i] - bounds.lower[i];
+    }
+    const double area = 2.0 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
+    return bounds.intensity * directions * stretch * area;
+}
+
+struct LightSplit {
+    std::size_t axis = 0;
+    std::size_t bin = 0;  // the last one of the first child
+    double cost = std::numeric_limits<double>::infinity();
+};
+
+class LightTreeBuilder {
+public:
+    LightTreeBuilder(std::vector<LightMember> members, std::vector<gpu::LightNode>& nodes)
+        : members_(std::move(members)), nodes_(nodes) {}
+
+    // Builds the nodes of members [begin, end), which are 2 (end - begin) - 1, from `node` on. `depth` is the
+    // number of nodes above them.
+    LightBounds build(std::size_t begin, std::size_t end, std::size_t node, std::uint32_t depth,
+                      int threads) {
+        if (end - begin == 1) {
+            nodes_[node] = makeLightNode(members_[begin].bounds, gpu::kLightLeaf | members_[begin].light);
+            return members_[begin].bounds;
+        }
+        const std::size_t middle = split(begin, end, std::uint64_t{1} << (gpu::kLightTreeDepth - depth - 1));
+        const std::size_t second = node + 2 * (middle - begin);
+        LightBounds first;
+        LightBounds last;
+        if (threads > 1 && end - begin > kLightsOfThread) {
+            std::future<LightBounds> other = std::async(
+                std::launch::async, [&] { return build(begin, middle, node + 1, depth + 1, threads / 2); });
+            last = build(middle, end, second, depth + 1, threads - threads / 2);
+            first = other.get();
+        } else {
+            first = build(begin, middle, node + 1, depth + 1, 1);
+            last = build(middle, end, second, depth + 1, 1);
+        }
+        const LightBounds both = unite(first, last);
+        nodes_[node] = makeLightNode(both, static_cast<std::uint32_t>(second));
+        return both;
+    }
+
+private:
+    static std::size_t binOf(const LightExtent& bounds, const LightExtent& centres, std::size_t axis) {
+        const double size = centres.upper[axis] - centres.lower[axis];
+        const double middle = 0.5 * (bounds.lower[axis] + bounds.upper[axis]);
+        const double place = (middle - centres.lower[axis]) / size * static_cast<double>(kLightBins);
+        return std::min(static_cast<std::size_t>(std::max(place, 0.0)), kLightBins - 1);
+    }
+
+    LightSplit bestSplit(std::size_t begin, std::size_t end, const LightExtent& all) const {
+        const Double3 size{all.upper[0] - all.lower[0], all.upper[1] - all.lower[1],
+                           all.upper[2] - all.lower[2]};
+        const double longest = *std::ranges::max_element(size);
+        LightSplit best;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (!(size[axis] > 0.0)) {
+                continue;
+            }
+            std::array<LightExtent, kLightBins> bins{};
+            for (std::size_t i = begin; i < end; ++i) {
+                extend(bins[binOf(members_[i].bounds, all, axis)], members_[i].bounds);
+            }
+            std::array<LightExtent, kLightBins> above{};
+            for (std::size_t i = kLightBins - 1; i > 0; --i) {
+                above[i - 1] = above[i];
+                extend(above[i - 1], bins[i]);
+            }
+            LightExtent below;
+            for (std::size_t i = 0; i + 1 < kLightBins; ++i) {
+                // An empty bin parts the lights as the one before it does.
+                if (bins[i].isEmpty || above[i].isEmpty) {
+                    continue;
+                }
+                extend(below, bins[i]);
+                const double stretch = longest / size[axis];
+                const double cost = costOf(below, stretch) + costOf(above[i], stretch);
+                if (cost < best.cost) {
+                    best = {axis, i, cost};
+                }
+            }
+        }
+        return best;
+    }
+
+    // Halves the members by their place along the longest axis. Lights at one place are halved by number.
+    std::size_t halve(std::size_t begin, std::size_t end, const LightExtent& all) {
+        std::size_t axis = 0;
+        for (std::size_t i = 1; i < 3; ++i) {
+            axis = all.upper[i] - all.lower[i] > all.upper[axis] - all.lower[axis] ? i : axis;
+        }
+        const auto first = members_.begin();
+        std::stable_sort(first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end),
+                         [&](const LightMember& a, const LightMember& b) {
+                             return a.bounds.lower[axis] + a.bounds.upper[axis] <
+                                    b.bounds.lower[axis] + b.bounds.upper[axis];
+                         });
+        return begin + (end - begin) / 2;
+    }
+
+    // Returns where the second part begins. No part has more than `most` members.
+    std::size_t split(std::size_t begin, std::size_t end, std::uint64_t most) {
+        // Only the box matters.
+        LightExtent all;
+        all.lower = members_[begin].bounds.lower;
+        all.upper = members_[begin].bounds.upper;
+        for (std::size_t i = begin + 1; i < end; ++i) {
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                all.lower[axis] = std::min(all.lower[axis], members_[i].bounds.lower[axis]);
+                all.upper[axis] = std::max(all.upper[axis], members_[i].bounds.upper[axis]);
+            }
+        }
+        const LightSplit best = bestSplit(begin, end, all);
+        if (!std::isfinite(best.cost)) {
+            return halve(begin, end, all);
+        }
+        const auto first = members_.begin();
+        const auto middle = std::stable_partition(
+            first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end),
+            [&](const LightMember& member) { return binOf(member.bounds, all, best.axis) <= best.bin; });
+        const auto place = static_cast<std::size_t>(middle - first);
+        return std::max(place - begin, end - place) <= most ? place : halve(begin, end, all);
+    }
+
+    std::vector<LightMember> members_;
+    std::vector<gpu::LightNode>& nodes_;
+};
+
+}  // namespace
+
+LightTree buildLightTree(std::span<const gpu::LightRecord> lights, std::span<const EmitterBounds> emitters,
+                         bool keepsDark) {
+    LightTree tree;
+    std::vector<LightMember> members;
+    std::vector<gpu::LightNode> apart;
+    const auto isDirectional = [](const gpu::LightRecord& light) {
+        return light.type == gpu::kLightDirectional;
+    };
+    const auto positions =
+        lights.size() - static_cast<std::size_t>(std::ranges::count_if(lights, isDirectional));
+    const bool allApart = !emitters.empty() && positions <= gpu::kMostLightsApart;
+    for (std::uint32_t i = 0; i < lights.size(); ++i) {
+        if (allApart || isDirectional(lights[i])) {
+            gpu::LightNode leaf{};
+            leaf.next = gpu::kLightLeaf | i;
+            apart.push_back(leaf);
+        } else {
+            members.push_back({i, boundsOfLight(lights[i])});
+        }
+    }
+    for (std::uint32_t i = 0; i < emitters.size(); ++i) {
+        if (keepsDark || emitters[i].intensity > 0.0) {
+            members.push_back({gpu::kLightEmitter | i, boundsOfEmitter(emitters[i])});
+        }
+    }
+    tree.apart = static_cast<std::uint32_t>(apart.size());
+    if (!members.empty()) {
+        const std::size_t count = members.size();
+        tree.treeNodes = static_cast<std::uint32_t>(2 * count - 1);
+        tree.nodes.resize(tree.treeNodes);
+        LightTreeBuilder(std::move(members), tree.nodes)
+            .build(0, count, 0, 0, static_cast<int>(std::min(threadsOfMachine(), 16U)));
+    }
+    tree.nodes.insert(tree.nodes.end(), apart.begin(), apart.end());
+    return tree;
+}
+
+void refitLightTree(LightTree& tree, std::span<const gpu::LightRecord> lights,
+                    std::span<const EmitterBounds> emitters) {
+    const auto boundsOfLeaf = [&](std::uint32_t number) {
+        return (number & gpu::kLightEmitter) != 0 ? boundsOfEmitter(emitters[number & ~gpu::kLightEmitter])
+                                                  : boundsOfLight(lights[number]);
+    };
+    std::vector<LightBounds> bounds(tree.treeNodes);
+    // Children come after their parent.
+    for (std::uint32_t i = tree.treeNodes; i-- > 0;) {
+        const std::uint32_t next = tree.nodes[i].next;
+        const bool leaf = (next & gpu::kLightLeaf) != 0;
+        bounds[i] = leaf ? boundsOfLeaf(next & ~gpu::kLightLeaf) : unite(bounds[i + 1], bounds[next]);
+        tree.nodes[i] = makeLightNode(bounds[i], next);
+    }
+}
+
+}  // namespace glint

@@ -1,0 +1,435 @@
+#include "data/scene_checks.h"
+
+#include "data/geometry.h"
+#include "package/package.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+#include <tuple>
+
+namespace glint {
+namespace {
+
+constexpr const char* kSameScene = "compile the package from the scene that is rendered";
+
+std::string placeOf(std::uint32_t mesh, std::uint32_t primitive) {
+    return "mesh " + std::to_string(mesh) + ", primitive " + std::to_string(primitive);
+}
+
+// An attribute span of a primitive by name, and the key bit that makes it necessary. With 0 it is always or
+// never necessary.
+struct Attribute {
+    const char* name;
+    std::size_t count;
+    std::uint32_t input;
+};
+
+std::array<Attribute, 5> namedAttributes(const PrimitiveView& view) {
+    return {{{"normals", view.normals.size(), kInputNormals},
+             {"tangents", view.tangents.size(), kInputTangents},
+             {"texCoords0", view.texCoords0.size(), kInputTexCoord0},
+             {"texCoords1", view.texCoords1.size(), kInputTexCoord1},
+             {"colors", view.colors.size(), kInputVertexColor}}};
+}
+
+Diagnostic wrongCount(const Attribute& attribute, const PrimitiveView& view, const std::string& where) {
+    return makeError("scene-attribute", where,
+                     std::string(attribute.name) + " has " + std::to_string(attribute.count) +
+                         " elements for " + std::to_string(view.positions.size()) + " positions",
+                     "leave the span empty or make it as long as positions");
+}
+
+Status checkAttributes(const PrimitiveView& view, const package::PrimitiveEntry& entry,
+                       const std::string& where) {
+    for (const Attribute& attribute : namedAttributes(view)) {
+        if (attribute.count != 0 && attribute.count != view.positions.size()) {
+            return wrongCount(attribute, view, where);
+        }
+        const bool needed = (entry.featureInputs & attribute.input) != 0;
+        if (needed && attribute.count == 0 && !view.positions.empty()) {
+            return makeError(
+                "scene-package", where,
+                std::string("the package's key reads ") + attribute.name + ", the primitive has none",
+                kSameScene);
+        }
+    }
+    return okStatus();
+}
+
+// The attributes of packs that the primitive's key reads.
+Status checkDeclared(const Package& package, const PrimitiveView& view, const package::PrimitiveEntry& entry,
+                     const std::string& where) {
+    const std::uint64_t key = std::uint64_t{entry.featureInputs} << 32U | entry.featureLobes;
+    for (const package::AttributeEntry& row : package.attributes()) {
+        const std::string name(package.string(row.name));
+        const auto given = std::ranges::find(view.attributes, name, &AttributeView::name);
+        if (given == view.attributes.end()) {
+            if ((row.feature & key) != 0 && row.hasFallback == 0 && !view.positions.empty()) {
+                return makeError("scene-package", where,
+                                 "the package's key reads " + name + ", the primitive has none", kSameScene);
+            }
+            continue;
+        }
+        if (given->channels != row.channels || given->values.size() != view.positions.size() * row.channels) {
+            return makeError("scene-attribute", where,
+                             name + " has " + std::to_string(given->values.size()) + " values in " +
+                                 std::to_string(given->channels) + " channels for " +
+                                 std::to_string(view.positions.size()) + " positions; the package reads " +
+                                 std::to_string(row.channels) + " channels",
+                             "give as many values as the positions have, times the package's channels");
+        }
+    }
+    return okStatus();
+}
+
+Status checkIndices(const PrimitiveView& view, const std::string& where) {
+    constexpr std::size_t kMaxCount = std::numeric_limits<std::uint32_t>::max();
+    if (view.indices.size() % 3 != 0) {
+        return makeError("scene-index", where,
+                         std::to_string(view.indices.size()) + " indices are no list of triangles",
+                         "give three indices for each triangle");
+    }
+    if (view.indices.size() > kMaxCount || view.positions.size() > kMaxCount) {
+        return makeError("scene-index", where, "the primitive has more than 2^32 - 1 vertices or indices",
+                         "split the primitive");
+    }
+    const auto outside = std::ranges::find_if(
+        view.indices, [&](std::uint32_t index) { return index >= view.positions.size(); });
+    if (outside != view.indices.end()) {
+        return makeError("scene-index", where,
+                         "index " + std::to_string(outside - view.indices.begin()) + " is " +
+                             std::to_string(*outside) + ", there are " +
+                             std::to_string(view.positions.size()) + " positions",
+                         "repair the primitive's indices");
+    }
+    return okStatus();
+}
+
+std::tuple<std::uint32_t, std::uint32_t> keyOf(const PrimitiveView& view) {
+    return {view.mesh, view.primitive};
+}
+
+Status checkPrimitives(const Package& package, const PackageScene& known,
+                       std::span<const PrimitiveView> primitives) {
+    const PrimitiveView* previous = nullptr;
+    for (const PrimitiveView& view : primitives) {
+        const std::string where = placeOf(view.mesh, view.primitive);
+        if (previous != nullptr && keyOf(*previous) >= keyOf(view)) {
+            return makeError("scene-order", where, "the primitives are not sorted, or one is there twice",
+                             "sort them by mesh, then primitive");
+        }
+        previous = &view;
+        const package::PrimitiveEntry* entry = known.findPrimitive(view.mesh, view.primitive);
+        if (entry == nullptr) {
+            return makeError("scene-package", where, "the package does not know this primitive", kSameScene);
+        }
+        GLINT_TRY_DO(checkAttributes(view, *entry, where));
+        GLINT_TRY_DO(checkDeclared(package, view, *entry, where));
+        GLINT_TRY_DO(checkIndices(view, where));
+    }
+    return okStatus();
+}
+
+// The scene must have every primitive that the package has for an instance's mesh.
+Status checkInstances(const PackageScene& known, const SceneView& scene) {
+    std::set<std::uint32_t> used;
+    for (const InstanceView& instance : scene.instances) {
+        used.insert(instance.mesh);
+    }
+    for (const package::PrimitiveEntry& entry : known.primitives) {
+        if (!used.contains(entry.mesh)) {
+            continue;
+        }
+        if (!std::ranges::binary_search(scene.primitives, std::tuple(entry.mesh, entry.primitive),
+                                        std::less<>{}, keyOf)) {
+            return makeError("scene-package", placeOf(entry.mesh, entry.primitive),
+                             "the scene lacks a primitive that the package knows", kSameScene);
+        }
+    }
+    return okStatus();
+}
+
+Status checkImages(const PackageScene& known, std::span<const ImageView> images, const ImageLimits& limits) {
+    for (const package::TextureEntry& texture : known.textures) {
+        const std::string where = "image " + std::to_string(texture.image);
+        if (texture.image >= images.size()) {
+            return makeError(
+                "scene-package", where,
+                "the package refers to this image, the scene has " + std::to_string(images.size()),
+                kSameScene);
+        }
+        GLINT_TRY_DO(checkImage(images[texture.image], texture.srgb != 0, where, limits));
+    }
+    return okStatus();
+}
+
+// Lights that are emissive triangles read the texels of their emission on the host.
+Status checkEmission(const Package& package, const PackageScene& known, std::span<const ImageView> images) {
+    const package::EmissionEntry* const emission = package.emission();
+    if (emission == nullptr || emission->texture == package::EmissionEntry::kNone) {
+        return okStatus();
+    }
+    for (std::size_t i = 0; i < known.materials.size(); ++i) {
+        const std::uint32_t texture = textureAt(known.materials, i, emission->texture).textureIndex;
+        if (texture >= known.textures.size()) {
+            continue;
+        }
+        const ImageView& image = images[known.textures[texture].image];
+        const std::uint64_t wanted = bytesOfLevel(TexelFormat::Rgba8, image.width, image.height, 0);
+        if (isBlockFormat(image.format) && image.decoded.size() != wanted) {
+            return makeError("scene-image", "image " + std::to_string(known.textures[texture].image),
+                             std::string("the image is in the format ") + infoOf(image.format).name +
+                                 ", and triangles with it are lights, whose texels the host has to read",
+                             "give its first level in RGBA of 8 bits as ImageView::decoded");
+        }
+    }
+    return okStatus();
+}
+
+}  // namespace
+
+ImageLimits imageLimits(const Context::State& context) {
+    return {context.limits.core.maxImageDimension2D, context.limits.texelFormats};
+}
+
+Status checkImage(const ImageView& image, bool srgb, const std::string& where, const ImageLimits& limits) {
+    if (image.width == 0 || image.height == 0 || image.width > limits.maxSize ||
+        image.height > limits.maxSize) {
+        return makeError("scene-image", where,
+                         "the image is " + std::to_string(image.width) + " x " +
+                             std::to_string(image.height) + " pixels, the device takes 1 to " +
+                             std::to_string(limits.maxSize),
+                         "scale the image");
+    }
+    const bool knownChannels = std::ranges::all_of(
+        image.channels, [](TexelChannel channel) { return channel <= TexelChannel::One; });
+    if (static_cast<std::size_t>(image.format) >= kTexelFormatCount || !knownChannels) {
+        return makeError("scene-image", where, "the image has an unknown format, or channels of one",
+                         "use values of TexelFormat and TexelChannel");
+    }
+    const TexelFormatInfo& info = infoOf(image.format);
+    if (isBlockFormat(image.format) && !limits.formats.has(image.format, srgb)) {
+        return makeError("scene-image", where,
+                         std::string("the device does not read ") + info.name +
+                             (srgb ? " as colours in sRGB" : " as linear data"),
+                         "give a format of Context::texelFormats(), or the image in RGBA8");
+    }
+    const auto most = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
+    if (image.levels == 0 || image.levels > most) {
+        return makeError("scene-image", where,
+                         "the image has " + std::to_string(image.levels) + " levels, its size takes 1 to " +
+                             std::to_string(most),
+                         "give the levels that there are");
+    }
+    if (image.pixels.size() != image.byteCount(image.levels)) {
+        return makeError("scene-image", where,
+                         std::to_string(image.pixels.size()) + " bytes do not make " +
+                             std::to_string(image.levels) + " levels of " + std::to_string(image.width) +
+                             " x " + std::to_string(image.height) + " pixels in " + info.name +
+                             ", which take " + std::to_string(image.byteCount(image.levels)),
+                         "give all of the levels");
+    }
+    return okStatus();
+}
+
+Status checkGeometry(const PrimitiveView& view, const std::string& where) {
+    for (const Attribute& attribute : namedAttributes(view)) {
+        if (attribute.count != 0 && attribute.count != view.positions.size()) {
+            return wrongCount(attribute, view, where);
+        }
+    }
+    return checkIndices(view, where);
+}
+
+Status checkLights(std::span<const LightView> lights) {
+    for (const LightView& light : lights) {
+        const float values[] = {
+            light.intensity[0], light.intensity[1],   light.intensity[2],   light.position[0],
+            light.position[1],  light.position[2],    light.direction[0],   light.direction[1],
+            light.direction[2], light.innerConeAngle, light.outerConeAngle, light.range,
+            light.size};
+        const bool finite = std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
+        if (!finite || light.type > LightView::Type::Spot) {
+            return makeError("scene-light", "light " + std::to_string(&light - lights.data()),
+                             "the light has a value that is not finite, or an unknown type",
+                             "repair the light");
+        }
+        const bool tooWide = light.type == LightView::Type::Directional && light.size >= 1.5707963F;
+        if (light.size < 0.0F || tooWide) {
+            return makeError("scene-light", "light " + std::to_string(&light - lights.data()),
+                             "the size of the light is negative, or a quarter turn or more",
+                             "give a radius in metres, or an angle in radians");
+        }
+    }
+    return okStatus();
+}
+
+Status checkScene(const Package& package, const PackageScene& known, const SceneView& scene,
+                  const ImageLimits& limits) {
+    GLINT_TRY_DO(checkPrimitives(package, known, scene.primitives));
+    GLINT_TRY_DO(checkInstances(known, scene));
+    GLINT_TRY_DO(checkImages(known, scene.images, limits));
+    GLINT_TRY_DO(checkEmission(package, known, scene.images));
+    GLINT_TRY_DO(checkDeformation(scene));
+    GLINT_TRY_DO(checkOrigin(scene.origin));
+    return checkLights(scene.lights);
+}
+
+Status checkOrigin(const std::array<double, 3>& origin) {
+    if (!std::ranges::all_of(origin, [](double value) { return std::isfinite(value); })) {
+        return makeError("scene-origin", "", "the scene's origin is not finite",
+                         "give a place in metres, or leave it at 0");
+    }
+    return okStatus();
+}
+
+namespace {
+
+constexpr const char* kGiveAll = "give as many as at upload, in the same order";
+
+Diagnostic attributeError(const PrimitiveView& view, const std::string& what, const char* hint) {
+    return makeError("scene-attribute",
+                     "mesh " + std::to_string(view.mesh) + ", primitive " + std::to_string(view.primitive),
+                     what, hint);
+}
+
+Status checkTargets(const PrimitiveView& view) {
+    for (const MorphTargetView& target : view.targets) {
+        struct Member {
+            std::size_t count;
+            std::size_t base;
+        };
+        for (const Member& member : {Member{target.positions.size(), view.positions.size()},
+                                     Member{target.normals.size(), view.normals.size()},
+                                     Member{target.tangents.size(), view.tangents.size()}}) {
+            if (member.count != 0 && member.count != member.base) {
+                return attributeError(view,
+                                      "a morph target has " + std::to_string(member.count) +
+                                          " differences to an attribute of " + std::to_string(member.base) +
+                                          " elements",
+                                      "give a difference for each element, or none");
+            }
+        }
+    }
+    return okStatus();
+}
+
+Status checkInfluences(const PrimitiveView& view) {
+    if (view.joints.size() != view.jointWeights.size()) {
+        return attributeError(view, "the joints are not as many as their weights", "give a weight a joint");
+    }
+    if (!view.joints.empty() && (view.positions.empty() || view.joints.size() % view.positions.size() != 0)) {
+        return attributeError(view, "the joints are not as many for each vertex",
+                              "give each vertex the same number; weights may be 0");
+    }
+    return okStatus();
+}
+
+// Returns one more than the largest joint index that a vertex of the mesh uses.
+std::size_t jointsNeeded(std::span<const PrimitiveView> primitives) {
+    std::size_t needed = 0;
+    for (const PrimitiveView& view : primitives) {
+        for (const std::uint16_t joint : view.joints) {
+            needed = std::max(needed, joint + std::size_t{1});
+        }
+    }
+    return needed;
+}
+
+bool isFinite(std::span<const float> values) {
+    return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
+}
+
+Status checkPose(const InstanceView& instance, const std::string& where) {
+    for (const std::array<float, 12>& joint : instance.joints) {
+        if (!isFinite(joint)) {
+            return makeError("scene-motion", where, "a joint has a number that is not finite",
+                             "repair the pose");
+        }
+    }
+    if (!isFinite(instance.morphWeights)) {
+        return makeError("scene-motion", where, "a morph weight is not finite", "repair the pose");
+    }
+    return okStatus();
+}
+
+Diagnostic otherCount(const std::string& where, const std::string& what, std::size_t count,
+                      std::size_t expected) {
+    return makeError("scene-motion", where,
+                     "there are " + std::to_string(count) + " " + what + ", at upload there were " +
+                         std::to_string(expected),
+                     kGiveAll);
+}
+
+}  // namespace
+
+Status checkDeformation(const SceneView& scene) {
+    for (const PrimitiveView& view : scene.primitives) {
+        GLINT_TRY_DO(checkTargets(view));
+        GLINT_TRY_DO(checkInfluences(view));
+    }
+    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+        const InstanceView& instance = scene.instances[i];
+        const std::string where = "instance " + std::to_string(i);
+        GLINT_TRY_DO(checkPose(instance, where));
+        const PrimitiveRange own = primitivesOf(scene.primitives, instance.mesh);
+        const std::span<const PrimitiveView> primitives =
+            scene.primitives.subspan(own.first, own.end - own.first);
+        const std::size_t needed = instance.joints.empty() ? 0 : jointsNeeded(primitives);
+        if (needed > instance.joints.size()) {
+            return makeError("scene-index", where,
+                             "a vertex follows joint " + std::to_string(needed - 1) + ", there are " +
+                                 std::to_string(instance.joints.size()),
+                             "give every joint that the mesh follows");
+        }
+        std::size_t targets = 0;
+        for (const PrimitiveView& view : primitives) {
+            targets = std::max(targets, view.targets.size());
+        }
+        if (instance.morphWeights.size() > targets) {
+            return makeError("scene-motion", where,
+                             "there are " + std::to_string(instance.morphWeights.size()) + " weights for " +
+                                 std::to_string(targets) + " morph targets",
+                             "give one weight for each target");
+        }
+    }
+    return okStatus();
+}
+
+Status checkMotion(const MotionView& motion, const MotionShape& shape) {
+    if (motion.instances.size() != shape.meshes.size()) {
+        return otherCount("", "instances", motion.instances.size(), shape.meshes.size());
+    }
+    if (motion.lights.size() != shape.lightTypes.size()) {
+        return otherCount("", "lights", motion.lights.size(), shape.lightTypes.size());
+    }
+    for (std::size_t i = 0; i < motion.instances.size(); ++i) {
+        const InstanceView& instance = motion.instances[i];
+        const std::string where = "instance " + std::to_string(i);
+        if (instance.mesh != shape.meshes[i]) {
+            return makeError("scene-motion", where, "the instance has another mesh than at upload", kGiveAll);
+        }
+        if (instance.joints.size() != shape.jointCounts[i]) {
+            return otherCount(where, "joints", instance.joints.size(), shape.jointCounts[i]);
+        }
+        if (instance.morphWeights.size() != shape.weightCounts[i]) {
+            return otherCount(where, "morph weights", instance.morphWeights.size(), shape.weightCounts[i]);
+        }
+        GLINT_TRY_DO(checkPose(instance, where));
+    }
+    for (std::size_t i = 0; i < motion.lights.size(); ++i) {
+        if (static_cast<std::uint32_t>(motion.lights[i].type) != shape.lightTypes[i]) {
+            return makeError("scene-motion", "light " + std::to_string(i),
+                             "the light has another type than at upload", kGiveAll);
+        }
+    }
+    GLINT_TRY_DO(checkOrigin(motion.origin));
+    return checkLights(motion.lights);
+}
+
+}  // namespace glint

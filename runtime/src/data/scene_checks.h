@@ -1,0 +1,70 @@
+// Checks whether a scene is well formed and is the one that a package was compiled from.
+#pragma once
+
+#include "context/context.h"
+
+#include <glint/package.h>
+#include <glint/result.h>
+#include <glint/scene_view.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace glint {
+
+// Bits of PrimitiveEntry::featureInputs that say which attributes shading reads. They are the high words of
+// the compiler's features of the same names (shaders/materials/attributes). A test compares the two.
+inline constexpr std::uint32_t kInputTexCoord0 = 1U << 6;
+inline constexpr std::uint32_t kInputTexCoord1 = 1U << 7;
+inline constexpr std::uint32_t kInputVertexColor = 1U << 9;
+inline constexpr std::uint32_t kInputNormals = 1U << 10;
+inline constexpr std::uint32_t kInputTangents = 1U << 11;
+
+// The images that a device accepts.
+struct ImageLimits {
+    std::uint32_t maxSize = 0;  // texels of an axis
+    TexelFormats formats;
+};
+ImageLimits imageLimits(const Context::State& context);
+
+// Pure. Errors: "scene-order", "scene-attribute", "scene-index", "scene-package" (the package knows another
+// scene), "scene-image", "scene-light". Their place is for instance "mesh 3, primitive 1", "image 2" or
+// "light 0".
+// `known` is the scene of `package`.
+Status checkScene(const Package& package, const PackageScene& known, const SceneView& scene,
+                  const ImageLimits& limits);
+
+// The part of checkScene() for joints, weights and morph targets of primitives and instances. Errors:
+// "scene-attribute", "scene-index", "scene-motion".
+Status checkDeformation(const SceneView& scene);
+
+// The properties that a MotionView must share with the scene that was uploaded. They are listed in the order
+// of instances and of lights.
+struct MotionShape {
+    std::span<const std::uint32_t> meshes;
+    std::span<const std::size_t> jointCounts;
+    std::span<const std::size_t> weightCounts;
+    std::span<const std::uint32_t> lightTypes;
+};
+
+// Pure. Errors: "scene-motion", "scene-light", "scene-origin".
+Status checkMotion(const MotionView& motion, const MotionShape& shape);
+
+// Checks the size, the format, the levels and the number of bytes of an image that is read as colour in sRGB
+// or as linear data. Error "scene-image".
+Status checkImage(const ImageView& image, bool srgb, const std::string& where, const ImageLimits& limits);
+
+// Checks the indices of a primitive, and that its attributes are as many as its positions. Errors:
+// "scene-attribute", "scene-index".
+Status checkGeometry(const PrimitiveView& view, const std::string& where);
+
+// Checks that SceneView::origin is finite. Error "scene-origin".
+Status checkOrigin(const std::array<double, 3>& origin);
+
+// Checks that every light is finite and of a known type. Error "scene-light".
+Status checkLights(std::span<const LightView> lights);
+
+}  // namespace glint

@@ -1,0 +1,170 @@
+// Entries that handles name, and arrays of records on the device that are edited in place and grow.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <optional>
+#include <set>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace glint {
+
+// Entries at indices that stay the same. A new entry gets the lowest free index, so that arrays on the device
+// stay short. Every entry has a generation of its own, so a handle that outlives its entry finds nothing.
+template <typename Entry, typename Handle>
+class Slots {
+public:
+    // Returns the handle that the next add() gives.
+    Handle next() const {
+        return {free_.empty() ? end() : *free_.begin(), generation_ + 1};
+    }
+    Handle add(Entry entry) {
+        const Handle handle = next();
+        if (handle.index == slots_.size()) {
+            slots_.emplace_back();
+        } else {
+            free_.erase(free_.begin());
+        }
+        slots_[handle.index] = {++generation_, std::move(entry)};
+        ++count_;
+        return handle;
+    }
+    // Returns null if the handle names nothing.
+    Entry* find(Handle handle) {
+        const bool named = handle.index < slots_.size() && slots_[handle.index].entry &&
+                           slots_[handle.index].generation == handle.generation;
+        return named ? &*slots_[handle.index].entry : nullptr;
+    }
+    const Entry* find(Handle handle) const {
+        return const_cast<Slots*>(this)->find(handle);
+    }
+    // Requires a handle that names an entry.
+    Entry take(Handle handle) {
+        Entry entry = std::move(*slots_[handle.index].entry);
+        slots_[handle.index].entry.reset();
+        free_.insert(handle.index);
+        --count_;
+        while (!slots_.empty() && !slots_.back().entry) {
+            slots_.pop_back();
+            free_.erase(end());
+        }
+        return entry;
+    }
+    // One past the last entry's index.
+    std::uint32_t end() const {
+        return static_cast<std::uint32_t>(slots_.size());
+    }
+    std::size_t count() const {
+        return count_;
+    }
+    // Calls visit(handle, entry) for all entries, by ascending index.
+    template <typename Visit>
+    void forEach(const Visit& visit) {
+        for (std::uint32_t i = 0; i < end(); ++i) {
+            if (slots_[i].entry) {
+                visit(Handle{i, slots_[i].generation}, *slots_[i].entry);
+            }
+        }
+    }
+    template <typename Visit>
+    void forEach(const Visit& visit) const {
+        for (std::uint32_t i = 0; i < end(); ++i) {
+            if (slots_[i].entry) {
+                visit(Handle{i, slots_[i].generation}, *slots_[i].entry);
+            }
+        }
+    }
+
+private:
+    struct Slot {
+        std::uint32_t generation = 0;
+        std::optional<Entry> entry;
+    };
+    std::vector<Slot> slots_;
+    std::set<std::uint32_t> free_;  // below end()
+    std::uint32_t generation_ = 0;
+    std::size_t count_ = 0;
+};
+
+// Indices [first, end).
+struct IndexRange {
+    std::uint32_t first = 0;
+    std::uint32_t end = 0;
+};
+
+// Finds room for runs of consecutive records. A run gets the lowest place that has room.
+class RunAllocator {
+public:
+    std::uint32_t allocate(std::uint32_t count);
+    void release(std::uint32_t first, std::uint32_t count);
+    // One past the last index in use.
+    std::uint32_t end() const {
+        return end_;
+    }
+
+private:
+    std::vector<IndexRange> free_;  // below end_, by ascending index; no two of them touch
+    std::uint32_t end_ = 0;
+};
+
+// The host's copy of an array of records, with the parts of it that the device does not have yet.
+class RecordStore {
+public:
+    explicit RecordStore(std::size_t stride) : stride_(stride) {}
+
+    // Writes the record at `index`; the array grows to hold it.
+    void writeBytes(std::uint32_t index, std::span<const std::uint8_t> record);
+    template <typename T>
+    void write(std::uint32_t index, const T& record) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        writeBytes(index, std::span(reinterpret_cast<const std::uint8_t*>(&record), sizeof record));
+    }
+    // Replaces the records by these, and writes the range from the first to the last that differs.
+    template <typename T>
+    void replace(std::span<const T> records) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        replaceBytes(std::span(reinterpret_cast<const std::uint8_t*>(records.data()), records.size_bytes()));
+    }
+    void replaceBytes(std::span<const std::uint8_t> records);
+    // Forgets the records from `count` on.
+    void shrink(std::uint32_t count);
+
+    std::span<const std::uint8_t> at(std::uint32_t index) const {
+        return std::span(bytes_).subspan(index * stride_, stride_);
+    }
+    template <typename T>
+    T read(std::uint32_t index) const {
+        T record;
+        std::memcpy(&record, at(index).data(), sizeof record);
+        return record;
+    }
+    std::uint32_t count() const {
+        return static_cast<std::uint32_t>(bytes_.size() / stride_);
+    }
+    std::size_t stride() const {
+        return stride_;
+    }
+    bool isDirty() const {
+        return !dirty_.empty();
+    }
+    // The records that were written since clearDirty(), as runs that do not touch.
+    std::vector<IndexRange> dirty() const;
+    void clearDirty() {
+        dirty_.clear();
+    }
+
+    // The size of the array on the device, in records.
+    std::uint32_t capacity = 0;
+    std::uint32_t firstCapacity = 0;  // the capacity at the upload
+
+private:
+    std::size_t stride_;
+    std::vector<std::uint8_t> bytes_;
+    std::vector<IndexRange> dirty_;  // may overlap
+};
+
+}  // namespace glint

@@ -1,0 +1,281 @@
+// The builds of an upload: BLASes, opacity micromaps, the TLAS.
+#include "scene/scene_upload.h"
+
+#include "context/commands.h"
+#include "context/vulkan_table.h"
+#include "data/acceleration.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+namespace glint {
+namespace {
+
+constexpr MemoryDependency kBuildToQuery{VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
+                                         VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR,
+                                         VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
+                                         VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR};
+
+// All data that the recorded builds refer to, besides memory.
+struct Builds {
+    std::vector<BlasBuild> all;
+    std::vector<VkAccelerationStructureKHR> handles;
+    ScratchRange scratch;
+    VkQueryPool sizes = VK_NULL_HANDLE;
+
+    std::vector<BlasWork> works() const {
+        std::vector<BlasWork> works;
+        for (const BlasBuild& build : all) {
+            works.push_back({&build});
+        }
+        return works;
+    }
+};
+
+Result<UniqueQueryPool> createSizes(Context::State& context, std::uint32_t count) {
+    VkQueryPoolCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
+    info.queryType = VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR;
+    info.queryCount = count;
+    GLINT_TRY(auto queries,
+              createHandle<UniqueQueryPool>(context, context.vk.CreateQueryPool, "vkCreateQueryPool", info));
+    context.vk.ResetQueryPool(context.handles.device, queries.get(), 0, count);
+    return queries;
+}
+
+void record(const Context::State& context, const Builds& builds, VkCommandBuffer commands) {
+    recordBuilds(context, commands, builds.works(), builds.scratch);
+    recordDependency(context, commands, kBuildToQuery);
+    context.vk.CmdWriteAccelerationStructuresPropertiesKHR(
+        commands, static_cast<std::uint32_t>(builds.handles.size()), builds.handles.data(),
+        VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR, builds.sizes, 0);
+}
+
+}  // namespace
+
+Result<std::vector<AccelerationStructure>> addBlases(SceneUpload& upload, std::span<const BlasInput> inputs,
+                                                     BlasStatistics& statistics) {
+    Context::State& context = upload.context;
+    std::vector<AccelerationStructure> structures;
+    structures.reserve(inputs.size());
+    if (inputs.empty()) {
+        return structures;
+    }
+    upload.compaction = std::make_unique<Compaction>(context);
+    auto builds = std::make_shared<Builds>();
+    builds->all.reserve(inputs.size());
+    for (const BlasInput& input : inputs) {
+        BlasBuild build = describeBuild(context, input);
+        GLINT_TRY(auto structure, createStructure(context, upload.compaction->pool, build.structureBytes,
+                                                  VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR));
+        statistics.bytes += build.structureBytes;
+        build.info.dstAccelerationStructure = structure.handle.get();
+        builds->handles.push_back(structure.handle.get());
+        builds->all.push_back(std::move(build));
+        structures.push_back(std::move(structure));
+    }
+    builds->scratch.bytes = scratchBytesOf(context, builds->works());
+    GLINT_TRY(auto scratch, createScratch(context, upload.pool, builds->scratch.bytes));
+    builds->scratch.address = scratch.address;
+    upload.keep(std::move(scratch.buffer));
+    upload.compaction->count = static_cast<std::uint32_t>(inputs.size());
+    GLINT_TRY(auto sizes, createSizes(context, upload.compaction->count));
+    builds->sizes = sizes.get();
+    upload.compaction->sizes = std::move(sizes);
+    GLINT_TRY(upload.timer, Timer::create(context, 2));
+    upload.stretches = 1;
+    upload.uploader->add([&context, &upload, builds](VkCommandBuffer commands) {
+        upload.timer->recordReset(commands);
+        recordDependency(context, commands, kAllToAll);
+        upload.timer->recordBegin(commands, SceneUpload::kBlasStretch);
+        record(context, *builds, commands);
+        upload.timer->recordEnd(commands, SceneUpload::kBlasStretch);
+    });
+    return structures;
+}
+
+namespace {
+
+// VkMicromapBuildInfoEXT requires this alignment (VUID-vkCmdBuildMicromapsEXT-pInfos-07515).
+constexpr VkDeviceSize kInputAlignment = 256;
+
+constexpr MemoryDependency kMicromapToStructures{
+    VK_PIPELINE_STAGE_2_MICROMAP_BUILD_BIT_EXT, VK_ACCESS_2_MICROMAP_WRITE_BIT_EXT,
+    VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR | VK_PIPELINE_STAGE_2_MICROMAP_BUILD_BIT_EXT,
+    VK_ACCESS_2_MICROMAP_READ_BIT_EXT};
+
+std::vector<VkMicromapUsageEXT> vulkanUsages(std::span<const opacity::MicromapUsage> usages) {
+    std::vector<VkMicromapUsageEXT> made;
+    for (const opacity::MicromapUsage& usage : usages) {
+        made.push_back({usage.count, usage.subdivisionLevel, usage.format});
+    }
+    return made;
+}
+
+// A buffer whose content is at an address with the alignment of build inputs.
+struct InputBuffer {
+    Buffer buffer;
+    VkDeviceAddress address = 0;
+};
+
+Result<InputBuffer> uploadInput(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                                std::span<const std::uint8_t> bytes) {
+    GLINT_TRY(auto buffer, createBuffer(context, pool, bytes.size() + kInputAlignment,
+                                        VK_BUFFER_USAGE_MICROMAP_BUILD_INPUT_READ_ONLY_BIT_EXT |
+                                            VK_BUFFER_USAGE_TRANSFER_DST_BIT));
+    const VkDeviceAddress aligned =
+        (buffer.address + kInputAlignment - 1) / kInputAlignment * kInputAlignment;
+    GLINT_TRY_DO(uploader.copyToBuffer(bytes, buffer, aligned - buffer.address));
+    return InputBuffer{std::move(buffer), aligned};
+}
+
+// The resources of one micromap's build, which must stay until it is done.
+struct PendingMicromap {
+    InputBuffer data;
+    InputBuffer records;
+    Scratch scratch;
+    std::vector<VkMicromapUsageEXT> usages;
+    VkMicromapBuildInfoEXT info{};
+};
+
+class MicromapBuilder {
+public:
+    MicromapBuilder(SceneUpload& upload, MemoryPool& pool)
+        : upload_(upload), context_(upload.context), pool_(pool) {}
+
+    Status add(const opacity::MicromapArray& array, DeviceMicromap& made) {
+        Uploader& uploader = *upload_.uploader;
+        if (Status status = addIndices(array, uploader, made); !status || array.records.empty()) {
+            return status;
+        }
+        PendingMicromap pending;
+        GLINT_TRY(pending.data, uploadInput(context_, upload_.pool, uploader, array.data));
+        GLINT_TRY(pending.records,
+                  uploadInput(context_, upload_.pool, uploader, bytesOf(std::span(array.records))));
+        pending.usages = vulkanUsages(array.usages);
+        GLINT_TRY_DO(create(pending, made));
+        upload_.keep(std::move(pending.data.buffer));
+        upload_.keep(std::move(pending.records.buffer));
+        upload_.keep(std::move(pending.scratch.buffer));
+        pending_->push_back(std::move(pending));
+        return okStatus();
+    }
+
+    // Queues the builds, after the copies.
+    void build() {
+        if (pending_->empty()) {
+            return;
+        }
+        upload_.uploader->add([&context = context_, pending = pending_](VkCommandBuffer commands) {
+            std::vector<VkMicromapBuildInfoEXT> infos;
+            for (PendingMicromap& one : *pending) {
+                one.info.pUsageCounts = one.usages.data();
+                infos.push_back(one.info);
+            }
+            recordDependency(context, commands, kAllToAll);
+            context.vk.CmdBuildMicromapsEXT(commands, static_cast<std::uint32_t>(infos.size()), infos.data());
+            recordDependency(context, commands, kMicromapToStructures);
+        });
+    }
+
+private:
+    Status addIndices(const opacity::MicromapArray& array, Uploader& uploader, DeviceMicromap& made) {
+        const std::span<const std::uint8_t> bytes = bytesOf(std::span(array.indices));
+        GLINT_TRY(made.indices,
+                  createBuffer(context_, pool_, bytes.size(),
+                               VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
+                                   VK_BUFFER_USAGE_MICROMAP_BUILD_INPUT_READ_ONLY_BIT_EXT |
+                                   VK_BUFFER_USAGE_TRANSFER_DST_BIT));
+        made.usages = vulkanUsages(opacity::usagesOf(array));
+        made.bytes = bytes.size();
+        return uploader.copyToBuffer(bytes, made.indices);
+    }
+
+    Status create(PendingMicromap& pending, DeviceMicromap& made) {
+        VkMicromapBuildInfoEXT& info = pending.info;
+        info.sType = VK_STRUCTURE_TYPE_MICROMAP_BUILD_INFO_EXT;
+        info.type = VK_MICROMAP_TYPE_OPACITY_MICROMAP_EXT;
+        info.flags = VK_BUILD_MICROMAP_PREFER_FAST_TRACE_BIT_EXT;
+        info.mode = VK_BUILD_MICROMAP_MODE_BUILD_EXT;
+        info.usageCountsCount = static_cast<std::uint32_t>(pending.usages.size());
+        info.pUsageCounts = pending.usages.data();
+        info.data.deviceAddress = pending.data.address;
+        info.triangleArray.deviceAddress = pending.records.address;
+        info.triangleArrayStride = sizeof(opacity::MicromapRecord);
+        VkMicromapBuildSizesInfoEXT sizes{};
+        sizes.sType = VK_STRUCTURE_TYPE_MICROMAP_BUILD_SIZES_INFO_EXT;
+        context_.vk.GetMicromapBuildSizesEXT(context_.handles.device,
+                                             VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info, &sizes);
+        GLINT_TRY(made.buffer, createBuffer(context_, pool_, sizes.micromapSize,
+                                            VK_BUFFER_USAGE_MICROMAP_STORAGE_BIT_EXT));
+        made.bytes += sizes.micromapSize;
+        VkMicromapCreateInfoEXT creation{};
+        creation.sType = VK_STRUCTURE_TYPE_MICROMAP_CREATE_INFO_EXT;
+        creation.buffer = made.buffer.handle.get();
+        creation.size = sizes.micromapSize;
+        creation.type = VK_MICROMAP_TYPE_OPACITY_MICROMAP_EXT;
+        GLINT_TRY(made.handle, createHandle<UniqueMicromap>(context_, context_.vk.CreateMicromapEXT,
+                                                            "vkCreateMicromapEXT", creation));
+        info.dstMicromap = made.handle.get();
+        GLINT_TRY(pending.scratch, createScratch(context_, upload_.pool, sizes.buildScratchSize));
+        info.scratchData.deviceAddress = pending.scratch.address;
+        return okStatus();
+    }
+
+    SceneUpload& upload_;
+    Context::State& context_;
+    MemoryPool& pool_;
+    // The upload owns its buffers.
+    std::shared_ptr<std::vector<PendingMicromap>> pending_ = std::make_shared<std::vector<PendingMicromap>>();
+};
+
+}  // namespace
+
+std::uint32_t micromapLevel(const Context::State& context) {
+    const VkPhysicalDeviceOpacityMicromapPropertiesEXT& limits = context.limits.opacityMicromap;
+    return std::min({limits.maxOpacity2StateSubdivisionLevel, limits.maxOpacity4StateSubdivisionLevel,
+                     opacity::kMaxLevel});
+}
+
+Result<std::vector<DeviceMicromap>> addMicromaps(SceneUpload& upload, MemoryPool& pool,
+                                                 std::span<const opacity::MicromapArray> arrays) {
+    std::vector<DeviceMicromap> made(arrays.size());
+    MicromapBuilder builder(upload, pool);
+    for (std::size_t i = 0; i < arrays.size(); ++i) {
+        GLINT_TRY_DO(builder.add(arrays[i], made[i]));
+    }
+    builder.build();
+    return made;
+}
+
+Result<AccelerationStructure> addTlas(SceneUpload& upload, MemoryPool& pool,
+                                      std::span<const VkAccelerationStructureInstanceKHR> instances) {
+    Context::State& context = upload.context;
+    const Result<PreparedTlas> prepared = prepareTlas(context, upload.pool, instances, false, upload.kept);
+    if (!prepared) {
+        return prepared.error();
+    }
+    Result<AccelerationStructure> structure =
+        createStructure(context, pool, prepared->build.sizes.accelerationStructureSize,
+                        VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR);
+    if (!structure) {
+        return structure.error();
+    }
+    const bool timed = upload.timer.has_value();
+    upload.stretches += timed ? 1 : 0;
+    upload.uploader->add([&context, &upload, timed, prepared = *prepared,
+                          target = structure->handle.get()](VkCommandBuffer commands) {
+        recordDependency(context, commands, kAllToAll);
+        if (timed) {
+            upload.timer->recordBegin(commands, SceneUpload::kTlasStretch);
+        }
+        recordTlasBuild(context, commands, prepared, target);
+        if (timed) {
+            upload.timer->recordEnd(commands, SceneUpload::kTlasStretch);
+        }
+    });
+    return structure;
+}
+
+}  // namespace glint
