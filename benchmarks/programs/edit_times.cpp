@@ -4,8 +4,16 @@
 #include "context/commands.h"
 #include "gltf/scene.h"
 
+<<<<<<< HEAD
 #include <glint/scene.h>
 #include <glint/session/session.h>
+=======
+#include <glint/context.h>
+#include <glint/renderer.h>
+#include <glint/scene.h>
+#include <glint/scene_view/package.h>
+#include <glint/scene_view/scene_view.h>
+>>>>>>> h-runtime
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -6,9 +6,17 @@
 #include "gltf/import.h"
 #include "materials/declarations.h"
 
+<<<<<<< HEAD
 #include <glint/package.h>
 #include <glint/session/camera.h>
 #include <glint/session/session.h>
+=======
+#include <glint/context.h>
+#include <glint/package.h>
+#include <glint/renderer.h>
+#include <glint/scene_view/camera.h>
+#include <glint/scene_view/scene_view.h>
+>>>>>>> h-runtime
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -5,9 +5,14 @@
 #include "render/rooms.h"
 #include "render/scene_builder.h"
 #include "render/traced_frame.h"
+<<<<<<< HEAD
 #include "renderer/hit_passes.h"
 #include "renderer/renderer.h"
 #include "resolve/host.h"
+=======
+#include "renderer/renderer.h"
+#include "resolve/builtin.h"
+>>>>>>> h-runtime
 #include "support/temporary_folder.h"
 
 #include <glint/steps.h>

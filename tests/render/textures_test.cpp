@@ -10,7 +10,11 @@
 #include "unit/gltf/block_files.h"
 
 #include <glint/scene.h>
+<<<<<<< HEAD
 #include <glint/session/session.h>
+=======
+#include <glint/scene_view/package.h>
+>>>>>>> h-runtime
 
 #include <gtest/gtest.h>
 
