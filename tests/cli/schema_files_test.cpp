@@ -14,6 +14,8 @@
 #include <cstdlib>
 #include <fstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace glint {
 namespace {
@@ -59,6 +61,8 @@ std::vector<Part> parts() {
         fileOf("manifest", "manifest.json of a package", schemaOf<compiler::Manifest>()),
         fileOf("profile", "The file of glint render --profile", schemaOf<compiler::Profile>()),
         {"common", "/definitions/pipelineReport", schemaOf<inspect::PipelineReport>()},
+        {"common", "/definitions/sceneInFile", base::schemaOrNull(schemaOf<gltf::SceneInFile>())},
+        {"common", "/definitions/strategyChoice", schemaOf<compiler::StrategyAdvice>()},
     };
 }
 

@@ -134,12 +134,15 @@ TEST(Structure, EveryPartOfTheToolHasANamespaceOfItsOwn) {
         {"plan", "compiler"},     {"scene", "compiler"},   {"spirv", "compiler"}, {"cache", "compiler"},
         {"settings", "compiler"}, {"resolve", "compiler"}, {"emit", "compiler"}};
     static const std::regex kNamespace(R"(^namespace (glint[\w:]*) \{)");
+    static const std::regex kAllowed(
+        R"(^(class |struct |using base::|(static )?base::Fields fieldsOf\(|[ }]))");
     for (const std::string_view part : kParts) {
         const auto found = shared.find(part);
         const std::string own = "glint::" + (found == shared.end() ? std::string(part) : found->second);
         visitSources("tool/" + std::string(part), [&](const fs::path& path) {
             std::ifstream file(path);
-            bool forwards = true;  // whether a namespace only declares what another part defines
+            // Whether a namespace only declares what another part defines, or gives the JSON of its types.
+            bool forwards = true;
             for (std::string line, opened; std::getline(file, line);) {
                 std::smatch match;
                 if (std::regex_search(line, match, kNamespace)) {
@@ -148,8 +151,7 @@ TEST(Structure, EveryPartOfTheToolHasANamespaceOfItsOwn) {
                 } else if (line == "}  // namespace " + opened) {
                     EXPECT_TRUE(forwards || opened.starts_with(own)) << path << " opens " << opened;
                     opened.clear();
-                } else if (!opened.empty() && !line.empty() && !line.starts_with("class ") &&
-                           !line.starts_with("struct ")) {
+                } else if (!opened.empty() && !line.empty() && !std::regex_search(line, kAllowed)) {
                     forwards = false;
                 }
             }

@@ -151,7 +151,7 @@ base::Json scenesToJson(const gltf::SceneList& scenes) {
     base::Json list = base::Json::array();
     for (const gltf::Scene& scene : scenes.scenes()) {
         list.push_back(base::Json{{"file", scene.path},
-                                  {"sceneInFile", base::jsonOf(orNone(gltf::sceneInFile(scene)))}});
+                                  {"sceneInFile", base::jsonOf(compiler::orNone(gltf::sceneInFile(scene)))}});
     }
     return list;
 }

@@ -332,7 +332,7 @@ base::Json toJson(const ExplainArguments& arguments, const compiler::Build& buil
     const gltf::Scene& scene = build.scenes->scenes().front();
     const compiler::PlanOptions& options = build.settings.compile.plan;
     base::Json result{{"scene", arguments.scene},
-                      {"sceneInFile", base::jsonOf(orNone(gltf::sceneInFile(scene)))},
+                      {"sceneInFile", base::jsonOf(compiler::orNone(gltf::sceneInFile(scene)))},
                       {"scenesInFile", scenesInFileToJson(scene)},
                       {"merge", nameOf(options.merge)},
                       {"alpha", nameOf(options.keys.alpha)},

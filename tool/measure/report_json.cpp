@@ -156,7 +156,7 @@ static Fields fieldsOf(const HitTimes*) {
     return {output<&T::dispatch>("dispatch", "Time of making the indirect arguments of the list."),
             output<&T::trace>("trace", "Time of tracing rays to hit records, if a separate pass does that."),
             output<&T::order>("order", "Time of sorting the records by bucket."),
-            output<&T::shade>("shade", "Time of shading; for uber and hit-shaders it includes tracing."),
+            output<&T::shade>("shade", "Time of shading; with tracing where a strategy has no pass for it."),
             output<&T::shadow>("shadow", "Time of deferred shadow rays, including their dispatch.")};
 }
 
@@ -371,7 +371,7 @@ static Fields fieldsOf(const BenchScene*) {
             output("name", "Name of the file.",
                    [](const T& scene) { return std::filesystem::path(scene.file).stem().string(); }),
             output("sceneInFile", "The scene that was read (--scene); null if there are none.",
-                   [](const T& scene) { return orNone(scene.inFile); }),
+                   [](const T& scene) { return compiler::orNone(scene.inFile); }),
             output<&T::triangles>("triangles", "Number of triangles of all instances."),
             output<&T::materials>("materials", "Number of materials."),
             output<&T::instances>("instances", "Number of instances."),
@@ -484,7 +484,7 @@ Fields fieldsOf(const RowOf*) {
         output<&T::row, &Row::hitRatio>("hitRatio", "Their ratio to the default's in the same round."),
         output<&T::row, &Row::traceMs>("traceMs", "Time of tracing, if a separate pass traces hits."),
         output<&T::row, &Row::orderMs>("orderMs", "Time of sorting hits: the passes count, offset and copy."),
-        output<&T::row, &Row::shadeMs>("shadeMs", "Time of shading; for uber and hit-shaders with tracing."),
+        output<&T::row, &Row::shadeMs>("shadeMs", "Time of shading; with tracing where no pass does that."),
         output<&T::row, &Row::commonMs>("commonMs", "Time of the work that every strategy does alike."),
         output<&T::row, &Row::rays>("rays", "Number of rays of the last sample.")};
 }

@@ -309,7 +309,7 @@ base::Fields fieldsOf(const RenderReport*) {
     return {
         output<&T::scene>("scene", "Path as given on the command line."),
         output("sceneInFile", "The scene that was read (--scene); null if there are none.",
-               [](const T& report) { return orNone(report.sceneInFile); }),
+               [](const T& report) { return compiler::orNone(report.sceneInFile); }),
         output<&T::image>("image", "Path as given on the command line."),
         output<&T::device>("device", "Name of the GPU."),
         output<&T::driver>("driver", "Name of its driver."),

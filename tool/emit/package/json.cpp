@@ -9,10 +9,6 @@ base::Fields fieldsOf(const SceneInFile*) {
             base::field<&SceneInFile::name>("name", "Its name; null if it has none.", {.orNull = true})};
 }
 
-std::optional<SceneInFile> orNone(const SceneInFile& scene) {
-    return scene.index < 0 ? std::nullopt : std::optional(scene);
-}
-
 }  // namespace glint::gltf
 
 namespace glint::compiler {
@@ -48,6 +44,10 @@ std::vector<std::pair<std::string_view, double>> partsOf(const StrategyEstimate&
 }
 
 }  // namespace
+
+std::optional<gltf::SceneInFile> orNone(const gltf::SceneInFile& scene) {
+    return scene.index < 0 ? std::nullopt : std::optional(scene);
+}
 
 std::vector<std::string_view> strategyWords() {
     return {simplestFirst().begin(), simplestFirst().end()};

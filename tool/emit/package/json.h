@@ -19,12 +19,13 @@
 namespace glint::gltf {
 
 base::Fields fieldsOf(const SceneInFile*);
-// Returns nothing if the file has no scenes.
-std::optional<SceneInFile> orNone(const SceneInFile& scene);
 
 }  // namespace glint::gltf
 
 namespace glint::compiler {
+
+// Returns nothing if the file has no scenes.
+std::optional<gltf::SceneInFile> orNone(const gltf::SceneInFile& scene);
 
 base::Fields fieldsOf(const StrategyAdvice*);
 base::Fields fieldsOf(const EffectDecision*);
