@@ -5,21 +5,9 @@
 #include "context/commands.h"
 #include "gltf/import.h"
 
-<<<<<<< HEAD
 #include <glint/session/camera.h>
 #include <glint/session/session.h>
 #include <glint/session/textures.h>
-=======
-#include <glint/context.h>
-#include <glint/measure/render_settings.h>
-#include <glint/renderer.h>
-#include <glint/scene.h>
-#include <glint/scene_view/camera.h>
-#include <glint/scene_view/package.h>
-#include <glint/scene_view/scene_view.h>
-#include <glint/scene_view/sky.h>
-#include <glint/scene_view/textures.h>
->>>>>>> h-runtime
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

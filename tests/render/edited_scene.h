@@ -5,13 +5,8 @@
 #include "render/harness.h"
 
 #include <glint/scene.h>
-<<<<<<< HEAD
 #include <glint/session/material_source.h>
 #include <glint/session/scene_view.h>
-=======
-#include <glint/scene_view/material_source.h>
-#include <glint/scene_view/scene_view.h>
->>>>>>> h-runtime
 
 #include <vulkan/vulkan_core.h>
 

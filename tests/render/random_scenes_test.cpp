@@ -9,11 +9,7 @@
 #include "unit/gltf/gltf_builder.h"
 
 #include <glint/package_modules.h>
-<<<<<<< HEAD
 #include <glint/session/camera.h>
-=======
-#include <glint/scene_view/camera.h>
->>>>>>> h-runtime
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

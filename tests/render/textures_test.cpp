@@ -10,11 +10,7 @@
 #include "unit/gltf/block_files.h"
 
 #include <glint/scene.h>
-<<<<<<< HEAD
 #include <glint/session/session.h>
-=======
-#include <glint/scene_view/package.h>
->>>>>>> h-runtime
 
 #include <gtest/gtest.h>
 

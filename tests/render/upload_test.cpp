@@ -9,12 +9,7 @@
 
 #include <glint/environment.h>
 #include <glint/scene.h>
-<<<<<<< HEAD
 #include <glint/session/scene_view.h>
-=======
-#include <glint/scene_view/pose.h>
-#include <glint/steps.h>
->>>>>>> h-runtime
 
 #include <gtest/gtest.h>
 

@@ -12,11 +12,7 @@
 #include <glint/measure/settings.h>
 #include <glint/measure/target.h>
 #include <glint/package_modules.h>
-<<<<<<< HEAD
 #include <glint/session/session.h>
-=======
-#include <glint/scene_view/package.h>
->>>>>>> h-runtime
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

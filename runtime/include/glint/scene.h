@@ -52,13 +52,8 @@ inline constexpr std::uint32_t kDeclaredAttributesShift = 8;
 // Returns the attributes that the primitive has, as far as `package` knows them. Reads all colours.
 AttributeMask attributesOf(const Package& package, const PrimitiveView& primitive);
 
-<<<<<<< HEAD
 // The features of a material on primitives with certain attributes. Glint::session makes these from a
 // material of glTF (glint/session/material_source.h).
-=======
-// The features of a material on primitives with certain attributes. Glint::scene_view makes these from a
-// material of glTF (glint/scene_view/material_source.h).
->>>>>>> h-runtime
 struct MaterialKey {
     AttributeMask attributes = 0;
     std::uint64_t features = 0;       // the key, with all lobes

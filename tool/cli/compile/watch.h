@@ -49,7 +49,6 @@ struct WatchedRun {
 // Sets the counts and times of a package that was compiled.
 void describeRun(const compiler::CompiledPackage& package, WatchedRun& run);
 
-<<<<<<< HEAD
 // While it lives, signals have another handler.
 class SignalHandler {
 public:
@@ -80,12 +79,6 @@ private:
 // of an input, until SIGINT or SIGTERM. After each run it prints a line, and after each new package it counts
 // the stamp up (glint/package.h). Returns the exit code of the command, which is 0.
 using CompileOnce = std::function<Result<int>(const Console&, const CompileArguments&, WatchedRun&)>;
-=======
-// Calls `compileOnce`, which reports and returns an exit code, at the start and after each change of an
-// input, until SIGINT or SIGTERM. After each run it prints a line, and after each new package it counts the
-// stamp up (glint/package.h). Returns the exit code of the command, which is 0.
-using CompileOnce = std::function<int(const Console&, const CompileArguments&, WatchedRun&)>;
->>>>>>> h-runtime
 int watchInputs(const Console& console, const CompileArguments& arguments, const CompileOnce& compileOnce);
 
 }  // namespace glint::cli

@@ -6,13 +6,7 @@
 #include <glint/context.h>
 #include <glint/internal/scene_kernel.h>
 #include <glint/measure/check_materials.h>
-<<<<<<< HEAD
 #include <glint/session/session.h>
-=======
-#include <glint/package.h>
-#include <glint/renderer.h>
-#include <glint/scene_view/scene_view.h>
->>>>>>> h-runtime
 
 #include <cstdint>
 #include <memory>
