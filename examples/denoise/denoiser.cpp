@@ -177,11 +177,7 @@ struct Denoiser::State {
         DENOISE_CHECK(CreateImage(device.device, &info, nullptr, &image.image))
         VkMemoryRequirements needs{};
         vk.GetImageMemoryRequirements(device.device, image.image, &needs);
-        const glint::Result<VkDeviceMemory> memory = allocate(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
-        if (!memory) {
-            return memory.error();
-        }
-        image.memory = *memory;
+        GLINT_TRY(image.memory, allocate(needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT));
         DENOISE_CHECK(BindImageMemory(device.device, image.image, image.memory, 0))
         VkImageViewCreateInfo view{};
         view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
@@ -280,12 +276,8 @@ struct Denoiser::State {
         DENOISE_CHECK(CreateBuffer(device.device, &size, nullptr, &buffer))
         VkMemoryRequirements needs{};
         vk.GetBufferMemoryRequirements(device.device, buffer, &needs);
-        const glint::Result<VkDeviceMemory> memory =
-            allocate(needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
-        if (!memory) {
-            return memory.error();
-        }
-        bufferMemory = *memory;
+        GLINT_TRY(bufferMemory, allocate(needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                                    VK_MEMORY_PROPERTY_HOST_COHERENT_BIT));
         void* mapped = nullptr;
         DENOISE_CHECK(BindBufferMemory(device.device, buffer, bufferMemory, 0))
         DENOISE_CHECK(MapMemory(device.device, bufferMemory, 0, VK_WHOLE_SIZE, 0, &mapped))
@@ -451,22 +443,16 @@ glint::Result<std::unique_ptr<Denoiser>> Denoiser::create(const glint::Context& 
                                                           const glint::Renderer& renderer,
                                                           std::uint32_t width, std::uint32_t height,
                                                           const FilterSettings& settings) {
-    const glint::Result<Functions> functions = loadFunctions(context.handles());
-    if (!functions) {
-        return functions.error();
-    }
     auto made = std::make_unique<State>();
     State& state = *made;
-    state.vk = *functions;
+    GLINT_TRY(state.vk, loadFunctions(context.handles()));
     state.device = context.handles();
     state.settings = settings;
     state.push.width = static_cast<std::int32_t>(width);
     state.push.height = static_cast<std::int32_t>(height);
     state.push.alpha = settings.alpha;
     state.push.samples = settings.samples;
-    if (glint::Status found = state.findSignals(renderer); !found) {
-        return found.error();
-    }
+    GLINT_TRY_DO(state.findSignals(renderer));
     const struct {
         Program* program;
         std::span<const std::uint32_t> code;
@@ -476,29 +462,19 @@ glint::Result<std::unique_ptr<Denoiser>> Denoiser::create(const glint::Context& 
                     {&state.variance, kVarianceShader, 4, 1}, {&state.wavelet, kWaveletShader, 3, 1},
                     {&state.modulate, kModulateShader, 3, 1}, {&state.antialias, kAntialiasShader, 4, 1}};
     for (const auto& program : programs) {
-        if (glint::Status done = state.make(*program.program, program.code, program.sampled, program.stored);
-            !done) {
-            return done.error();
-        }
+        GLINT_TRY_DO(state.make(*program.program, program.code, program.sampled, program.stored));
     }
     const auto count = static_cast<std::uint32_t>(state.signals.size());
     for (Image* const image : {state.guides.data(), &state.guides[1], state.resolved.data(),
                                &state.resolved[1], &state.surfaces, &state.picture}) {
-        if (glint::Status done = state.make(*image, VK_IMAGE_VIEW_TYPE_2D); !done) {
-            return done.error();
-        }
+        GLINT_TRY_DO(state.make(*image, VK_IMAGE_VIEW_TYPE_2D));
     }
     for (Image* const image : {state.moments.data(), &state.moments[1], state.filtered.data(),
                                &state.filtered[1], &state.mean, &state.history}) {
-        if (glint::Status done = state.make(*image, VK_IMAGE_VIEW_TYPE_2D_ARRAY, count); !done) {
-            return done.error();
-        }
+        GLINT_TRY_DO(state.make(*image, VK_IMAGE_VIEW_TYPE_2D_ARRAY, count));
     }
-    for (const glint::Status& done : {state.makePool(), state.makeReading()}) {
-        if (!done) {
-            return done.error();
-        }
-    }
+    GLINT_TRY_DO(state.makePool());
+    GLINT_TRY_DO(state.makeReading());
     return std::unique_ptr<Denoiser>(new Denoiser(std::move(made)));
 }
 

@@ -140,7 +140,7 @@ std::unique_ptr<Renderer> makeRenderer(const Source& source, GpuScene& scene) {
     options.tracer = tracerOfDevice();
     options.width = kSide;
     options.height = kSide;
-    return makeRenderer(source.loaded->package(), scene, options);
+    return testing::makeRenderer(source.loaded->package(), scene, options);
 }
 
 void expectSameBits(const Result<LinearImage>& image, const Result<LinearImage>& reference,
@@ -241,7 +241,7 @@ TEST_P(RecordedUpload, FramesShowWhatABlockingUploadShows) {
     if (GetParam() == Kind::Moving) {
         // The top level of later poses has the compacted structures, too.
         Source other(skinnedScene(-0.4));
-        for (GpuScene* const one : {scene.get(), whole->get()}) {
+        for (GpuScene* const one : {scene.get(), whole.get()}) {
             EXPECT_TRUE(one->updateAndWait(other.data.motion()));
         }
         expectSameBits(renderer->render(frame_), reference->render(frame_), "another pose");

@@ -43,7 +43,7 @@ public:
     bool showEarly(const Build& early);
     Status takeBackEarly();
     // Takes settings of stages after the package, or another size. The device must be idle unless
-    // changeBetween() is compiler::Change::Frame.
+    // changeBetween() is compiler::kChangesFrame.
     Status change(const compiler::Settings& settings, std::uint32_t width, std::uint32_t height);
 
     // Shows another moment, or the rest pose. The first one uploads the scene anew, so that it can move,

@@ -27,12 +27,12 @@ int main(int argc, char** argv) {
         std::cerr << glint::toString(build.error()) << '\n';
         return 1;
     }
-    const glint::Result<glint::Package> package = glint::session::compileAndLoad(*build);
+    const auto package = glint::session::compileAndLoad(*build);
     if (!camera || !package) {
         std::cerr << glint::toString(camera ? package.error() : camera.error()) << '\n';
         return 1;
     }
-    const glint::Status matches = glint::session::checkPackage(*package, *build);
+    const glint::Status matches = glint::session::checkPackage(**package, *build);
     if (!matches) {
         std::cerr << glint::toString(matches.error()) << '\n';
         return 1;
@@ -42,6 +42,6 @@ int main(int argc, char** argv) {
         triangles += primitive.indices.size() / 3;
     }
     std::cout << view.instances.size() << " instances, " << triangles << " triangles, " << view.images.size()
-              << " images, " << package->caseCount() << " cases, camera " << camera->name << '\n';
+              << " images, " << (*package)->caseCount() << " cases, camera " << camera->name << '\n';
     return 0;
 }

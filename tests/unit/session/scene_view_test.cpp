@@ -1,11 +1,13 @@
 #include <glint/session/camera.h>
 #include <glint/session/scene_view.h>
+#include <glint/session/session.h>
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 namespace glint::session {
 namespace {
@@ -258,6 +260,22 @@ TEST(SceneOrigin, SkinsAndPlacementsAreRebased) {
     const SceneViewData near = makeSceneView(placed);
     EXPECT_EQ(near.origin, Place{});
     expectPlace(worldPlace(near, 1, 0), {32.0, 0, 0}, 1e-6);
+}
+
+TEST(SceneView, PosesKeepTheSizesOfLights) {
+    gltf::Scene scene;
+    scene.lights.resize(2);
+    scene.lights[0].type = gltf::LightType::Directional;
+    scene.lights[1].type = gltf::LightType::Spot;
+    compiler::Settings settings;
+    settings.sunAngle = 2.0;
+    settings.lightRadius = 0.5;
+    SceneViewData data = sceneView(settings, scene);
+    for (int pose = 0; pose < 2; ++pose) {
+        EXPECT_NEAR(data.lights[0].size, std::numbers::pi / 180.0, 1e-6);
+        EXPECT_EQ(data.lights[1].size, 0.5F);
+        poseSceneView(scene, data);
+    }
 }
 
 TEST(SceneView, SunIsAUnitVectorThatTravelsDown) {

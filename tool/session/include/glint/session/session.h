@@ -1,10 +1,10 @@
 // A scene and a device become pictures. These are the steps, in their order; programs have their own loop
 // over frames and their own report:
 //
-//     auto opened = open(file, settings, store);             // the scene, and the package that it is drawn
-//     with auto package = packageFor(build, opened->package, modules);  // `build` is what resolve() decided
+//     auto opened = open(file, settings, store);
+//     auto package = packageFor(build, opened->package, modules);  // `build` is what resolve() decided
 //     SceneViewData data = sceneView(build.settings, opened->scene);
-//     usePackage(*package, opened->scene, textures, data);   // loadTextures() of glint/session/textures.h
+//     usePackage(*package, opened->scene, textures, data);
 //     auto scene = DeviceScene::upload(context, package, std::move(data));
 //     auto renderer = scene->makeRenderer(context, rendererOptions(build.settings));
 //     renderer->render(frameOptions(build.settings, camera, sky, environment), samples);
