@@ -61,8 +61,6 @@ std::vector<Part> parts() {
         fileOf("manifest", "manifest.json of a package", schemaOf<compiler::Manifest>()),
         fileOf("profile", "The file of glint render --profile", schemaOf<compiler::Profile>()),
         {"common", "/definitions/pipelineReport", schemaOf<inspect::PipelineReport>()},
-        {"common", "/definitions/sceneInFile", base::schemaOrNull(schemaOf<gltf::SceneInFile>())},
-        {"common", "/definitions/strategyChoice", schemaOf<compiler::StrategyAdvice>()},
     };
 }
 
