@@ -284,7 +284,7 @@ Field field(const char* name, const char* what, FieldTraits traits = {}) {
 }
 
 // The same of a value that get(object) makes, and that set(object, value), or set(object, value, reader,
-// place), takes.
+// place), takes. Nothing is set after an error.
 template <typename Get, typename Set>
 Field field(const char* name, const char* what, Get get, Set, FieldTraits traits = {}) {
     using Object = detail::ArgumentOf<Get>;
@@ -294,6 +294,9 @@ Field field(const char* name, const char* what, Get get, Set, FieldTraits traits
                     const FieldTraits& facts) {
         Value value{};
         detail::read(value, reader, json, place, facts);
+        if (!reader.ok()) {
+            return;
+        }
         if constexpr (std::is_invocable_v<Set, Object&, Value, JsonReader&, const std::string&>) {
             Set{}(*static_cast<Object*>(object), std::move(value), reader, place);
         } else {

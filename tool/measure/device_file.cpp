@@ -56,9 +56,6 @@ std::vector<FittedStrategy> strategiesOf(const DeviceFile& file) {
 // Fails at the first strategy that is there twice or lacks a constant.
 void setStrategies(DeviceFile& file, std::vector<FittedStrategy> list, base::JsonReader& reader,
                    const std::string& place) {
-    if (!reader.ok()) {
-        return;  // a name that no strategy has
-    }
     for (FittedStrategy& entry : list) {
         const std::string there = fmt::format("{}/{}", place, &entry - list.data());
         if (findCosts(file.costs, entry.strategy) != nullptr) {
