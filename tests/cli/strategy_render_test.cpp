@@ -117,7 +117,9 @@ TEST_F(StrategyRender, DeviceFilesAreReadAsTheyAreWritten) {
             }
         }
     }
-    const Json measured{{"command", "glint bench --calibrate -o out"},
+    const Json measured{{"format", "glint-calibration"},
+                        {"version", 1},
+                        {"command", "glint bench --calibrate -o out"},
                         {"machine",
                          {{"device", "Planted"},
                           {"driver", "Planted 1.0"},
