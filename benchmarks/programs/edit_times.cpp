@@ -6,7 +6,7 @@
 
 #include <glint/scene.h>
 #include <glint/session/session.h>
-    
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -22,131 +22,130 @@
 #include <utility>
 #include <vector>
 
-    namespace glint {
+namespace glint {
 
-    namespace {
+namespace {
 
-    struct Arguments {
-        std::uint32_t lamps = 100;
-        std::uint32_t triangles = 100;
-        int rounds = 20;
+struct Arguments {
+    std::uint32_t lamps = 100;
+    std::uint32_t triangles = 100;
+    int rounds = 20;
+};
+
+constexpr std::size_t kObjects = 100;  // that are no lamps
+
+// A strip of triangles around a cylinder.
+gltf::Primitive cylinder(std::uint32_t triangles) {
+    gltf::Primitive primitive;
+    const std::uint32_t steps = std::max(triangles / 2, 1U);
+    for (std::uint32_t i = 0; i <= steps; ++i) {
+        const float angle = 6.2831853F * static_cast<float>(i) / static_cast<float>(steps);
+        const float c = std::cos(angle);
+        const float s = std::sin(angle);
+        primitive.positions.push_back({0.1F * c, 0.0F, 0.1F * s});
+        primitive.positions.push_back({0.1F * c, 0.5F, 0.1F * s});
+        primitive.normals.insert(primitive.normals.end(), 2, {c, 0.0F, s});
+    }
+    for (std::uint32_t i = 0; i < 2 * steps; ++i) {
+        const std::uint32_t turn = i % 2;
+        primitive.indices.insert(primitive.indices.end(), {i, i + 1 + turn, i + 2 - turn});
+    }
+    return primitive;
+}
+
+// Meshes 0 and 1 are a lamp and an object; the instances of the lamp come first.
+gltf::Scene makeScene(const Arguments& arguments) {
+    gltf::Scene scene;
+    scene.path = "edit_times.gltf";
+    scene.materials.resize(2);
+    scene.materials[0]["emissiveFactor"] = {3.0F, 2.0F, 1.0F};
+    for (int i = 0; i < 2; ++i) {
+        gltf::Mesh mesh;
+        mesh.primitives.push_back(cylinder(arguments.triangles));
+        mesh.primitives.back().material = i;
+        scene.meshes.push_back(std::move(mesh));
+    }
+    for (std::size_t i = 0; i < arguments.lamps + kObjects; ++i) {
+        gltf::Node node;
+        node.mesh = i < arguments.lamps ? 0 : 1;
+        for (const std::size_t one : {0, 5, 10, 15}) {
+            node.world[one] = 1.0;
+        }
+        node.world[12] = static_cast<double>(i % 16);
+        node.world[14] = static_cast<double>(i / 16);
+        scene.nodes.push_back(std::move(node));
+    }
+    return scene;
+}
+
+std::array<float, 12> placeOf(int round) {
+    const float x = static_cast<float>(std::fmod(0.37 * round, 9.0));
+    return {1, 0, 0, x, 0, 1, 0, 2.0F, 0, 0, 1, 0.5F * x};
+}
+
+// Prints the milliseconds of SceneEditor::record() after an edit: the median, the least and the most.
+Status measureEdit(Context& context, SceneEditor& editor, const std::string& name, int rounds,
+                   std::uint64_t& frame, const std::function<Status(int)>& edit) {
+    GLINT_TRY(auto runner, CommandRunner::create(context.state()));
+    std::vector<double> times;
+    for (int round = -1; round < rounds; ++round) {
+        GLINT_TRY_DO(edit(round));
+        GLINT_TRY(const auto commands, runner.begin());
+        const auto begin = base::Clock::now();
+        GLINT_TRY_DO(editor.record(commands, ++frame));
+        const double ms = base::millisecondsSince(begin);
+        if (round >= 0) {
+            times.push_back(ms);
+        }
+        GLINT_TRY_DO(runner.submitAndWait());
+        editor.complete(frame);
+    }
+    std::ranges::sort(times);
+    fmt::print("| {} | {:.3f} | {:.3f} to {:.3f} |\n", name, times[times.size() / 2], times.front(),
+               times.back());
+    return okStatus();
+}
+
+Status measureEdits(const Arguments& arguments) {
+    GLINT_TRY(const auto context, Context::createHeadless({}));
+    const gltf::Scene scene = makeScene(arguments);
+    compiler::CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.tracers = context->handles().tracers;
+    settings.emissiveLights = compiler::EmissiveLights::On;
+    settings.lightSamples = 4;
+    GLINT_TRY(const auto build, compiler::resolve(std::span(&scene, 1), settings));
+    GLINT_TRY(const auto package, session::compileAndLoad(build));
+    const session::SceneViewData data = session::makeSceneView(scene);
+    SceneView view = data.view();
+    view.editable = true;
+    GLINT_TRY(const auto uploaded, GpuScene::upload(*context, *package, view));
+    SceneEditor& editor = *uploaded->editor();
+    fmt::print("{}: {} lamps of {} triangles, {} other objects; ms of record()\n\n", context->deviceName(),
+               arguments.lamps, arguments.triangles, kObjects);
+    fmt::print("| edit | median | least to most |\n|---|--:|--:|\n");
+    std::uint64_t frame = 0;
+    const auto measured = [&](const std::string& name, const std::function<Status(int)>& edit) {
+        return measureEdit(*context, editor, name, arguments.rounds, frame, edit);
     };
-
-    constexpr std::size_t kObjects = 100;  // that are no lamps
-
-    // A strip of triangles around a cylinder.
-    gltf::Primitive cylinder(std::uint32_t triangles) {
-        gltf::Primitive primitive;
-        const std::uint32_t steps = std::max(triangles / 2, 1U);
-        for (std::uint32_t i = 0; i <= steps; ++i) {
-            const float angle = 6.2831853F * static_cast<float>(i) / static_cast<float>(steps);
-            const float c = std::cos(angle);
-            const float s = std::sin(angle);
-            primitive.positions.push_back({0.1F * c, 0.0F, 0.1F * s});
-            primitive.positions.push_back({0.1F * c, 0.5F, 0.1F * s});
-            primitive.normals.insert(primitive.normals.end(), 2, {c, 0.0F, s});
-        }
-        for (std::uint32_t i = 0; i < 2 * steps; ++i) {
-            const std::uint32_t turn = i % 2;
-            primitive.indices.insert(primitive.indices.end(), {i, i + 1 + turn, i + 2 - turn});
-        }
-        return primitive;
-    }
-
-    // Meshes 0 and 1 are a lamp and an object; the instances of the lamp come first.
-    gltf::Scene makeScene(const Arguments& arguments) {
-        gltf::Scene scene;
-        scene.path = "edit_times.gltf";
-        scene.materials.resize(2);
-        scene.materials[0]["emissiveFactor"] = {3.0F, 2.0F, 1.0F};
-        for (int i = 0; i < 2; ++i) {
-            gltf::Mesh mesh;
-            mesh.primitives.push_back(cylinder(arguments.triangles));
-            mesh.primitives.back().material = i;
-            scene.meshes.push_back(std::move(mesh));
-        }
-        for (std::size_t i = 0; i < arguments.lamps + kObjects; ++i) {
-            gltf::Node node;
-            node.mesh = i < arguments.lamps ? 0 : 1;
-            for (const std::size_t one : {0, 5, 10, 15}) {
-                node.world[one] = 1.0;
-            }
-            node.world[12] = static_cast<double>(i % 16);
-            node.world[14] = static_cast<double>(i / 16);
-            scene.nodes.push_back(std::move(node));
-        }
-        return scene;
-    }
-
-    std::array<float, 12> placeOf(int round) {
-        const float x = static_cast<float>(std::fmod(0.37 * round, 9.0));
-        return {1, 0, 0, x, 0, 1, 0, 2.0F, 0, 0, 1, 0.5F * x};
-    }
-
-    // Prints the milliseconds of SceneEditor::record() after an edit: the median, the least and the most.
-    Status measureEdit(Context& context, SceneEditor& editor, const std::string& name, int rounds,
-                       std::uint64_t& frame, const std::function<Status(int)>& edit) {
-        GLINT_TRY(auto runner, CommandRunner::create(context.state()));
-        std::vector<double> times;
-        for (int round = -1; round < rounds; ++round) {
-            GLINT_TRY_DO(edit(round));
-            GLINT_TRY(const auto commands, runner.begin());
-            const auto begin = base::Clock::now();
-            GLINT_TRY_DO(editor.record(commands, ++frame));
-            const double ms = base::millisecondsSince(begin);
-            if (round >= 0) {
-                times.push_back(ms);
-            }
-            GLINT_TRY_DO(runner.submitAndWait());
-            editor.complete(frame);
-        }
-        std::ranges::sort(times);
-        fmt::print("| {} | {:.3f} | {:.3f} to {:.3f} |\n", name, times[times.size() / 2], times.front(),
-                   times.back());
-        return okStatus();
-    }
-
-    Status measureEdits(const Arguments& arguments) {
-        GLINT_TRY(const auto context, Context::createHeadless({}));
-        const gltf::Scene scene = makeScene(arguments);
-        compiler::CompileSettings settings;
-        settings.strategies = package::kStrategyUber;
-        settings.tracers = context->handles().tracers;
-        settings.emissiveLights = compiler::EmissiveLights::On;
-        settings.lightSamples = 4;
-        GLINT_TRY(const auto build, compiler::resolve(std::span(&scene, 1), settings));
-        GLINT_TRY(const auto package, session::compileAndLoad(build));
-        const session::SceneViewData data = session::makeSceneView(scene);
-        SceneView view = data.view();
-        view.editable = true;
-        GLINT_TRY(const auto uploaded, GpuScene::upload(*context, *package, view));
-        SceneEditor& editor = *uploaded->editor();
-        fmt::print("{}: {} lamps of {} triangles, {} other objects; ms of record()\n\n",
-                   context->deviceName(), arguments.lamps, arguments.triangles, kObjects);
-        fmt::print("| edit | median | least to most |\n|---|--:|--:|\n");
-        std::uint64_t frame = 0;
-        const auto measured = [&](const std::string& name, const std::function<Status(int)>& edit) {
-            return measureEdit(*context, editor, name, arguments.rounds, frame, edit);
+    const std::uint32_t other = arguments.lamps;
+    const auto move = [&](std::uint32_t instance) {
+        return [&editor, instance](int round) {
+            return editor.moveInstance(editor.instance(instance), placeOf(round));
         };
-        const std::uint32_t other = arguments.lamps;
-        const auto move = [&](std::uint32_t instance) {
-            return [&editor, instance](int round) {
-                return editor.moveInstance(editor.instance(instance), placeOf(round));
-            };
-        };
-        for (const auto& [name, edit] :
-             std::initializer_list<std::pair<const char*, std::function<Status(int)>>>{
-                 {"none", [](int) { return okStatus(); }},
-                 {"a lamp moved", move(0)},
-                 {"another object moved", move(other)},
-                 {"a lamp shown or hidden",
-                  [&](int round) { return editor.showInstance(editor.instance(0), round % 2 == 0); }}}) {
-            GLINT_TRY_DO(measured(name, edit));
-        }
-        return okStatus();
+    };
+    for (const auto& [name, edit] : std::initializer_list<std::pair<const char*, std::function<Status(int)>>>{
+             {"none", [](int) { return okStatus(); }},
+             {"a lamp moved", move(0)},
+             {"another object moved", move(other)},
+             {"a lamp shown or hidden",
+              [&](int round) { return editor.showInstance(editor.instance(0), round % 2 == 0); }}}) {
+        GLINT_TRY_DO(measured(name, edit));
     }
+    return okStatus();
+}
 
-    }  // namespace
+}  // namespace
 
 }  // namespace glint
 

@@ -9,7 +9,7 @@
 #include <glint/package.h>
 #include <glint/session/camera.h>
 #include <glint/session/session.h>
-    
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -35,360 +35,358 @@
 #include <utility>
 #include <vector>
 
-    namespace glint {
+namespace glint {
 
-    namespace {
+namespace {
 
-    namespace fs = std::filesystem;
+namespace fs = std::filesystem;
 
-    struct Arguments {
-        std::string glint;
-        std::string scene;
-        std::string pack;
-        std::string file;
-        std::string from;
-        std::string folder;
-        std::string strategy = "visibility";
-        std::uint32_t width = 320;
-        std::uint32_t height = 180;
-        int rounds = 5;
-        bool noFallback = false;
-        bool noEarly = false;
-        std::string json;
-    };
+struct Arguments {
+    std::string glint;
+    std::string scene;
+    std::string pack;
+    std::string file;
+    std::string from;
+    std::string folder;
+    std::string strategy = "visibility";
+    std::uint32_t width = 320;
+    std::uint32_t height = 180;
+    int rounds = 5;
+    bool noFallback = false;
+    bool noEarly = false;
+    std::string json;
+};
 
-    double processorTimeOf(clockid_t clock) {
-        timespec time{};
-        return clock_gettime(clock, &time) == 0
-                   ? 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec)
-                   : 0.0;
+double processorTimeOf(clockid_t clock) {
+    timespec time{};
+    return clock_gettime(clock, &time) == 0
+               ? 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec)
+               : 0.0;
+}
+
+// `glint compile --watch`, which writes its lines to a file.
+class Compiler {
+public:
+    Compiler(const Arguments& arguments, const fs::path& package, const std::string& tracer)
+        : out_(package.string() + ".lines") {
+        std::vector<std::string> words{
+            arguments.glint, "compile",          arguments.scene, "-o",     package,
+            "--strategy",    arguments.strategy, "--tracer",      tracer,   "--merge",
+            "none",          "--materials",      arguments.pack,  "--watch"};
+        if (!arguments.noFallback) {
+            words.emplace_back("--fallback");
+        }
+        if (arguments.noEarly) {
+            words.emplace_back("--no-early");
+        }
+        std::error_code ignored;
+        fs::remove(out_, ignored);  // of an earlier program
+        child_ = fork();
+        if (child_ == 0) {
+            constexpr int kMode = 0600;
+            std::vector<char*> pointers;
+            for (std::string& word : words) {
+                pointers.push_back(word.data());
+            }
+            pointers.push_back(nullptr);
+            if (dup2(open(out_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, kMode), STDOUT_FILENO) >= 0) {
+                execv(pointers[0], pointers.data());
+            }
+            _exit(127);
+        }
+    }
+    Compiler(const Compiler&) = delete;
+    Compiler& operator=(const Compiler&) = delete;
+    ~Compiler() {
+        kill(child_, SIGINT);
+        waitpid(child_, nullptr, 0);
     }
 
-    // `glint compile --watch`, which writes its lines to a file.
-    class Compiler {
-    public:
-        Compiler(const Arguments& arguments, const fs::path& package, const std::string& tracer)
-            : out_(package.string() + ".lines") {
-            std::vector<std::string> words{
-                arguments.glint, "compile",          arguments.scene, "-o",     package,
-                "--strategy",    arguments.strategy, "--tracer",      tracer,   "--merge",
-                "none",          "--materials",      arguments.pack,  "--watch"};
-            if (!arguments.noFallback) {
-                words.emplace_back("--fallback");
-            }
-            if (arguments.noEarly) {
-                words.emplace_back("--no-early");
-            }
-            std::error_code ignored;
-            fs::remove(out_, ignored);  // of an earlier program
-            child_ = fork();
-            if (child_ == 0) {
-                constexpr int kMode = 0600;
-                std::vector<char*> pointers;
-                for (std::string& word : words) {
-                    pointers.push_back(word.data());
-                }
-                pointers.push_back(nullptr);
-                if (dup2(open(out_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, kMode), STDOUT_FILENO) >= 0) {
-                    execv(pointers[0], pointers.data());
-                }
-                _exit(127);
-            }
-        }
-        Compiler(const Compiler&) = delete;
-        Compiler& operator=(const Compiler&) = delete;
-        ~Compiler() {
-            kill(child_, SIGINT);
-            waitpid(child_, nullptr, 0);
-        }
-
-        // Waits for the last line of a run, counted from 1, and returns it and the line of its early package,
-        // which is empty if there is none.
-        std::pair<std::string, std::string> lines(std::size_t number) const {
-            constexpr int kPatience = 60'000;
-            const std::string start = fmt::format("{}. ", number);
-            for (int i = 0; i < kPatience; ++i) {
-                std::string early;
-                if (const Result<base::Bytes> bytes = base::readFile(out_)) {
-                    std::istringstream text{std::string(base::asText(*bytes))};
-                    for (std::string line; std::getline(text, line) && !text.eof();) {
-                        if (line.starts_with(start) && line.find(": early package;") != std::string::npos) {
-                            early = line;
-                        } else if (line.starts_with(start)) {
-                            return {line, early};
-                        }
+    // Waits for the last line of a run, counted from 1, and returns it and the line of its early package,
+    // which is empty if there is none.
+    std::pair<std::string, std::string> lines(std::size_t number) const {
+        constexpr int kPatience = 60'000;
+        const std::string start = fmt::format("{}. ", number);
+        for (int i = 0; i < kPatience; ++i) {
+            std::string early;
+            if (const Result<base::Bytes> bytes = base::readFile(out_)) {
+                std::istringstream text{std::string(base::asText(*bytes))};
+                for (std::string line; std::getline(text, line) && !text.eof();) {
+                    if (line.starts_with(start) && line.find(": early package;") != std::string::npos) {
+                        early = line;
+                    } else if (line.starts_with(start)) {
+                        return {line, early};
                     }
                 }
-                std::this_thread::sleep_for(std::chrono::milliseconds(2));
             }
-            return {};
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
         }
-
-        // Returns the processor time that the process has taken so far.
-        double processorMs() const {
-            clockid_t clock{};
-            return clock_getcpuclockid(child_, &clock) == 0 ? processorTimeOf(clock) : 0.0;
-        }
-
-    private:
-        fs::path out_;
-        pid_t child_ = -1;
-    };
-
-    // Returns the number that follows `word` in a line of the watch.
-    double numberAfter(const std::string& line, const std::string& word) {
-        const std::size_t place = line.rfind(word);
-        return place == std::string::npos ? 0.0 : std::strtod(line.c_str() + place + word.size(), nullptr);
+        return {};
     }
 
-    constexpr std::array kParts{"notice", "read", "plan", "early", "compile", "write", "load", "replace",
-                                "pipelines", "first frame", "sum",
-                                // These two are of the first frame, on the device.
-                                "lighting", "cases",
-                                // Processor time since the edit: of the compiler, and of this program.
-                                "compiler", "renderer"};
-    // The parts of the way from the edit to a picture, in the order of kParts, milliseconds.
-    using Times = std::array<double, kParts.size()>;
-    enum Part : std::uint8_t {
-        kNotice,
-        kRead,
-        kPlan,
-        kEarly,
-        kCompile,
-        kWrite,
-        kLoad,
-        kReplace,
-        kPipelines,
-        kFrame,
-        kSum,
-        kLighting,
-        kCases,
-        kCompiler,
-        kRenderer,
-    };
+    // Returns the processor time that the process has taken so far.
+    double processorMs() const {
+        clockid_t clock{};
+        return clock_getcpuclockid(child_, &clock) == 0 ? processorTimeOf(clock) : 0.0;
+    }
 
-    // The pictures that show an edit: the draft of an early package, if there was one, and the whole.
-    struct Edit {
-        std::optional<Times> early;
-        Times whole{};
-    };
+private:
+    fs::path out_;
+    pid_t child_ = -1;
+};
 
-    // Follows one edit to its pictures.
-    class Follower {
-    public:
-        Follower(const Compiler& compiler, PackageWatch& packages, Renderer& renderer,
-                 const FrameOptions& frame)
-            : compiler_(compiler), packages_(packages), renderer_(renderer), frame_(frame) {
-            frame_.timing = Timing::Passes;
+// Returns the number that follows `word` in a line of the watch.
+double numberAfter(const std::string& line, const std::string& word) {
+    const std::size_t place = line.rfind(word);
+    return place == std::string::npos ? 0.0 : std::strtod(line.c_str() + place + word.size(), nullptr);
+}
+
+constexpr std::array kParts{"notice", "read", "plan", "early", "compile", "write", "load", "replace",
+                            "pipelines", "first frame", "sum",
+                            // These two are of the first frame, on the device.
+                            "lighting", "cases",
+                            // Processor time since the edit: of the compiler, and of this program.
+                            "compiler", "renderer"};
+// The parts of the way from the edit to a picture, in the order of kParts, milliseconds.
+using Times = std::array<double, kParts.size()>;
+enum Part : std::uint8_t {
+    kNotice,
+    kRead,
+    kPlan,
+    kEarly,
+    kCompile,
+    kWrite,
+    kLoad,
+    kReplace,
+    kPipelines,
+    kFrame,
+    kSum,
+    kLighting,
+    kCases,
+    kCompiler,
+    kRenderer,
+};
+
+// The pictures that show an edit: the draft of an early package, if there was one, and the whole.
+struct Edit {
+    std::optional<Times> early;
+    Times whole{};
+};
+
+// Follows one edit to its pictures.
+class Follower {
+public:
+    Follower(const Compiler& compiler, PackageWatch& packages, Renderer& renderer, const FrameOptions& frame)
+        : compiler_(compiler), packages_(packages), renderer_(renderer), frame_(frame) {
+        frame_.timing = Timing::Passes;
+    }
+
+    // Writes `text` to `file`, and returns once the whole package is in use. `run` is that of the
+    // compiler.
+    Result<Edit> follow(const fs::path& file, const std::string& text, std::size_t run,
+                        PackageReplacement& replaced) {
+        const fs::path temporary = file.string() + ".edited";
+        GLINT_TRY_DO(base::writeFile(temporary, text));
+        start_ = base::Clock::now();
+        compilerStart_ = compiler_.processorMs();
+        rendererStart_ = processorTimeOf(CLOCK_PROCESS_CPUTIME_ID);
+        fs::rename(temporary, file);
+        Edit edit;
+        for (bool whole = false; !whole;) {
+            std::shared_ptr<const Package> package;
+            GLINT_TRY(const auto times, showNext(package, replaced));
+            whole = !package->shape().early;
+            (whole ? edit.whole : edit.early.emplace()) = times;
         }
-
-        // Writes `text` to `file`, and returns once the whole package is in use. `run` is that of the
-        // compiler.
-        Result<Edit> follow(const fs::path& file, const std::string& text, std::size_t run,
-                            PackageReplacement& replaced) {
-            const fs::path temporary = file.string() + ".edited";
-            GLINT_TRY_DO(base::writeFile(temporary, text));
-            start_ = base::Clock::now();
-            compilerStart_ = compiler_.processorMs();
-            rendererStart_ = processorTimeOf(CLOCK_PROCESS_CPUTIME_ID);
-            fs::rename(temporary, file);
-            Edit edit;
-            for (bool whole = false; !whole;) {
-                std::shared_ptr<const Package> package;
-                GLINT_TRY(const auto times, showNext(package, replaced));
-                whole = !package->shape().early;
-                (whole ? edit.whole : edit.early.emplace()) = times;
-            }
-            const auto [line, earlyLine] = compiler_.lines(run);
-            if (edit.early) {
-                addLine(earlyLine, *edit.early);
-            }
-            addLine(line, edit.whole);
-            fmt::print("<!-- {}\n     {} -->\n", earlyLine, line);
-            return edit;
+        const auto [line, earlyLine] = compiler_.lines(run);
+        if (edit.early) {
+            addLine(earlyLine, *edit.early);
         }
+        addLine(line, edit.whole);
+        fmt::print("<!-- {}\n     {} -->\n", earlyLine, line);
+        return edit;
+    }
 
-    private:
-        // Waits for the next package and its first picture.
-        Result<Times> showNext(std::shared_ptr<const Package>& package, PackageReplacement& replaced) {
-            Times times{};
-            base::Clock::time_point begin;
-            while (!package) {
-                begin = base::Clock::now();
-                GLINT_TRY(package, packages_.poll());
-                if (!package) {
-                    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-                }
-            }
-            times[kCompiler] = compiler_.processorMs() - compilerStart_;
-            // Until addLine() knows the other parts of this time.
-            times[kNotice] = base::millisecondsBetween(start_, begin);
-            times[kLoad] = base::millisecondsSince(begin);
-            base::Clock::time_point last = base::Clock::now();
-            const auto lap = [&] {
-                const base::Clock::time_point now = base::Clock::now();
-                return base::millisecondsBetween(std::exchange(last, now), now);
-            };
-            const std::uint64_t before = renderer_.replacementProgress().inUse;
-            GLINT_TRY(replaced, renderer_.replacePackage(package));
-            times[kReplace] = lap();
-            // A program would draw all the time; here the compiler and the driver have the processor.
-            while (!renderer_.replacementProgress().ready) {
-                if (const std::optional<Diagnostic> error = renderer_.replacementProgress().error) {
-                    return *error;
-                }
+private:
+    // Waits for the next package and its first picture.
+    Result<Times> showNext(std::shared_ptr<const Package>& package, PackageReplacement& replaced) {
+        Times times{};
+        base::Clock::time_point begin;
+        while (!package) {
+            begin = base::Clock::now();
+            GLINT_TRY(package, packages_.poll());
+            if (!package) {
                 std::this_thread::sleep_for(std::chrono::milliseconds(1));
             }
-            times[kPipelines] = lap();
-            GLINT_TRY_DO(renderer_.renderSamples(frame_, 1));
-            times[kFrame] = lap();
-            times[kSum] = base::millisecondsBetween(start_, last);
-            times[kRenderer] = processorTimeOf(CLOCK_PROCESS_CPUTIME_ID) - rendererStart_;
-            if (renderer_.replacementProgress().inUse == before) {
-                return makeError("live-edit", "", "the frame does not use the package that was ready");
+        }
+        times[kCompiler] = compiler_.processorMs() - compilerStart_;
+        // Until addLine() knows the other parts of this time.
+        times[kNotice] = base::millisecondsBetween(start_, begin);
+        times[kLoad] = base::millisecondsSince(begin);
+        base::Clock::time_point last = base::Clock::now();
+        const auto lap = [&] {
+            const base::Clock::time_point now = base::Clock::now();
+            return base::millisecondsBetween(std::exchange(last, now), now);
+        };
+        const std::uint64_t before = renderer_.replacementProgress().inUse;
+        GLINT_TRY(replaced, renderer_.replacePackage(package));
+        times[kReplace] = lap();
+        // A program would draw all the time; here the compiler and the driver have the processor.
+        while (!renderer_.replacementProgress().ready) {
+            if (const std::optional<Diagnostic> error = renderer_.replacementProgress().error) {
+                return *error;
             }
-            GLINT_TRY(const auto passes, renderer_.timings());
-            for (const PassTiming& pass : passes) {
-                times[kLighting] += pass.pass == Pass::Lighting ? pass.milliseconds : 0.0;
-                times[kCases] += pass.pass == Pass::ShadeCase ? pass.milliseconds : 0.0;
-            }
-            return times;
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
         }
-
-        // Divides the time until the package was there by what the compiler says about it.
-        static void addLine(const std::string& line, Times& times) {
-            times[kRead] = numberAfter(line, "read ");
-            times[kPlan] = numberAfter(line, "plan ");
-            times[kEarly] = numberAfter(line, ", early ");
-            times[kCompile] = numberAfter(line, "compile ");
-            times[kWrite] = numberAfter(line, "write ");
-            const double known =
-                times[kRead] + times[kPlan] + times[kEarly] + times[kCompile] + times[kWrite];
-            times[kNotice] = std::max(times[kNotice] - known, 0.0);
+        times[kPipelines] = lap();
+        GLINT_TRY_DO(renderer_.renderSamples(frame_, 1));
+        times[kFrame] = lap();
+        times[kSum] = base::millisecondsBetween(start_, last);
+        times[kRenderer] = processorTimeOf(CLOCK_PROCESS_CPUTIME_ID) - rendererStart_;
+        if (renderer_.replacementProgress().inUse == before) {
+            return makeError("live-edit", "", "the frame does not use the package that was ready");
         }
-
-        const Compiler& compiler_;
-        PackageWatch& packages_;
-        Renderer& renderer_;
-        FrameOptions frame_;
-        base::Clock::time_point start_;
-        double compilerStart_ = 0.0;
-        double rendererStart_ = 0.0;
-    };
-
-    base::Json toJson(const Times& times) {
-        base::Json json = base::Json::object();
-        for (std::size_t part = 0; part < kParts.size(); ++part) {
-            json[kParts[part]] = times[part];
+        GLINT_TRY(const auto passes, renderer_.timings());
+        for (const PassTiming& pass : passes) {
+            times[kLighting] += pass.pass == Pass::Lighting ? pass.milliseconds : 0.0;
+            times[kCases] += pass.pass == Pass::ShadeCase ? pass.milliseconds : 0.0;
         }
-        return json;
+        return times;
     }
 
-    void printTable(const std::vector<Times>& rows) {
-        fmt::print("| part | median, ms | least | most |\n|---|--:|--:|--:|\n");
-        for (std::size_t part = 0; part < kParts.size(); ++part) {
-            std::vector<double> values;
-            for (const Times& row : rows) {
-                values.push_back(row[part]);
-            }
-            std::ranges::sort(values);
-            fmt::print("| {} | {:.0f} | {:.0f} | {:.0f} |\n", kParts[part], values[values.size() / 2],
-                       values.front(), values.back());
-        }
+    // Divides the time until the package was there by what the compiler says about it.
+    static void addLine(const std::string& line, Times& times) {
+        times[kRead] = numberAfter(line, "read ");
+        times[kPlan] = numberAfter(line, "plan ");
+        times[kEarly] = numberAfter(line, ", early ");
+        times[kCompile] = numberAfter(line, "compile ");
+        times[kWrite] = numberAfter(line, "write ");
+        const double known = times[kRead] + times[kPlan] + times[kEarly] + times[kCompile] + times[kWrite];
+        times[kNotice] = std::max(times[kNotice] - known, 0.0);
     }
 
-    // Prints the tables, and writes the JSON that benchmarks/charts/live_edit_chart.py draws.
-    Status report(const Arguments& arguments, const std::string& device, const std::vector<Edit>& edits) {
-        std::vector<Times> early;
-        std::vector<Times> whole;
-        base::Json list = base::Json::array();
-        for (const Edit& edit : edits) {
-            whole.push_back(edit.whole);
-            if (edit.early) {
-                early.push_back(*edit.early);
-            }
-            list.push_back({{"early", edit.early ? toJson(*edit.early) : base::Json(nullptr)},
-                            {"whole", toJson(edit.whole)}});
-        }
-        if (!early.empty()) {
-            fmt::print("until the draft of the edit, {} edits:\n\n", early.size());
-            printTable(early);
-            fmt::print("\nuntil the whole package:\n\n");
-        }
-        printTable(whole);
-        if (arguments.json.empty()) {
-            return okStatus();
-        }
-        const base::Json all = {{"device", device},
-                                {"width", arguments.width},
-                                {"height", arguments.height},
-                                {"strategy", arguments.strategy},
-                                {"fallback", !arguments.noFallback},
-                                {"early", !arguments.noEarly},
-                                {"edits", std::move(list)}};
-        return base::writeFile(arguments.json, all.dump(1) + "\n");
-    }
+    const Compiler& compiler_;
+    PackageWatch& packages_;
+    Renderer& renderer_;
+    FrameOptions frame_;
+    base::Clock::time_point start_;
+    double compilerStart_ = 0.0;
+    double rendererStart_ = 0.0;
+};
 
-    Status measure(const Arguments& arguments) {
-        GLINT_TRY(const auto context, Context::createHeadless());
-        compiler::Settings settings;
-        settings.package = (fs::path(arguments.folder) / "package").string();
-        GLINT_TRY(const auto model, materials::loadMaterialModel(std::vector<std::string>{arguments.pack}));
-        gltf::ImportOptions import;
-        import.decodeImages = true;
-        import.materialModel = model;
-        GLINT_TRY(const auto scene, gltf::importScene(arguments.scene, import));
-        RendererOptions options;
-        options.strategy = package::findStrategy(arguments.strategy)->strategy;
-        options.width = arguments.width;
-        options.height = arguments.height;
-        options.backgroundPipelines = !arguments.noFallback;
-        const bool queries = (context->handles().tracers & package::kTracerRayQuery) != 0;
-        const Compiler compiler(arguments, settings.package, queries ? "ray-query" : "ray-pipeline");
-        fmt::print("<!-- {} -->\n", compiler.lines(1).first);
-        PackageWatch packages(settings.package);
-        GLINT_TRY(auto first, session::givenPackage(settings));
-        GLINT_TRY(const auto uploaded,
-                  session::DeviceScene::upload(*context, std::move(first), session::makeSceneView(scene)));
-        GLINT_TRY(const auto renderer, uploaded.makeRenderer(*context, options));
-        renderer->waitForPipelines();
-        const double aspect = static_cast<double>(arguments.width) / arguments.height;
-        FrameOptions frame;
-        frame.camera = session::framingCamera(session::worldBounds(uploaded.data), aspect);
-        GLINT_TRY_DO(renderer->renderSamples(frame, 1));
-        GLINT_TRY(const auto bytes, base::readFile(arguments.file));
-        const std::string original(base::asText(bytes));
-        const std::size_t place = original.find(arguments.from);
-        if (place == std::string::npos) {
-            return makeError("live-edit", arguments.file, "the file lacks the text of --from");
-        }
-        std::vector<Edit> edits;
-        PackageReplacement replaced;
-        Follower follower(compiler, packages, *renderer, frame);
-        Status result = okStatus();
-        for (int round = 0; round < arguments.rounds && result; ++round) {
-            std::string text = original;
-            // A number that no earlier round had, so that no cache knows it.
-            const auto now = std::chrono::system_clock::now().time_since_epoch().count();
-            text.replace(place, arguments.from.size(),
-                         fmt::format("{} * {}.{:09}", arguments.from, 1, now % 1'000'000));
-            Result<Edit> edit =
-                follower.follow(arguments.file, text, static_cast<std::size_t>(round) + 2, replaced);
-            if (edit) {
-                edits.push_back(*edit);
-            } else {
-                result = edit.error();
-            }
-        }
-        static_cast<void>(base::writeFile(arguments.file, original));
-        GLINT_TRY_DO(result);
-        fmt::print("\n{} cases; pipelines: {} made, {} kept; {} x {}, {} edits\n\n",
-                   uploaded.package->caseCount(), replaced.pipelinesMade, replaced.pipelinesKept,
-                   arguments.width, arguments.height, arguments.rounds);
-        return report(arguments, context->deviceName(), edits);
+base::Json toJson(const Times& times) {
+    base::Json json = base::Json::object();
+    for (std::size_t part = 0; part < kParts.size(); ++part) {
+        json[kParts[part]] = times[part];
     }
+    return json;
+}
 
-    }  // namespace
+void printTable(const std::vector<Times>& rows) {
+    fmt::print("| part | median, ms | least | most |\n|---|--:|--:|--:|\n");
+    for (std::size_t part = 0; part < kParts.size(); ++part) {
+        std::vector<double> values;
+        for (const Times& row : rows) {
+            values.push_back(row[part]);
+        }
+        std::ranges::sort(values);
+        fmt::print("| {} | {:.0f} | {:.0f} | {:.0f} |\n", kParts[part], values[values.size() / 2],
+                   values.front(), values.back());
+    }
+}
+
+// Prints the tables, and writes the JSON that benchmarks/charts/live_edit_chart.py draws.
+Status report(const Arguments& arguments, const std::string& device, const std::vector<Edit>& edits) {
+    std::vector<Times> early;
+    std::vector<Times> whole;
+    base::Json list = base::Json::array();
+    for (const Edit& edit : edits) {
+        whole.push_back(edit.whole);
+        if (edit.early) {
+            early.push_back(*edit.early);
+        }
+        list.push_back({{"early", edit.early ? toJson(*edit.early) : base::Json(nullptr)},
+                        {"whole", toJson(edit.whole)}});
+    }
+    if (!early.empty()) {
+        fmt::print("until the draft of the edit, {} edits:\n\n", early.size());
+        printTable(early);
+        fmt::print("\nuntil the whole package:\n\n");
+    }
+    printTable(whole);
+    if (arguments.json.empty()) {
+        return okStatus();
+    }
+    const base::Json all = {{"device", device},
+                            {"width", arguments.width},
+                            {"height", arguments.height},
+                            {"strategy", arguments.strategy},
+                            {"fallback", !arguments.noFallback},
+                            {"early", !arguments.noEarly},
+                            {"edits", std::move(list)}};
+    return base::writeFile(arguments.json, all.dump(1) + "\n");
+}
+
+Status measure(const Arguments& arguments) {
+    GLINT_TRY(const auto context, Context::createHeadless());
+    compiler::Settings settings;
+    settings.package = (fs::path(arguments.folder) / "package").string();
+    GLINT_TRY(const auto model, materials::loadMaterialModel(std::vector<std::string>{arguments.pack}));
+    gltf::ImportOptions import;
+    import.decodeImages = true;
+    import.materialModel = model;
+    GLINT_TRY(const auto scene, gltf::importScene(arguments.scene, import));
+    RendererOptions options;
+    options.strategy = package::findStrategy(arguments.strategy)->strategy;
+    options.width = arguments.width;
+    options.height = arguments.height;
+    options.backgroundPipelines = !arguments.noFallback;
+    const bool queries = (context->handles().tracers & package::kTracerRayQuery) != 0;
+    const Compiler compiler(arguments, settings.package, queries ? "ray-query" : "ray-pipeline");
+    fmt::print("<!-- {} -->\n", compiler.lines(1).first);
+    PackageWatch packages(settings.package);
+    GLINT_TRY(auto first, session::givenPackage(settings));
+    GLINT_TRY(const auto uploaded,
+              session::DeviceScene::upload(*context, std::move(first), session::makeSceneView(scene)));
+    GLINT_TRY(const auto renderer, uploaded.makeRenderer(*context, options));
+    renderer->waitForPipelines();
+    const double aspect = static_cast<double>(arguments.width) / arguments.height;
+    FrameOptions frame;
+    frame.camera = session::framingCamera(session::worldBounds(uploaded.data), aspect);
+    GLINT_TRY_DO(renderer->renderSamples(frame, 1));
+    GLINT_TRY(const auto bytes, base::readFile(arguments.file));
+    const std::string original(base::asText(bytes));
+    const std::size_t place = original.find(arguments.from);
+    if (place == std::string::npos) {
+        return makeError("live-edit", arguments.file, "the file lacks the text of --from");
+    }
+    std::vector<Edit> edits;
+    PackageReplacement replaced;
+    Follower follower(compiler, packages, *renderer, frame);
+    Status result = okStatus();
+    for (int round = 0; round < arguments.rounds && result; ++round) {
+        std::string text = original;
+        // A number that no earlier round had, so that no cache knows it.
+        const auto now = std::chrono::system_clock::now().time_since_epoch().count();
+        text.replace(place, arguments.from.size(),
+                     fmt::format("{} * {}.{:09}", arguments.from, 1, now % 1'000'000));
+        Result<Edit> edit =
+            follower.follow(arguments.file, text, static_cast<std::size_t>(round) + 2, replaced);
+        if (edit) {
+            edits.push_back(*edit);
+        } else {
+            result = edit.error();
+        }
+    }
+    static_cast<void>(base::writeFile(arguments.file, original));
+    GLINT_TRY_DO(result);
+    fmt::print("\n{} cases; pipelines: {} made, {} kept; {} x {}, {} edits\n\n",
+               uploaded.package->caseCount(), replaced.pipelinesMade, replaced.pipelinesKept, arguments.width,
+               arguments.height, arguments.rounds);
+    return report(arguments, context->deviceName(), edits);
+}
+
+}  // namespace
 
 }  // namespace glint
 

@@ -8,7 +8,7 @@
 #include "renderer/hit_passes.h"
 #include "renderer/renderer.h"
 #include "resolve/host.h"
-    #include "support/temporary_folder.h"
+#include "support/temporary_folder.h"
 
 #include <glint/steps.h>
 
@@ -19,491 +19,488 @@
 #include <string>
 #include <vector>
 
-    namespace {
+namespace {
 
-    using namespace glint;
-    using namespace glint::testing;
+using namespace glint;
+using namespace glint::testing;
 
-    // Rays of a Renderer, and the light that it found for them, by slot.
-    struct KnownRays {
-        std::vector<EngineRay> rays;
-        std::vector<EngineRadiance> answers;
-    };
+// Rays of a Renderer, and the light that it found for them, by slot.
+struct KnownRays {
+    std::vector<EngineRay> rays;
+    std::vector<EngineRadiance> answers;
+};
 
-    template <typename T>
-    std::vector<T> arrayOf(const std::vector<std::uint8_t>& bytes, std::size_t count) {
-        std::vector<T> result(count);
-        std::memcpy(result.data(), bytes.data(), count * sizeof(T));
-        return result;
-    }
+template <typename T>
+std::vector<T> arrayOf(const std::vector<std::uint8_t>& bytes, std::size_t count) {
+    std::vector<T> result(count);
+    std::memcpy(result.data(), bytes.data(), count * sizeof(T));
+    return result;
+}
 
-    // Traces the reflections of a scene as Renderer does.
-    KnownRays knownRays(const gltf::Scene& scene, const RenderSetup& setup) {
-        compiler::CompileSettings settings;
-        settings.strategies = package::kStrategyUber;
-        settings.tracers = package::kAllTracers;
-        settings.plan.merge = compiler::MergePolicy::All;
-        settings.plan.keys.alpha = package::AlphaPolicy::Tested;
-        // Rays keep their origins in packages for several bounces. The frame has one.
-        settings.maxBounces = 2;
-        settings.emissiveLights = compiler::EmissiveLights::Off;
-        settings.skyLight = compiler::SkyLight::Off;
-        const LoadedScene loaded(scene, settings);
-        KnownRays known;
-        if (!loaded.ok()) {
-            return known;
-        }
-        RendererOptions options;
-        options.strategy = package::kStrategyUber;
-        options.width = setup.width;
-        options.height = setup.height;
-        const auto renderer = loaded.makeRenderer(options);
-        if (!renderer || !renderer->render(setup.frame)) {
-            return known;
-        }
-        Renderer::State& state = renderer->state();
-        Result<CommandRunner> runner = CommandRunner::create(state.context);
-        const auto rays = readRays(*renderer, renderer->counters()->rays);
-        const auto radiance = readFrameBuffer(state, *runner, state.frame.radiance);
-        EXPECT_TRUE(rays && radiance);
-        for (const gpu::RayRecord& ray : *rays) {
-            known.rays.push_back({{ray.origin.x, ray.origin.y, ray.origin.z},
-                                  ray.target,
-                                  {ray.direction.x, ray.direction.y, ray.direction.z},
-                                  ray.coneWidth,
-                                  ray.coneSpread});
-        }
-        // Samples without a ray have no radiance.
-        const auto answers = arrayOf<EngineRadiance>(*radiance, std::size_t{setup.width} * setup.height);
-        known.answers.resize(answers.size());
-        for (const EngineRay& ray : known.rays) {
-            known.answers[ray.slot] = answers[ray.slot];
-        }
+// Traces the reflections of a scene as Renderer does.
+KnownRays knownRays(const gltf::Scene& scene, const RenderSetup& setup) {
+    compiler::CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.tracers = package::kAllTracers;
+    settings.plan.merge = compiler::MergePolicy::All;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
+    // Rays keep their origins in packages for several bounces. The frame has one.
+    settings.maxBounces = 2;
+    settings.emissiveLights = compiler::EmissiveLights::Off;
+    settings.skyLight = compiler::SkyLight::Off;
+    const LoadedScene loaded(scene, settings);
+    KnownRays known;
+    if (!loaded.ok()) {
         return known;
     }
+    RendererOptions options;
+    options.strategy = package::kStrategyUber;
+    options.width = setup.width;
+    options.height = setup.height;
+    const auto renderer = loaded.makeRenderer(options);
+    if (!renderer || !renderer->render(setup.frame)) {
+        return known;
+    }
+    Renderer::State& state = renderer->state();
+    Result<CommandRunner> runner = CommandRunner::create(state.context);
+    const auto rays = readRays(*renderer, renderer->counters()->rays);
+    const auto radiance = readFrameBuffer(state, *runner, state.frame.radiance);
+    EXPECT_TRUE(rays && radiance);
+    for (const gpu::RayRecord& ray : *rays) {
+        known.rays.push_back({{ray.origin.x, ray.origin.y, ray.origin.z},
+                              ray.target,
+                              {ray.direction.x, ray.direction.y, ray.direction.z},
+                              ray.coneWidth,
+                              ray.coneSpread});
+    }
+    // Samples without a ray have no radiance.
+    const auto answers = arrayOf<EngineRadiance>(*radiance, std::size_t{setup.width} * setup.height);
+    known.answers.resize(answers.size());
+    for (const EngineRay& ray : known.rays) {
+        known.answers[ray.slot] = answers[ray.slot];
+    }
+    return known;
+}
 
-    // A host: a pipeline layout with Glint's scene in set 2 and push constants at byte 16, a list of rays and
-    // its answers. For a package without textures that takes its structure by address, the layout has no set.
-    class Host {
-    public:
-        Host(const LoadedScene& loaded, const std::vector<EngineRay>& rays, std::size_t slots,
-             std::size_t answerBytes)
-            : context_(sharedContext().state()),
-              pool_(context_),
-              loaded_(loaded),
-              rays_(rays),
-              slots_(slots),
-              hasSet_(loaded.package().bindings().tlas != package::Bindings::kByAddress ||
-                      !loaded.package().scene(0).textures.empty()) {
-            const VkDescriptorSetLayout empty = makeEmptyLayout();
-            const VkDescriptorSetLayout sets[] = {empty, empty, loaded.gpuScene().descriptorSetLayout()};
-            const VkPushConstantRange range{kStages, 0, 16 + RaySteps::kPushBytes};
-            VkPipelineLayoutCreateInfo info{};
-            info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-            info.setLayoutCount = hasSet_ ? 3 : 0;
-            info.pSetLayouts = sets;
-            info.pushConstantRangeCount = 1;
-            info.pPushConstantRanges = &range;
-            VkPipelineLayout layout = VK_NULL_HANDLE;
-            EXPECT_EQ(context_.vk.CreatePipelineLayout(context_.handles.device, &info, nullptr, &layout),
-                      VK_SUCCESS);
-            layout_ = UniquePipelineLayout(context_, layout);
-            list_ = make(rays.size() * sizeof(EngineRay), MemoryUse::Upload);
-            std::memcpy(list_.mapped, rays.data(), rays.size() * sizeof(EngineRay));
-            count_ = make(sizeof(std::uint32_t), MemoryUse::Upload);
-            const auto count = static_cast<std::uint32_t>(rays.size());
-            std::memcpy(count_.mapped, &count, sizeof count);
-            answers_ = make(slots * answerBytes, MemoryUse::Readback);
-        }
-
-        // Records the steps and waits. `apart` records them one by one, with the count on the device.
-        template <typename Answer>
-        std::vector<Answer> answers(RayStepsOptions options, const FrameOptions& frame, bool apart,
-                                    RayStepsCounters* counters = nullptr) {
-            options.layout = layout_.get();
-            options.pushStages = kStages;
-            options.maxRays = static_cast<std::uint32_t>(slots_);
-            const auto scene = EngineScene::share(sharedContext(), loaded_.gpuScene());
-            const auto steps = RaySteps::create(sharedContext(), loaded_.package(), **scene, options);
-            EXPECT_TRUE(steps) << toString(steps.error());
-            if (!steps) {
-                return {};
-            }
-            RayBatch batch;
-            batch.rays = list_.address;
-            batch.answers = answers_.address;
-            batch.rayCount = static_cast<std::uint32_t>(rays_.size());
-            batch.sky = frame.sky;
-            batch.sampleIndex = frame.sampleIndex;
-            batch.seed = frame.seed;
-            batch.tlas = loaded_.gpuScene().state().tlas.address;
-            Result<CommandRunner> runner = CommandRunner::create(context_);
-            const Result<VkCommandBuffer> commands = runner->begin();
-            const VkDescriptorSet set = loaded_.gpuScene().descriptorSet();
-            const VkPipelineBindPoint points[] = {VK_PIPELINE_BIND_POINT_COMPUTE,
-                                                  VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR};
-            for (const VkPipelineBindPoint point :
-                 hasSet_ ? std::span(points) : std::span<const VkPipelineBindPoint>()) {
-                context_.vk.CmdBindDescriptorSets(*commands, point, layout_.get(), 2, 1, &set, 0, nullptr);
-            }
-            if (apart) {
-                batch.rayCount = 0;
-                batch.countBuffer = count_.handle.get();
-                EXPECT_TRUE((*steps)->begin(*commands, batch));
-                (*steps)->trace(*commands);
-                (*steps)->order(*commands);
-                (*steps)->shade(*commands);
-            } else {
-                const Status status = (*steps)->record(*commands, batch);
-                EXPECT_TRUE(status) << toString(status.error());
-            }
-            recordDependency(context_, *commands,
-                             {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
-                              VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
-            EXPECT_TRUE(runner->submitAndWait());
-            if (counters != nullptr) {
-                *counters = *(*steps)->counters();
-            }
-            std::vector<Answer> read(slots_);
-            std::memcpy(read.data(), answers_.mapped, slots_ * sizeof(Answer));
-            return read;
-        }
-
-        VkPipelineLayout layout() const {
-            return layout_.get();
-        }
-        static constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_ALL;
-
-    private:
-        VkDescriptorSetLayout makeEmptyLayout() {
-            VkDescriptorSetLayoutCreateInfo info{};
-            info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-            VkDescriptorSetLayout layout = VK_NULL_HANDLE;
-            EXPECT_EQ(context_.vk.CreateDescriptorSetLayout(context_.handles.device, &info, nullptr, &layout),
-                      VK_SUCCESS);
-            empty_ = UniqueSetLayout(context_, layout);
-            return layout;
-        }
-
-        Buffer make(std::size_t bytes, MemoryUse use) {
-            Result<Buffer> buffer =
-                createBuffer(context_, pool_, std::max<std::size_t>(bytes, 16),
-                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT, use);
-            EXPECT_TRUE(buffer) << toString(buffer.error());
-            return std::move(*buffer);
-        }
-
-        Context::State& context_;
-        MemoryPool pool_;
-        const LoadedScene& loaded_;
-        const std::vector<EngineRay>& rays_;
-        std::size_t slots_;
-        bool hasSet_;
-        UniqueSetLayout empty_;
-        UniquePipelineLayout layout_;
-        Buffer list_;
-        Buffer count_;
-        Buffer answers_;
-    };
-
-    compiler::CompileSettings stepSettings() {
-        compiler::CompileSettings settings;
-        settings.passes = package::Passes::Steps;
-        settings.strategies = package::allStrategies();
-        settings.tracers = package::kAllTracers;
-        settings.plan.merge = compiler::MergePolicy::All;
-        settings.plan.keys.alpha = package::AlphaPolicy::Tested;
-        settings.bindings.sceneSet = 2;
-        settings.bindings.pushOffset = 16;
-        return settings;
+// A host: a pipeline layout with Glint's scene in set 2 and push constants at byte 16, a list of rays and
+// its answers. For a package without textures that takes its structure by address, the layout has no set.
+class Host {
+public:
+    Host(const LoadedScene& loaded, const std::vector<EngineRay>& rays, std::size_t slots,
+         std::size_t answerBytes)
+        : context_(sharedContext().state()),
+          pool_(context_),
+          loaded_(loaded),
+          rays_(rays),
+          slots_(slots),
+          hasSet_(loaded.package().bindings().tlas != package::Bindings::kByAddress ||
+                  !loaded.package().scene(0).textures.empty()) {
+        const VkDescriptorSetLayout empty = makeEmptyLayout();
+        const VkDescriptorSetLayout sets[] = {empty, empty, loaded.gpuScene().descriptorSetLayout()};
+        const VkPushConstantRange range{kStages, 0, 16 + RaySteps::kPushBytes};
+        VkPipelineLayoutCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+        info.setLayoutCount = hasSet_ ? 3 : 0;
+        info.pSetLayouts = sets;
+        info.pushConstantRangeCount = 1;
+        info.pPushConstantRanges = &range;
+        VkPipelineLayout layout = VK_NULL_HANDLE;
+        EXPECT_EQ(context_.vk.CreatePipelineLayout(context_.handles.device, &info, nullptr, &layout),
+                  VK_SUCCESS);
+        layout_ = UniquePipelineLayout(context_, layout);
+        list_ = make(rays.size() * sizeof(EngineRay), MemoryUse::Upload);
+        std::memcpy(list_.mapped, rays.data(), rays.size() * sizeof(EngineRay));
+        count_ = make(sizeof(std::uint32_t), MemoryUse::Upload);
+        const auto count = static_cast<std::uint32_t>(rays.size());
+        std::memcpy(count_.mapped, &count, sizeof count);
+        answers_ = make(slots * answerBytes, MemoryUse::Readback);
     }
 
-    struct Way {
-        package::Strategy strategy;
-        package::Tracer tracer;
-    };
-    constexpr Way kAllWays[] = {{package::kStrategyUber, package::kTracerRayQuery},
-                                {package::kStrategyUber, package::kTracerRayPipeline},
-                                {package::kStrategyVisibility, package::kTracerRayQuery},
-                                {package::kStrategyVisibility, package::kTracerRayPipeline},
-                                {package::kStrategySortedUber, package::kTracerRayQuery},
-                                {package::kStrategyHitShaders, package::kTracerRayPipeline}};
-
-    // Those whose tracer the device has.
-    std::vector<Way> ways() {
-        std::vector<Way> result;
-        for (const Way& way : kAllWays) {
-            if ((sharedContext().handles().tracers & way.tracer) != 0) {
-                result.push_back(way);
-            }
+    // Records the steps and waits. `apart` records them one by one, with the count on the device.
+    template <typename Answer>
+    std::vector<Answer> answers(RayStepsOptions options, const FrameOptions& frame, bool apart,
+                                RayStepsCounters* counters = nullptr) {
+        options.layout = layout_.get();
+        options.pushStages = kStages;
+        options.maxRays = static_cast<std::uint32_t>(slots_);
+        const auto scene = EngineScene::share(sharedContext(), loaded_.gpuScene());
+        const auto steps = RaySteps::create(sharedContext(), loaded_.package(), **scene, options);
+        EXPECT_TRUE(steps) << toString(steps.error());
+        if (!steps) {
+            return {};
         }
-        EXPECT_FALSE(result.empty());
-        return result;
-    }
-
-    TEST(RaySteps, AnswerAHostsRaysAsARendererDoes) {
-        const gltf::Scene scene = roomWithFence();
-        const RenderSetup setup = defaultSetup(scene, 48, 27);
-        const KnownRays known = knownRays(scene, setup);
-        ASSERT_GT(known.rays.size(), 100U);
-        for (const auto record : {package::HitRecordFormat::Full, package::HitRecordFormat::Packed}) {
-            compiler::CompileSettings settings = stepSettings();
-            settings.hitRecord = record;
-            const LoadedScene loaded(scene, settings);
-            ASSERT_TRUE(loaded.ok());
-            Host host(loaded, known.rays, known.answers.size(), sizeof(EngineRadiance));
-            for (const Way& way : ways()) {
-                const bool packed = record == package::HitRecordFormat::Packed;
-                if (packed && way.strategy != package::kStrategySortedUber) {
-                    continue;
-                }
-                RayStepsOptions options;
-                options.strategy = way.strategy;
-                options.tracer = way.tracer;
-                options.checkOrder = true;
-                RayStepsCounters counters;
-                const auto answers = host.answers<EngineRadiance>(
-                    options, setup.frame, way.strategy == package::kStrategyVisibility, &counters);
-                ASSERT_EQ(answers.size(), known.answers.size());
-                EXPECT_EQ(counters.rays, known.rays.size());
-                EXPECT_EQ(counters.orderErrors, 0U);
-                EXPECT_EQ(counters.unknownShader, 0U);
-                std::size_t far = 0;
-                for (const EngineRay& ray : known.rays) {
-                    const EngineRadiance& mine = answers[ray.slot];
-                    const EngineRadiance& renderer = known.answers[ray.slot];
-                    bool near = mine.path == renderer.path;
-                    for (std::size_t i = 0; i < 3; ++i) {
-                        near = near && std::abs(mine.radiance[i] - renderer.radiance[i]) <=
-                                           (packed ? 1e-2F : 1e-4F) * std::max(1.0F, renderer.radiance[i]);
-                    }
-                    far += near ? 0 : 1;
-                }
-                // Packed records round the place on a triangle, which a shadow's edge shows.
-                EXPECT_LE(far, packed ? known.rays.size() / 50 : 0) << nameOf(way.strategy);
-            }
+        RayBatch batch;
+        batch.rays = list_.address;
+        batch.answers = answers_.address;
+        batch.rayCount = static_cast<std::uint32_t>(rays_.size());
+        batch.sky = frame.sky;
+        batch.sampleIndex = frame.sampleIndex;
+        batch.seed = frame.seed;
+        batch.tlas = loaded_.gpuScene().state().tlas.address;
+        Result<CommandRunner> runner = CommandRunner::create(context_);
+        const Result<VkCommandBuffer> commands = runner->begin();
+        const VkDescriptorSet set = loaded_.gpuScene().descriptorSet();
+        const VkPipelineBindPoint points[] = {VK_PIPELINE_BIND_POINT_COMPUTE,
+                                              VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR};
+        for (const VkPipelineBindPoint point :
+             hasSet_ ? std::span(points) : std::span<const VkPipelineBindPoint>()) {
+            context_.vk.CmdBindDescriptorSets(*commands, point, layout_.get(), 2, 1, &set, 0, nullptr);
         }
-        expectNoValidationMessages();
+        if (apart) {
+            batch.rayCount = 0;
+            batch.countBuffer = count_.handle.get();
+            EXPECT_TRUE((*steps)->begin(*commands, batch));
+            (*steps)->trace(*commands);
+            (*steps)->order(*commands);
+            (*steps)->shade(*commands);
+        } else {
+            const Status status = (*steps)->record(*commands, batch);
+            EXPECT_TRUE(status) << toString(status.error());
+        }
+        recordDependency(context_, *commands,
+                         {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                          VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
+        EXPECT_TRUE(runner->submitAndWait());
+        if (counters != nullptr) {
+            *counters = *(*steps)->counters();
+        }
+        std::vector<Answer> read(slots_);
+        std::memcpy(read.data(), answers_.mapped, slots_ * sizeof(Answer));
+        return read;
     }
 
-    // A wall of a known material, and beside it an unlit one.
-    gltf::Scene wallAndLamp() {
-        gltf::Scene scene = emptyScene();
-        materials::Material paint;
-        paint["baseColorFactor"] = {0.5F, 0.25F, 0.125F, 1.0F};
-        paint["metallicFactor"] = 0.0F;
-        paint["roughnessFactor"] = 0.5F;
-        paint["emissiveFactor"] = {0.0F, 0.75F, 0.0F};
-        addInstance(scene,
-                    addMesh(scene, makeQuad(addMaterial(scene, paint), {-1, -1, -4}, {2, 0, 0}, {0, 2, 0})));
-        const materials::Material lamp = unlitMaterial({0.25F, 0.5F, 1.0F});
-        addInstance(scene,
-                    addMesh(scene, makeQuad(addMaterial(scene, lamp), {3, -1, -4}, {2, 0, 0}, {0, 2, 0})));
-        return scene;
+    VkPipelineLayout layout() const {
+        return layout_.get();
+    }
+    static constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_ALL;
+
+private:
+    VkDescriptorSetLayout makeEmptyLayout() {
+        VkDescriptorSetLayoutCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+        VkDescriptorSetLayout layout = VK_NULL_HANDLE;
+        EXPECT_EQ(context_.vk.CreateDescriptorSetLayout(context_.handles.device, &info, nullptr, &layout),
+                  VK_SUCCESS);
+        empty_ = UniqueSetLayout(context_, layout);
+        return layout;
     }
 
-    // The wall is seen at an angle, and the sky beside it.
-    TEST(RaySteps, AnswerWithSurfaces) {
-        const gltf::Scene scene = wallAndLamp();
+    Buffer make(std::size_t bytes, MemoryUse use) {
+        Result<Buffer> buffer =
+            createBuffer(context_, pool_, std::max<std::size_t>(bytes, 16),
+                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT, use);
+        EXPECT_TRUE(buffer) << toString(buffer.error());
+        return std::move(*buffer);
+    }
+
+    Context::State& context_;
+    MemoryPool pool_;
+    const LoadedScene& loaded_;
+    const std::vector<EngineRay>& rays_;
+    std::size_t slots_;
+    bool hasSet_;
+    UniqueSetLayout empty_;
+    UniquePipelineLayout layout_;
+    Buffer list_;
+    Buffer count_;
+    Buffer answers_;
+};
+
+compiler::CompileSettings stepSettings() {
+    compiler::CompileSettings settings;
+    settings.passes = package::Passes::Steps;
+    settings.strategies = package::allStrategies();
+    settings.tracers = package::kAllTracers;
+    settings.plan.merge = compiler::MergePolicy::All;
+    settings.plan.keys.alpha = package::AlphaPolicy::Tested;
+    settings.bindings.sceneSet = 2;
+    settings.bindings.pushOffset = 16;
+    return settings;
+}
+
+struct Way {
+    package::Strategy strategy;
+    package::Tracer tracer;
+};
+constexpr Way kAllWays[] = {{package::kStrategyUber, package::kTracerRayQuery},
+                            {package::kStrategyUber, package::kTracerRayPipeline},
+                            {package::kStrategyVisibility, package::kTracerRayQuery},
+                            {package::kStrategyVisibility, package::kTracerRayPipeline},
+                            {package::kStrategySortedUber, package::kTracerRayQuery},
+                            {package::kStrategyHitShaders, package::kTracerRayPipeline}};
+
+// Those whose tracer the device has.
+std::vector<Way> ways() {
+    std::vector<Way> result;
+    for (const Way& way : kAllWays) {
+        if ((sharedContext().handles().tracers & way.tracer) != 0) {
+            result.push_back(way);
+        }
+    }
+    EXPECT_FALSE(result.empty());
+    return result;
+}
+
+TEST(RaySteps, AnswerAHostsRaysAsARendererDoes) {
+    const gltf::Scene scene = roomWithFence();
+    const RenderSetup setup = defaultSetup(scene, 48, 27);
+    const KnownRays known = knownRays(scene, setup);
+    ASSERT_GT(known.rays.size(), 100U);
+    for (const auto record : {package::HitRecordFormat::Full, package::HitRecordFormat::Packed}) {
         compiler::CompileSettings settings = stepSettings();
-        settings.answer = package::HitAnswer::Surface;
-        settings.plan.merge = compiler::MergePolicy::None;
+        settings.hitRecord = record;
         const LoadedScene loaded(scene, settings);
         ASSERT_TRUE(loaded.ok());
-        const float tilt = 1.0F / std::sqrt(17.0F);
-        const std::vector<EngineRay> rays{{{0.5F, 0.25F, 0.0F}, 2, {0.0F, 0.0F, -1.0F}, 0.0F, 0.0F},
-                                          {{3.0F, 0.0F, 0.0F}, 0, {tilt, 0.0F, -4.0F * tilt}, 0.0F, 0.0F},
-                                          {{0.0F, 0.0F, 0.0F}, 1, {0.0F, 1.0F, 0.0F}, 0.0F, 0.0F}};
-        Host host(loaded, rays, 3, sizeof(EngineSurface));
+        Host host(loaded, known.rays, known.answers.size(), sizeof(EngineRadiance));
         for (const Way& way : ways()) {
-            SCOPED_TRACE(std::string(nameOf(way.strategy)));
-            RayStepsOptions options;
-            options.strategy = way.strategy;
-            options.tracer = way.tracer;
-            const auto answers = host.answers<EngineSurface>(options, {}, false);
-            ASSERT_EQ(answers.size(), 3U);
-            const EngineSurface& wall = answers[2];
-            const auto expectVector = [](const std::array<float, 3>& v, const std::array<float, 3>& truth) {
-                for (std::size_t i = 0; i < 3; ++i) {
-                    EXPECT_NEAR(v[i], truth[i], 1e-5F);
-                }
-            };
-            expectVector(wall.position, {0.5F, 0.25F, -4.0F});
-            expectVector(wall.normal, {0, 0, 1});
-            expectVector(wall.geometricNormal, {0, 0, 1});
-            expectVector(wall.albedo, {0.5F, 0.25F, 0.125F});
-            expectVector(wall.f0, {0.04F, 0.04F, 0.04F});
-            expectVector(wall.emission, {0, 0.75F, 0});
-            expectVector(wall.motion, {0, 0, 0});
-            EXPECT_NEAR(wall.roughness, 0.5F, 1e-6F);
-            EXPECT_EQ(wall.f90, 1.0F);
-            EXPECT_EQ(wall.material, 0U);
-            EXPECT_LT(wall.shaderId, loaded.package().caseCount());
-            EXPECT_GT(wall.clearance, 0.0F);
-            expectVector(answers[0].position, {4.0F, 0.0F, -4.0F});
-            expectVector(answers[0].emission, {0.25F, 0.5F, 1.0F});
-            expectVector(answers[0].albedo, {0, 0, 0});
-            EXPECT_NE(answers[0].shaderId, wall.shaderId);
-            EXPECT_EQ(answers[0].material, 1U);
-            EXPECT_EQ(answers[1].shaderId, EngineSurface::kMiss);
-            expectVector(answers[1].position, {0, 1, 0});
-        }
-        expectNoValidationMessages();
-    }
-
-    // A host that keeps the vertices of the frame before, which here lay 0.25 m to the left and 0.5 m below.
-    TEST(RaySteps, PointsOfDeformingMeshesHaveMotionOfTheirOwn) {
-        const auto own =
-            std::ranges::find(compiler::builtinFiles(), "host/geometry.glsl", &base::BuiltinFile::name);
-        ASSERT_NE(own, compiler::builtinFiles().end());
-        const test::TemporaryFolder folder;
-        const std::string text(own->text);
-        ASSERT_TRUE(base::writeFile(folder.path() / "geometry.glsl",
-                                    text +
-                                        "\n#define GLINT_HOST_PREVIOUS_POSITIONS\n"
-                                        "vec3 hostPreviousPosition(HostGeometry geometry, uint vertex) {\n"
-                                        "    return hostPosition(geometry, vertex) - vec3(0.25, 0.5, 0.0);\n"
-                                        "}\n"));
-        compiler::CompileSettings settings = stepSettings();
-        settings.strategies = package::kStrategyUber;
-        settings.answer = package::HitAnswer::Surface;
-        settings.host = folder.path().string();
-        const LoadedScene loaded(wallAndLamp(), settings);
-        ASSERT_TRUE(loaded.ok());
-        const std::vector<EngineRay> rays{{{0.5F, 0.25F, 0.0F}, 0, {0.0F, 0.0F, -1.0F}}};
-        Host host(loaded, rays, 1, sizeof(EngineSurface));
-        RayStepsOptions options;
-        options.strategy = package::kStrategyUber;
-        const auto answers = host.answers<EngineSurface>(options, {}, false);
-        ASSERT_EQ(answers.size(), 1U);
-        EXPECT_NEAR(answers[0].motion[0], 0.25F, 1e-6F);
-        EXPECT_NEAR(answers[0].motion[1], 0.5F, 1e-6F);
-        EXPECT_NEAR(answers[0].motion[2], 0.0F, 1e-6F);
-        expectNoValidationMessages();
-    }
-
-    // Without a descriptor, and here without any descriptor set, the answers are those that a descriptor
-    // gives.
-    TEST(RaySteps, TakeAStructureByItsAddress) {
-        const gltf::Scene scene = wallAndLamp();
-        std::vector<EngineRay> rays;
-        for (std::uint32_t slot = 0; slot < 64; ++slot) {
-            const std::array<float, 3> to{-2.0F + 1.1F * static_cast<float>(slot % 8),
-                                          -1.5F + 0.4F * static_cast<float>(slot / 8), -4.0F};
-            const float length = std::hypot(to[0], to[1], to[2]);
-            rays.push_back({{0, 0, 0}, slot, {to[0] / length, to[1] / length, to[2] / length}});
-        }
-        const LoadedScene described(scene, stepSettings());
-        compiler::CompileSettings settings = stepSettings();
-        settings.bindings.tlas = package::Bindings::kByAddress;
-        const LoadedScene addressed(scene, settings);
-        ASSERT_TRUE(described.ok() && addressed.ok());
-        Host withSet(described, rays, rays.size(), sizeof(EngineRadiance));
-        Host without(addressed, rays, rays.size(), sizeof(EngineRadiance));
-        for (const Way& way : ways()) {
-            // One way for each form of the shaders that trace: all ways trace by the same functions.
-            const bool byQuery = way.tracer == package::kTracerRayQuery;
-            if (way.strategy != (byQuery ? package::kStrategyUber : package::kStrategyVisibility) &&
-                way.strategy != package::kStrategyHitShaders) {
+            const bool packed = record == package::HitRecordFormat::Packed;
+            if (packed && way.strategy != package::kStrategySortedUber) {
                 continue;
             }
-            SCOPED_TRACE(std::string(nameOf(way.strategy)) + ", " + std::string(nameOf(way.tracer)));
             RayStepsOptions options;
             options.strategy = way.strategy;
             options.tracer = way.tracer;
-            const auto truth = withSet.answers<EngineRadiance>(options, {}, false);
-            const auto found = without.answers<EngineRadiance>(options, {}, false);
-            ASSERT_EQ(found.size(), truth.size());
-            std::array<std::size_t, 4> paths{};
-            for (std::size_t i = 0; i < truth.size(); ++i) {
-                EXPECT_EQ(found[i].path, truth[i].path) << i;
-                ++paths.at(static_cast<std::size_t>(found[i].path));
-                for (std::size_t channel = 0; channel < 3; ++channel) {
-                    EXPECT_NEAR(found[i].radiance[channel], truth[i].radiance[channel], 1e-6F) << i;
+            options.checkOrder = true;
+            RayStepsCounters counters;
+            const auto answers = host.answers<EngineRadiance>(
+                options, setup.frame, way.strategy == package::kStrategyVisibility, &counters);
+            ASSERT_EQ(answers.size(), known.answers.size());
+            EXPECT_EQ(counters.rays, known.rays.size());
+            EXPECT_EQ(counters.orderErrors, 0U);
+            EXPECT_EQ(counters.unknownShader, 0U);
+            std::size_t far = 0;
+            for (const EngineRay& ray : known.rays) {
+                const EngineRadiance& mine = answers[ray.slot];
+                const EngineRadiance& renderer = known.answers[ray.slot];
+                bool near = mine.path == renderer.path;
+                for (std::size_t i = 0; i < 3; ++i) {
+                    near = near && std::abs(mine.radiance[i] - renderer.radiance[i]) <=
+                                       (packed ? 1e-2F : 1e-4F) * std::max(1.0F, renderer.radiance[i]);
                 }
+                far += near ? 0 : 1;
             }
-            // Both hits and misses are among them.
-            EXPECT_GT(paths[2], 10U);
-            EXPECT_GT(paths[3], 10U);
+            // Packed records round the place on a triangle, which a shadow's edge shows.
+            EXPECT_LE(far, packed ? known.rays.size() / 50 : 0) << nameOf(way.strategy);
         }
-        const auto shared = EngineScene::share(sharedContext(), addressed.gpuScene());
-        RayStepsOptions options;
-        options.strategy = package::kStrategyUber;
-        options.maxRays = 1;
-        options.layout = without.layout();
-        options.pushStages = Host::kStages;
-        const auto steps = RaySteps::create(sharedContext(), addressed.package(), **shared, options);
-        ASSERT_TRUE(steps) << toString(steps.error());
-        RayBatch batch;
-        batch.rays = batch.answers = 64;
-        const Status refused = (*steps)->begin(VK_NULL_HANDLE, batch);
-        ASSERT_FALSE(refused);
-        EXPECT_NE(toString(refused.error()).find("RayBatch::tlas is 0"), std::string::npos);
-        expectNoValidationMessages();
     }
+    expectNoValidationMessages();
+}
 
-    TEST(RaySteps, RefuseWhatTheyCannotDo) {
-        const gltf::Scene scene = roomWithFence();
-        compiler::CompileSettings frames;
-        frames.strategies = package::kStrategyUber;
-        frames.tracers = package::kAllTracers;
-        const LoadedScene framePackage(scene, frames);
-        compiler::CompileSettings settings = stepSettings();
-        settings.strategies = package::kStrategyUber;
-        const LoadedScene stepPackage(scene, settings);
-        ASSERT_TRUE(framePackage.ok() && stepPackage.ok());
-        const auto shared = EngineScene::share(sharedContext(), stepPackage.gpuScene());
-        ASSERT_TRUE(shared);
+// A wall of a known material, and beside it an unlit one.
+gltf::Scene wallAndLamp() {
+    gltf::Scene scene = emptyScene();
+    materials::Material paint;
+    paint["baseColorFactor"] = {0.5F, 0.25F, 0.125F, 1.0F};
+    paint["metallicFactor"] = 0.0F;
+    paint["roughnessFactor"] = 0.5F;
+    paint["emissiveFactor"] = {0.0F, 0.75F, 0.0F};
+    addInstance(scene,
+                addMesh(scene, makeQuad(addMaterial(scene, paint), {-1, -1, -4}, {2, 0, 0}, {0, 2, 0})));
+    const materials::Material lamp = unlitMaterial({0.25F, 0.5F, 1.0F});
+    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, lamp), {3, -1, -4}, {2, 0, 0}, {0, 2, 0})));
+    return scene;
+}
+
+// The wall is seen at an angle, and the sky beside it.
+TEST(RaySteps, AnswerWithSurfaces) {
+    const gltf::Scene scene = wallAndLamp();
+    compiler::CompileSettings settings = stepSettings();
+    settings.answer = package::HitAnswer::Surface;
+    settings.plan.merge = compiler::MergePolicy::None;
+    const LoadedScene loaded(scene, settings);
+    ASSERT_TRUE(loaded.ok());
+    const float tilt = 1.0F / std::sqrt(17.0F);
+    const std::vector<EngineRay> rays{{{0.5F, 0.25F, 0.0F}, 2, {0.0F, 0.0F, -1.0F}, 0.0F, 0.0F},
+                                      {{3.0F, 0.0F, 0.0F}, 0, {tilt, 0.0F, -4.0F * tilt}, 0.0F, 0.0F},
+                                      {{0.0F, 0.0F, 0.0F}, 1, {0.0F, 1.0F, 0.0F}, 0.0F, 0.0F}};
+    Host host(loaded, rays, 3, sizeof(EngineSurface));
+    for (const Way& way : ways()) {
+        SCOPED_TRACE(std::string(nameOf(way.strategy)));
         RayStepsOptions options;
-        options.strategy = package::kStrategyUber;
-        options.maxRays = 16;
-        const auto idOf = [](const auto& result) { return result ? std::string() : result.error().id; };
-        EXPECT_EQ(idOf(RaySteps::create(sharedContext(), stepPackage.package(), **shared, options)),
-                  "ray-steps");
-        EXPECT_EQ(idOf(RaySteps::create(sharedContext(), framePackage.package(), **shared, options)),
-                  "package-passes");
-        RendererOptions renderer;
-        renderer.strategy = package::kStrategyUber;
-        EXPECT_EQ(
-            idOf(Renderer::create(sharedContext(), stepPackage.package(), stepPackage.gpuScene(), renderer)),
-            "package-passes");
-        EXPECT_EQ(idOf((*shared)->update(VK_NULL_HANDLE, {}, {})), "engine-scene");
-    }
-
-    // A scene of a host's own is checked before anything is made of it.
-    TEST(EngineScene, NamesWhatIsWrong) {
-        compiler::CompileSettings settings = stepSettings();
-        settings.strategies = package::kStrategyUber;
-        const LoadedScene loaded(roomWithFence(), settings);
-        ASSERT_TRUE(loaded.ok());
-        const PackageScene known = loaded.package().scene(0);
-        const std::vector<std::array<float, 12>> instances{{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}};
-        const std::vector<EngineTextureView> textures(known.textures.size(), {0, 4, 4});
-        const std::vector<EngineSamplerView> samplers(known.samplers.size());
-        const auto create = [&](const EngineGeometryView& geometry, std::span<const EngineTextureView> images,
-                                std::span<const std::uint32_t> firstRecords) {
-            EngineSceneView view;
-            view.geometries = {&geometry, 1};
-            view.instances = instances;
-            view.textures = images;
-            view.samplers = samplers;
-            view.firstRecords = firstRecords;
-            const auto scene = EngineScene::create(sharedContext(), loaded.package(), view);
-            return scene ? std::string() : toString(scene.error());
+        options.strategy = way.strategy;
+        options.tracer = way.tracer;
+        const auto answers = host.answers<EngineSurface>(options, {}, false);
+        ASSERT_EQ(answers.size(), 3U);
+        const EngineSurface& wall = answers[2];
+        const auto expectVector = [](const std::array<float, 3>& v, const std::array<float, 3>& truth) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                EXPECT_NEAR(v[i], truth[i], 1e-5F);
+            }
         };
-        const package::PrimitiveEntry& entry = known.primitives.front();
-        EngineGeometryView geometry{entry.mesh, entry.primitive, 0, 64, 64, 64, 64, 64, 64, 64};
-        EXPECT_EQ(create(geometry, textures, {}), "");
-        const std::uint32_t far[] = {5};
-        EXPECT_NE(create(geometry, textures, far).find("entry 0 of firstRecords"), std::string::npos);
-        EXPECT_NE(create(geometry, {}, {}).find("PackageScene::textures"), std::string::npos);
-        geometry.instance = 3;
-        EXPECT_NE(create(geometry, textures, {}).find("instance 3 is out of range"), std::string::npos);
-        geometry.instance = 0;
-        geometry.positions = 0;
-        EXPECT_NE(create(geometry, textures, {}).find("reads positions"), std::string::npos);
-        geometry.mesh = 10000;
-        EXPECT_NE(create(geometry, textures, {}).find("mesh 10000"), std::string::npos);
+        expectVector(wall.position, {0.5F, 0.25F, -4.0F});
+        expectVector(wall.normal, {0, 0, 1});
+        expectVector(wall.geometricNormal, {0, 0, 1});
+        expectVector(wall.albedo, {0.5F, 0.25F, 0.125F});
+        expectVector(wall.f0, {0.04F, 0.04F, 0.04F});
+        expectVector(wall.emission, {0, 0.75F, 0});
+        expectVector(wall.motion, {0, 0, 0});
+        EXPECT_NEAR(wall.roughness, 0.5F, 1e-6F);
+        EXPECT_EQ(wall.f90, 1.0F);
+        EXPECT_EQ(wall.material, 0U);
+        EXPECT_LT(wall.shaderId, loaded.package().caseCount());
+        EXPECT_GT(wall.clearance, 0.0F);
+        expectVector(answers[0].position, {4.0F, 0.0F, -4.0F});
+        expectVector(answers[0].emission, {0.25F, 0.5F, 1.0F});
+        expectVector(answers[0].albedo, {0, 0, 0});
+        EXPECT_NE(answers[0].shaderId, wall.shaderId);
+        EXPECT_EQ(answers[0].material, 1U);
+        EXPECT_EQ(answers[1].shaderId, EngineSurface::kMiss);
+        expectVector(answers[1].position, {0, 1, 0});
     }
+    expectNoValidationMessages();
+}
+
+// A host that keeps the vertices of the frame before, which here lay 0.25 m to the left and 0.5 m below.
+TEST(RaySteps, PointsOfDeformingMeshesHaveMotionOfTheirOwn) {
+    const auto own =
+        std::ranges::find(compiler::builtinFiles(), "host/geometry.glsl", &base::BuiltinFile::name);
+    ASSERT_NE(own, compiler::builtinFiles().end());
+    const test::TemporaryFolder folder;
+    const std::string text(own->text);
+    ASSERT_TRUE(base::writeFile(folder.path() / "geometry.glsl",
+                                text + "\n#define GLINT_HOST_PREVIOUS_POSITIONS\n"
+                                       "vec3 hostPreviousPosition(HostGeometry geometry, uint vertex) {\n"
+                                       "    return hostPosition(geometry, vertex) - vec3(0.25, 0.5, 0.0);\n"
+                                       "}\n"));
+    compiler::CompileSettings settings = stepSettings();
+    settings.strategies = package::kStrategyUber;
+    settings.answer = package::HitAnswer::Surface;
+    settings.host = folder.path().string();
+    const LoadedScene loaded(wallAndLamp(), settings);
+    ASSERT_TRUE(loaded.ok());
+    const std::vector<EngineRay> rays{{{0.5F, 0.25F, 0.0F}, 0, {0.0F, 0.0F, -1.0F}}};
+    Host host(loaded, rays, 1, sizeof(EngineSurface));
+    RayStepsOptions options;
+    options.strategy = package::kStrategyUber;
+    const auto answers = host.answers<EngineSurface>(options, {}, false);
+    ASSERT_EQ(answers.size(), 1U);
+    EXPECT_NEAR(answers[0].motion[0], 0.25F, 1e-6F);
+    EXPECT_NEAR(answers[0].motion[1], 0.5F, 1e-6F);
+    EXPECT_NEAR(answers[0].motion[2], 0.0F, 1e-6F);
+    expectNoValidationMessages();
+}
+
+// Without a descriptor, and here without any descriptor set, the answers are those that a descriptor
+// gives.
+TEST(RaySteps, TakeAStructureByItsAddress) {
+    const gltf::Scene scene = wallAndLamp();
+    std::vector<EngineRay> rays;
+    for (std::uint32_t slot = 0; slot < 64; ++slot) {
+        const std::array<float, 3> to{-2.0F + 1.1F * static_cast<float>(slot % 8),
+                                      -1.5F + 0.4F * static_cast<float>(slot / 8), -4.0F};
+        const float length = std::hypot(to[0], to[1], to[2]);
+        rays.push_back({{0, 0, 0}, slot, {to[0] / length, to[1] / length, to[2] / length}});
+    }
+    const LoadedScene described(scene, stepSettings());
+    compiler::CompileSettings settings = stepSettings();
+    settings.bindings.tlas = package::Bindings::kByAddress;
+    const LoadedScene addressed(scene, settings);
+    ASSERT_TRUE(described.ok() && addressed.ok());
+    Host withSet(described, rays, rays.size(), sizeof(EngineRadiance));
+    Host without(addressed, rays, rays.size(), sizeof(EngineRadiance));
+    for (const Way& way : ways()) {
+        // One way for each form of the shaders that trace: all ways trace by the same functions.
+        const bool byQuery = way.tracer == package::kTracerRayQuery;
+        if (way.strategy != (byQuery ? package::kStrategyUber : package::kStrategyVisibility) &&
+            way.strategy != package::kStrategyHitShaders) {
+            continue;
+        }
+        SCOPED_TRACE(std::string(nameOf(way.strategy)) + ", " + std::string(nameOf(way.tracer)));
+        RayStepsOptions options;
+        options.strategy = way.strategy;
+        options.tracer = way.tracer;
+        const auto truth = withSet.answers<EngineRadiance>(options, {}, false);
+        const auto found = without.answers<EngineRadiance>(options, {}, false);
+        ASSERT_EQ(found.size(), truth.size());
+        std::array<std::size_t, 4> paths{};
+        for (std::size_t i = 0; i < truth.size(); ++i) {
+            EXPECT_EQ(found[i].path, truth[i].path) << i;
+            ++paths.at(static_cast<std::size_t>(found[i].path));
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                EXPECT_NEAR(found[i].radiance[channel], truth[i].radiance[channel], 1e-6F) << i;
+            }
+        }
+        // Both hits and misses are among them.
+        EXPECT_GT(paths[2], 10U);
+        EXPECT_GT(paths[3], 10U);
+    }
+    const auto shared = EngineScene::share(sharedContext(), addressed.gpuScene());
+    RayStepsOptions options;
+    options.strategy = package::kStrategyUber;
+    options.maxRays = 1;
+    options.layout = without.layout();
+    options.pushStages = Host::kStages;
+    const auto steps = RaySteps::create(sharedContext(), addressed.package(), **shared, options);
+    ASSERT_TRUE(steps) << toString(steps.error());
+    RayBatch batch;
+    batch.rays = batch.answers = 64;
+    const Status refused = (*steps)->begin(VK_NULL_HANDLE, batch);
+    ASSERT_FALSE(refused);
+    EXPECT_NE(toString(refused.error()).find("RayBatch::tlas is 0"), std::string::npos);
+    expectNoValidationMessages();
+}
+
+TEST(RaySteps, RefuseWhatTheyCannotDo) {
+    const gltf::Scene scene = roomWithFence();
+    compiler::CompileSettings frames;
+    frames.strategies = package::kStrategyUber;
+    frames.tracers = package::kAllTracers;
+    const LoadedScene framePackage(scene, frames);
+    compiler::CompileSettings settings = stepSettings();
+    settings.strategies = package::kStrategyUber;
+    const LoadedScene stepPackage(scene, settings);
+    ASSERT_TRUE(framePackage.ok() && stepPackage.ok());
+    const auto shared = EngineScene::share(sharedContext(), stepPackage.gpuScene());
+    ASSERT_TRUE(shared);
+    RayStepsOptions options;
+    options.strategy = package::kStrategyUber;
+    options.maxRays = 16;
+    const auto idOf = [](const auto& result) { return result ? std::string() : result.error().id; };
+    EXPECT_EQ(idOf(RaySteps::create(sharedContext(), stepPackage.package(), **shared, options)), "ray-steps");
+    EXPECT_EQ(idOf(RaySteps::create(sharedContext(), framePackage.package(), **shared, options)),
+              "package-passes");
+    RendererOptions renderer;
+    renderer.strategy = package::kStrategyUber;
+    EXPECT_EQ(
+        idOf(Renderer::create(sharedContext(), stepPackage.package(), stepPackage.gpuScene(), renderer)),
+        "package-passes");
+    EXPECT_EQ(idOf((*shared)->update(VK_NULL_HANDLE, {}, {})), "engine-scene");
+}
+
+// A scene of a host's own is checked before anything is made of it.
+TEST(EngineScene, NamesWhatIsWrong) {
+    compiler::CompileSettings settings = stepSettings();
+    settings.strategies = package::kStrategyUber;
+    const LoadedScene loaded(roomWithFence(), settings);
+    ASSERT_TRUE(loaded.ok());
+    const PackageScene known = loaded.package().scene(0);
+    const std::vector<std::array<float, 12>> instances{{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}};
+    const std::vector<EngineTextureView> textures(known.textures.size(), {0, 4, 4});
+    const std::vector<EngineSamplerView> samplers(known.samplers.size());
+    const auto create = [&](const EngineGeometryView& geometry, std::span<const EngineTextureView> images,
+                            std::span<const std::uint32_t> firstRecords) {
+        EngineSceneView view;
+        view.geometries = {&geometry, 1};
+        view.instances = instances;
+        view.textures = images;
+        view.samplers = samplers;
+        view.firstRecords = firstRecords;
+        const auto scene = EngineScene::create(sharedContext(), loaded.package(), view);
+        return scene ? std::string() : toString(scene.error());
+    };
+    const package::PrimitiveEntry& entry = known.primitives.front();
+    EngineGeometryView geometry{entry.mesh, entry.primitive, 0, 64, 64, 64, 64, 64, 64, 64};
+    EXPECT_EQ(create(geometry, textures, {}), "");
+    const std::uint32_t far[] = {5};
+    EXPECT_NE(create(geometry, textures, far).find("entry 0 of firstRecords"), std::string::npos);
+    EXPECT_NE(create(geometry, {}, {}).find("PackageScene::textures"), std::string::npos);
+    geometry.instance = 3;
+    EXPECT_NE(create(geometry, textures, {}).find("instance 3 is out of range"), std::string::npos);
+    geometry.instance = 0;
+    geometry.positions = 0;
+    EXPECT_NE(create(geometry, textures, {}).find("reads positions"), std::string::npos);
+    geometry.mesh = 10000;
+    EXPECT_NE(create(geometry, textures, {}).find("mesh 10000"), std::string::npos);
+}
 
 }  // namespace
