@@ -75,7 +75,7 @@ TEST(SchemaFiles, FollowFromTheFields) {
             place = part.schema;
             std::ofstream(path) << base::toText(json);
         }
-        EXPECT_EQ(place.dump(2), part.schema.dump(2))
+        EXPECT_TRUE(place.dump() == part.schema.dump())
             << path << " does not follow from the fields; GLINT_UPDATE_DOCUMENTS=1 writes it anew";
     }
 }
