@@ -99,17 +99,17 @@ TEST_F(StrategyRender, DeviceFilesAreReadAsTheyAreWritten) {
                                      // round.
                                      {"time", {{"median", times.empty() ? ms : 3.0 * ms}}},
                                      {"ratio", {{"median", ms / first}}},
-                                     {"difference", {{"wrong", false}}}});
+                                     {"difference", {{"differing", 0}, {"pixels", 100}}}});
                 }
                 times.push_back({{"strategy", "uber"},
                                  {"time", {{"median", 99.0}}},
                                  {"ratio", {{"median", 99.0}}},
-                                 {"difference", {{"wrong", true}}}});
+                                 {"difference", {{"differing", 100}, {"pixels", 100}}}});
                 times.push_back({{"strategy", "uber"}, {"skipped", "too large"}});
                 points.push_back({{"cases", cases},
                                   {"cost", point.cost},
                                   {"coherence", point.coherence},
-                                  {"rays", rays},
+                                  {"rays", static_cast<std::uint64_t>(rays)},
                                   {"hitShare", 0.8},
                                   {"coherentShare", coherence},
                                   {"work", work},

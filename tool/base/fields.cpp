@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace glint::base {
@@ -37,6 +38,11 @@ void readField(const Field& field, void* object, JsonReader& reader, const Json&
     }
 }
 
+// Output alone is not read, nor is an object of it.
+bool isRead(const Field& field) {
+    return field.read != nullptr || !field.constant.is_null() || std::ranges::any_of(field.members, isRead);
+}
+
 Json boundOf(double value) {
     return std::trunc(value) == value ? Json(static_cast<std::int64_t>(value)) : Json(value);
 }
@@ -70,10 +76,12 @@ void readFields(const Fields& fields, void* object, JsonReader& reader, const Js
         reader.fail(place, "is no JSON object");
     }
     for (const Field& field : fields) {
-        const bool isRead = field.read != nullptr || !field.members.empty() || !field.constant.is_null();
-        if (*field.name == '\0' && isRead) {
+        if (!isRead(field)) {
+            continue;
+        }
+        if (*field.name == '\0') {
             field.read(object, reader, json, place, field.traits);
-        } else if (isRead && !(field.traits.optional && !json.contains(field.name))) {
+        } else if (!(field.traits.optional && !json.contains(field.name))) {
             const Json* const value = reader.ok() ? reader.member(json, place, field.name) : nullptr;
             if (value != nullptr) {
                 readField(field, object, reader, *value, place + "/" + field.name);
