@@ -35,8 +35,8 @@ bool trustsTextures(const Settings& settings, const DecidedPackage* package = nu
 std::vector<std::string> strategyNames(std::uint32_t strategies);
 std::vector<std::string> tracerNames(std::uint32_t tracers);
 
-// What a change of settings makes anew, as bits of a set. A set that is less than kChangesUpload needs
-// neither another upload nor another package.
+// The things that a change of settings makes anew, as bits of a set. A set that is less than kChangesUpload
+// needs neither another upload nor another package.
 enum Change : std::uint32_t {
     kChangesFrame = 1,     // the picture starts anew
     kChangesRenderer = 2,  // another renderer

@@ -1,5 +1,4 @@
-// What all headers use: errors as values, and the names of enumerators. This header needs the standard
-// library only.
+// Errors as values, and the names of enumerators, for all headers. This one needs the standard library only.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
-// What recordings of passes work on, of renderers and of RaySteps, the dependencies between passes, and the
-// passes that shade the rays of the list.
+// The state on which recordings of passes work, of renderers and of RaySteps, the dependencies between
+// passes, and the passes that shade the rays of the list.
 #pragma once
 
 #include "context/commands.h"

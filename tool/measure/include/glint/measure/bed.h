@@ -176,7 +176,7 @@ private:
     bool onCpu_ = false;
     std::uint32_t lights_ = 0;
     SceneSize size_;
-    // What is mounted, or was.
+    // A package that is mounted, or was.
     struct Known {
         compiler::Settings settings;  // of the build
         std::weak_ptr<const session::DeviceScene> scene;
