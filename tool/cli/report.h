@@ -8,7 +8,7 @@
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
 
-#include <glint/internal/frame_traffic.h>
+#include <glint/frame_traffic.h>
 #include <glint/package.h>
 #include <glint/package_modules.h>
 #include <glint/result.h>

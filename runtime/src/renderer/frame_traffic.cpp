@@ -2,7 +2,7 @@
 #include "interop/frame.h"
 #include "renderer/renderer_choice.h"
 
-#include <glint/internal/frame_traffic.h>
+#include <glint/frame_traffic.h>
 #include <glint/package.h>
 #include <glint/package_modules.h>
 #include <glint/renderer.h>

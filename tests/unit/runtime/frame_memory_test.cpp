@@ -2,7 +2,7 @@
 #include "frame/frame_resources.h"
 #include "renderer/renderer_choice.h"
 
-#include <glint/internal/frame_traffic.h>
+#include <glint/frame_traffic.h>
 #include <glint/package_modules.h>
 
 #include <gtest/gtest.h>
