@@ -2,7 +2,7 @@
 #include "render/edited_scene.h"
 #include "render/moving_scenes.h"
 #include "render/scene_builder.h"
-#include "scene/scene_editor.h"
+#include "scene/scene_store.h"
 
 #include <glint/steps.h>
 
@@ -152,9 +152,23 @@ TEST_F(LiveEditErrors, Geometry) {
     primitive.geometry.normals = primitive.geometry.normals.first(2);
     expectError(editor().addMesh(std::span(&primitive, 1)), "scene-attribute");
     primitive.geometry = edited_->primitive(0, 0);
-    const MorphTargetView target;
+    const std::array<float, 3> difference{};
+    MorphTargetView target;
+    target.positions = std::span(&difference, 1);
     primitive.geometry.targets = std::span(&target, 1);
-    expectError(editor().addMesh(std::span(&primitive, 1)), "scene-edit-moves");
+    expectError(editor().addMesh(std::span(&primitive, 1)), "scene-attribute");
+    // The package has no pass that moves vertices.
+    const std::vector<std::array<float, 3>> differences(primitive.geometry.positions.size());
+    target.positions = differences;
+    const Result<AddedMesh> mesh = editor().addMesh(std::span(&primitive, 1));
+    ASSERT_TRUE(mesh);
+    PlacedMesh placed{mesh->mesh};
+    const std::array<float, 2> weights{1, 1};
+    placed.morphWeights = weights;
+    expectError(editor().addInstance(placed), "scene-motion");
+    placed.morphWeights = std::span(weights).first(1);
+    expectError(editor().addInstance(placed), "scene-package");
+    EXPECT_TRUE(editor().removeMesh(mesh->mesh));
 }
 
 TEST_F(LiveEditErrors, Keys) {
@@ -258,13 +272,10 @@ TEST(LiveEditUpload, RefusesScenesThatMove) {
     const session::SceneViewData data = session::makeSceneView(scene);
     SceneView view = data.view();
     view.editable = true;
-    view.moves = true;
-    expectError(GpuScene::upload(sharedContext(), loaded.package(), view), "scene-edit-moves");
     EXPECT_EQ(loaded.gpuScene().editor(), nullptr);
-    view.moves = false;
     const auto editable = uploadScene(loaded.package(), view);
     ASSERT_NE(editable, nullptr);
-    expectError(EngineScene::share(sharedContext(), *editable), "scene-edit-share");
+    EXPECT_TRUE(EngineScene::share(sharedContext(), *editable));
     expectError(editable->updateAndWait({}), "scene-still");
 }
 
@@ -313,7 +324,7 @@ TEST(LiveEditGrowth, EveryBufferGrowsAndShrinks) {
     EditedScene edited(options);
     ASSERT_TRUE(edited.ok());
     SceneEditor& editor = edited.editor();
-    const SceneEditor::State& state = editor.state();
+    const SceneStore& state = *edited.gpuScene().state().store;
     edited.expectSameAsFresh("before");
     const auto capacities = [&] {
         return std::array{state.geometries.capacity, state.instances.capacity,  state.materials.capacity,

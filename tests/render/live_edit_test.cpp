@@ -1,7 +1,7 @@
 // Scenes that are edited at random while two frames are in flight: the picture must be that of a scene that
 // is uploaded afresh with the same content, to the bit.
 #include "render/edited_scene.h"
-#include "scene/scene_editor.h"
+#include "scene/scene_store.h"
 #include "support/nightly.h"
 
 #include <gtest/gtest.h>

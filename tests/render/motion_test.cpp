@@ -5,7 +5,7 @@
 #include "render/harness.h"
 #include "render/moving_scenes.h"
 #include "render/scene_builder.h"
-#include "scene/scene_motion.h"
+#include "scene/scene_store.h"
 #include "support/halved_tree.h"
 
 #include <glint/session/camera.h>
@@ -124,8 +124,12 @@ TEST(Motion, ATopLevelThatIsBuiltAnewIsOrderedAnew) {
     ASSERT_TRUE(moving.ok());
     const auto order = [&] {
         std::vector<std::uint32_t> instances;
-        for (const PartInstance& part : moving.gpuScene->state().motion->partInstances) {
-            instances.push_back(part.instance);
+        const SceneStore& store = *moving.gpuScene->state().store;
+        const RecordStore& placed = store.topLevel.records();
+        for (std::uint32_t i = 0; i < placed.count(); ++i) {
+            const auto instance = placed.read<VkAccelerationStructureInstanceKHR>(i);
+            const std::uint32_t geometry = instance.instanceCustomIndex;
+            instances.push_back(store.geometries.read<gpu::GeometryRecord>(geometry).instanceIndex);
         }
         return instances;
     };
@@ -423,21 +427,21 @@ TEST(Motion, NothingOfItIsThereInScenesThatStay) {
     const Moving still(rigidScene(), false);
     ASSERT_TRUE(still.ok());
     EXPECT_FALSE(hasDeformModule(still.package()));
-    EXPECT_EQ(still.gpuScene->state().motion, nullptr);
-    EXPECT_TRUE(still.gpuScene->state().deformed.buffers.empty());
+    EXPECT_FALSE(still.gpuScene->state().store->deformPass);
+    EXPECT_EQ(still.gpuScene->state().store->placedBuffer.address, 0U);
     // Nodes that move need no deforming pass.
     const Moving rigid(rigidScene());
     ASSERT_TRUE(rigid.ok());
     EXPECT_FALSE(hasDeformModule(rigid.package()));
-    EXPECT_EQ(rigid.gpuScene->state().motion->deformer, nullptr);
-    EXPECT_EQ(rigid.gpuScene->state().motion->blases, nullptr);
+    EXPECT_FALSE(rigid.gpuScene->state().store->deformPass);
+    EXPECT_TRUE(rigid.gpuScene->state().store->shaped.empty());
     EXPECT_EQ(rigid.gpuScene->statistics().blasBytes, still.gpuScene->statistics().blasBytes);
     // A picture of a single pose is deformed once, and built as if it had no other pose.
     const Moving posed(skinnedScene(0.3), false);
     ASSERT_TRUE(posed.ok());
     EXPECT_TRUE(hasDeformModule(posed.package()));
-    EXPECT_EQ(posed.gpuScene->state().motion, nullptr);
-    EXPECT_EQ(posed.gpuScene->state().blases.size(), 2U);
+    EXPECT_EQ(posed.gpuScene->state().store->poseBuffer.address, 0U);
+    EXPECT_EQ(posed.gpuScene->statistics().blasCount, 2U);
 }
 
 std::string errorId(const Status& status) {

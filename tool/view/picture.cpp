@@ -224,9 +224,8 @@ Status Picture::pose(const std::optional<session::Moment>& moment, std::uint64_t
 Status Picture::record(VkCommandBuffer commands, const CameraView& camera, Timing timing,
                        std::uint64_t number) {
     GLINT_TRY([[maybe_unused]] const auto compacted, gpuScene().recordCompaction(commands, number));
-    // The upload has the memory of poses until the device is done with it.
-    if (poseIsNew_ && gpuScene().isUploaded()) {
-        GLINT_TRY_DO(gpuScene().update(commands, data().motion()));
+    if (poseIsNew_) {
+        GLINT_TRY_DO(gpuScene().update(commands, data().motion(), number));
         poseIsNew_ = false;
         restart();
     }

@@ -87,10 +87,11 @@ enum class PixelPath : std::uint8_t {
 
 // The surface that a pixel sees.
 struct SurfacePlace {
-    std::uint32_t instance = 0;  // index into SceneView::instances
-    std::uint32_t mesh = 0;      // the numbers of PrimitiveView
+    std::uint32_t instance = 0;  // index into SceneView::instances, or that of `handle`
+    std::uint32_t mesh = 0;      // the numbers of PrimitiveView; in a scene that is edited, of MeshHandle
     std::uint32_t primitive = 0;
     std::uint32_t shaderId = 0;  // of the case that shades hits on it; their bucket is 1 + shaderId
+    InstanceHandle handle;       // for SceneEditor
 };
 
 // An image of a layer (glint/layers.h). Its usage includes storage, sampled and both kinds of transfer.
@@ -201,8 +202,8 @@ public:
     // by row from the top. Waits for the device.
     Result<std::vector<std::uint8_t>> readSurfaces();
     // Returns the surface that a pixel sees in the last sample, or no value if it sees the sky. (0, 0) is the
-    // pixel at the top left. Waits for the device. Errors: "render-size" for a pixel outside of the picture,
-    // "scene-edited" for scenes with SceneView::editable, whose editor knows their instances.
+    // pixel at the top left. Edits since that sample count. Waits for the device. Error "render-size" for a
+    // pixel outside of the picture.
     Result<std::optional<SurfacePlace>> readPlace(std::uint32_t x, std::uint32_t y);
     // Reads output() back. Waits for the device.
     Result<LinearImage> readOutput();

@@ -17,6 +17,8 @@
 
 namespace glint {
 
+struct SceneStore;
+
 // --- Edits of a scene that is on the device and drawn (docs/live.md, "Editing a scene") ---
 
 // Names something in a scene. A handle stays valid until the thing that it names is removed. Its index may
@@ -115,6 +117,9 @@ struct PlacedMesh {
     // Empty, or one for each primitive of the mesh. A handle that names nothing stands for the mesh's own
     // material.
     std::span<const MaterialHandle> materials{};
+    // As in InstanceView: the pose of a mesh that follows joints or has morph targets.
+    std::span<const std::array<float, 12>> joints{};
+    std::span<const float> morphWeights{};
 };
 
 // Edits the textures, materials, meshes, instances and lights of a GpuScene. The Package must outlive the
@@ -134,7 +139,7 @@ struct PlacedMesh {
 // the features.
 class SceneEditor {
 public:
-    ~SceneEditor();
+    ~SceneEditor() = default;
     SceneEditor(const SceneEditor&) = delete;
     SceneEditor& operator=(const SceneEditor&) = delete;
 
@@ -166,18 +171,24 @@ public:
     Status setMaterialValues(MaterialHandle material, std::span<const std::uint8_t> record);
     Status removeMaterial(MaterialHandle material);
 
-    // Adds a mesh of at least one primitive with a triangle. Skins and morph targets are not supported. Its
-    // BLASes are built by the commands of record() and are not compacted. Errors: "scene-attribute",
-    // "scene-index".
+    // Adds a mesh of at least one primitive with a triangle. Its BLASes are built by the commands of record()
+    // and are not compacted. Errors: "scene-attribute", "scene-index".
     Result<AddedMesh> addMesh(std::span<const EditedPrimitive> primitives);
     // Gives a primitive of the mesh another material. Instances that have none of their own follow.
     Result<EditReport> setMeshMaterial(MeshHandle mesh, std::uint32_t primitive, MaterialHandle material);
     Status removeMesh(MeshHandle mesh);
 
-    // An instance that is not visible, or whose transform is flattened, is neither drawn nor hit. Error
-    // "scene-geometries".
+    // An instance that is not visible, or whose transform is flattened, is neither drawn nor hit. Errors:
+    // "scene-geometries", and those of poseInstance().
     Result<AddedInstance> addInstance(const PlacedMesh& placed);
     Status moveInstance(InstanceHandle instance, const std::array<float, 12>& objectToWorld);
+    // Gives the instance another pose: a transform for each joint of its mesh and a weight for each morph
+    // target, as in InstanceView. An instance with a pose has vertices and BLASes of its own, which record()
+    // computes and refits; without joints and weights it shares those of the mesh. Errors: "scene-index" (the
+    // mesh follows more joints), "scene-motion" (there are more weights than targets, or a number is not
+    // finite), "scene-package" (the package has no pass that moves vertices).
+    Status poseInstance(InstanceHandle instance, std::span<const std::array<float, 12>> joints,
+                        std::span<const float> morphWeights);
     Status showInstance(InstanceHandle instance, bool visible);
     // Gives the instance another mesh and materials, as addInstance() does. Its place stays.
     Result<EditReport> setInstanceMesh(InstanceHandle instance, MeshHandle mesh,
@@ -213,13 +224,10 @@ public:
     // replaced.
     std::uint64_t retiredBytes() const;
 
-    struct State;  // for the runtime's own sources and their tests
-    State& state();
-    static std::unique_ptr<SceneEditor> create(std::unique_ptr<State> state);
+    explicit SceneEditor(SceneStore& store) : store_(&store) {}
 
 private:
-    explicit SceneEditor(std::unique_ptr<State> state);
-    std::unique_ptr<State> state_;
+    SceneStore* store_;
 };
 
 // Textures whose finer levels reach the device while frames are drawn. docs/textures.md, "Streaming".
@@ -303,8 +311,7 @@ public:
     // The spans of `scene` are not kept (but see SceneView::streamsTextures). The call may run on any thread,
     // beside recordings of other scenes. Staging memory takes as many bytes as the scene's vertices and
     // textures, until complete() says that the frame is done. The scene may not be destroyed while the device
-    // executes the commands; it may be if they were never submitted. A scene with SceneView::moves can be
-    // updated when isUploaded() returns true.
+    // executes the commands; it may be if they were never submitted.
     //
     // Errors: "scene-package" (the package has no such scene, or the attributes disagree with it),
     // "position-fetch" and "half-precision" (the device was created without what the package needs),
@@ -385,15 +392,23 @@ public:
     // instance has moved farther than its own box was long. docs/movement.md gives the reasons. A flattened
     // instance is hidden until its transform is invertible again.
     //
-    // The spans are read in this call and not kept. Poses are written to host-visible memory in this call, so
-    // only one update may be in flight at a time. The recorded commands must be submitted before the next
-    // call, which builds upon them. With an error nothing is recorded. Errors: "scene-still" (the scene was
-    // uploaded without `moves`), "scene-upload" (isUploaded() returns false), "scene-motion" (another number
-    // of instances, lights, joints or weights than at upload, another mesh, or a number that is not finite),
-    // "scene-light", "scene-material" (other materials than at upload).
-    Status update(VkCommandBuffer commands, const MotionView& motion);
+    // In a scene that is edited, too, the pose is that of the uploaded instances, lights and materials. It
+    // changes what differs from the pose before, so edits of anything that stays still in it last. Those that
+    // edits have removed are passed over, and an instance with another mesh moves as a whole. The call
+    // records the edits that wait.
+    //
+    // The spans are read in this call and not kept. Several updates may be in flight. `frame` is the caller's
+    // number of the frame that the commands belong to; it may not fall, and complete() frees what only its
+    // frames used. The recorded commands must be submitted before those of the next call, which builds upon
+    // them. With an error nothing is recorded, but parts of the pose may be part of the next recording.
+    // Errors: "scene-still" (the scene was uploaded without `moves`), "scene-edit-frame" (the number has
+    // fallen), "scene-motion" (another number of instances, lights, joints or weights than at upload, another
+    // mesh, or a number that is not finite), "scene-light", "scene-material" (other materials than at
+    // upload).
+    Status update(VkCommandBuffer commands, const MotionView& motion, std::uint64_t frame);
 
-    // Records an update, submits it and waits for the device. This is for tools and tests.
+    // Records an update for the frame of the last recording, submits it, waits for the device and calls
+    // complete(). This is for tools and tests.
     Status updateAndWait(const MotionView& motion);
 
     // Returns the work of the last update. The caller must have waited until the device completed it. Error

@@ -303,7 +303,8 @@ struct SceneView {
     // (docs/alpha.md). Rays test all triangles of scenes that can be edited, because their materials may
     // change at any time.
     OpacityUse opacity = OpacityUse::Proved;
-    // True if GpuScene::editor() will edit the scene, which then can't move. The Package must outlive it.
+    // True if GpuScene::editor() will edit the scene. The Package must outlive it. With `moves` poses and
+    // edits come side by side.
     bool editable = false;
     // The number of textures and samplers that an editable scene may have at a time, those of the upload
     // included. The pipelines of its renderers are made for these numbers, so they can't grow. A texture

@@ -98,9 +98,9 @@ public:
     static Result<std::unique_ptr<EngineScene>> create(Context& context, const Package& package,
                                                        const EngineSceneView& scene);
     // The records of a scene that Glint has uploaded, for a host that brings rays of its own and no scene
-    // yet. The GpuScene must outlive it, and update() is GpuScene's. Rays are relative to its
-    // SceneView::origin. The host binds GpuScene::descriptorSet(). Error "scene-edit-share": the scene can be
-    // edited.
+    // yet. The GpuScene must outlive it. It is updated and edited by its own functions; steps that are
+    // recorded afterwards read it as it is then. Rays are relative to its SceneView::origin. The host binds
+    // GpuScene::descriptorSet().
     static Result<std::unique_ptr<EngineScene>> share(Context& context, GpuScene& scene);
     ~EngineScene();
     EngineScene(const EngineScene&) = delete;

@@ -1,101 +1,78 @@
-// Skins and morphs meshes on the device. Each deformed instance has its vertices in buffers of its own.
+// Skins and morphs meshes on the device. Each instance that changes its shape has vertices of its own.
 #pragma once
 
 #include "context/resources.h"
 #include "context/upload.h"
 #include "data/geometry.h"
+#include "interop/deform.h"
 
 #include <glint/package.h>
 #include <glint/scene_view.h>
 
 #include <cstdint>
-#include <map>
-#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace glint {
 
-// Returns whether joints or weights move the instance's vertices. Its mesh may also have primitives that do
-// not move.
-bool isDeformed(const InstanceView& instance);
-bool hasDeformedInstance(const SceneView& scene);
+// The morph differences and joint influences of a primitive on the device. A primitive that keeps its shape
+// has no buffer.
+struct DeformSource {
+    Buffer buffer;
+    VkDeviceAddress targetPositions = 0;
+    VkDeviceAddress targetNormals = 0;
+    VkDeviceAddress targetTangents = 0;
+    VkDeviceAddress joints = 0;
+    VkDeviceAddress jointWeights = 0;
+    std::uint32_t influences = 0;  // of each vertex
+    std::uint32_t targets = 0;
+    std::uint32_t jointCount = 0;  // one more than the largest joint that a vertex follows
 
-// The buffers that receive the vertices of deformed primitives.
-struct DeformedBuffers {
-    std::vector<Buffer> buffers;
-    DeformedAddresses addresses;
+    // Returns whether a pose with joints, or with weights, moves the primitive's vertices.
+    bool moves(bool hasJoints, bool hasWeights) const {
+        return (hasJoints && influences > 0) || (hasWeights && targets > 0);
+    }
 };
+// Queues the copies in `uploader`.
+Result<DeformSource> uploadDeformSource(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                                        const PrimitiveView& view);
+
+// The vertices of one primitive of one instance. The address of an attribute that it lacks is 0. A primitive
+// that does not move has no buffer.
+struct DeformedVertices {
+    Buffer buffer;
+    VkDeviceAddress positions = 0;
+    VkDeviceAddress normals = 0;
+    VkDeviceAddress tangents = 0;
+};
+Result<DeformedVertices> createDeformedVertices(Context::State& context, MemoryPool& pool,
+                                                const GpuPrimitive& primitive);
+
+// Makes the record of a pass over the vertices. `joints` and `weights` are where the pose is.
+gpu::DeformRecord makeDeformRecord(const GpuPrimitive& primitive, const DeformSource& source,
+                                   const DeformedVertices& vertices, VkDeviceAddress joints,
+                                   VkDeviceAddress weights);
 
 // Makes the layout of the pipeline that deforms. Error "vulkan-call".
 Result<UniquePipelineLayout> createDeformLayout(Context::State& context);
 
-class Deformer {
+class DeformPass {
 public:
-    // Queues copies in `uploader`, which must finish before recordDeform(). Fills `target`. `target`,
-    // `targetPool` and `primitives` must outlive the Deformer. The first pose is that of the scene's
-    // instances. Error "scene-package": the package has no pass that deforms.
-    static Result<std::unique_ptr<Deformer>> create(Context::State& context, const Package& package,
-                                                    const SceneView& scene,
-                                                    std::span<const GpuPrimitive> primitives,
-                                                    Uploader& uploader, MemoryPool& targetPool,
-                                                    DeformedBuffers& target);
+    // Error "scene-package": the package has no pass that deforms.
+    static Result<DeformPass> create(Context::State& context, const Package& package);
 
-    // Writes the instances' pose to memory that the host sees. Nothing of an earlier recordPose() may be in
-    // flight. Returns for each instance of the scene whether its vertices move.
-    std::vector<bool> setPose(std::span<const InstanceView> instances);
-    // Records the copy of the pose to the device.
-    void recordPose(VkCommandBuffer commands) const;
-    // Records the pass for the instances that `moved` marks. The pose must be visible to compute shaders.
-    void recordDeform(VkCommandBuffer commands, const std::vector<bool>& moved) const;
-
-    // Adds the Deformer's own memory, without that of the target.
-    void addMemory(std::vector<MemoryItem>& items) const;
-    VkDeviceSize allocatedBytes() const {
-        return pool_.bytes();
-    }
+    // Records the pass for records, given as their index and their number of vertices. The records, and the
+    // poses, must be visible to compute shaders.
+    void record(VkCommandBuffer commands, VkDeviceAddress records,
+                std::span<const std::pair<std::uint32_t, std::uint32_t>> deformed) const;
 
 private:
-    explicit Deformer(Context::State& context) : context_(&context), pool_(context) {}
-
-    // A primitive's morph differences and joint influences on the device.
-    struct Source {
-        Buffer buffer;
-        VkDeviceAddress targetPositions = 0;
-        VkDeviceAddress targetNormals = 0;
-        VkDeviceAddress targetTangents = 0;
-        VkDeviceAddress joints = 0;
-        VkDeviceAddress jointWeights = 0;
-        std::uint32_t influences = 0;  // influences of each vertex
-    };
-    // The place of an instance's joints and weights in the pose buffer.
-    struct Slot {
-        std::uint32_t instance = 0;
-        VkDeviceSize joints = 0;  // offset in bytes
-        VkDeviceSize weights = 0;
-        std::size_t weightCount = 0;  // the largest number of targets among the mesh's primitives
-    };
-    struct Dispatch {
-        std::uint32_t instance = 0;
-        std::uint32_t vertexCount = 0;
-    };
-
-    Status createPipeline(const Package& package);
-    Status createPoseBuffers(const SceneView& scene);
-    Status createRecords(const SceneView& scene, std::span<const GpuPrimitive> primitives, Uploader& uploader,
-                         MemoryPool& targetPool, DeformedBuffers& target);
-    Result<Source> uploadSource(const PrimitiveView& view, Uploader& uploader);
+    explicit DeformPass(Context::State& context) : context_(&context) {}
 
     Context::State* context_;
-    MemoryPool pool_;
     UniquePipelineLayout layout_;
     UniquePipeline pipeline_;
-    std::map<std::uint32_t, Source> sources_;  // keyed by index into SceneView::primitives
-    std::vector<Slot> slots_;                  // one for each deformed instance
-    Buffer pose_;
-    Buffer staging_;
-    Buffer records_;
-    std::vector<Dispatch> dispatches_;
 };
 
 }  // namespace glint

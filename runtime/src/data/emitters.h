@@ -1,7 +1,6 @@
 // Triangles that emit light, as lights: their records, their bounds and their intensity.
 #pragma once
 
-#include "data/geometry.h"
 #include "data/light_tree.h"
 #include "data/materials.h"
 #include "data/motion_bounds.h"
@@ -152,12 +151,5 @@ private:
     package::EmissionEntry emission_{};
     std::vector<EmitterPart> parts_;  // in the order of `records`
 };
-
-// Returns the emissive triangles of a scene that is not edited, in a package with emissive lights. `ordered`
-// are the indices of uploadPrimitives(), and `materials` the records on the device.
-Emitters emittersOf(const Package& package, const PackageScene& known, const SceneView& scene,
-                    const SceneLayout& layout, const DeformedAddresses& deformed,
-                    std::span<const std::vector<std::uint32_t>> ordered,
-                    std::span<const std::uint8_t> materials);
 
 }  // namespace glint

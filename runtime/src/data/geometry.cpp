@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstring>
 #include <map>
-#include <set>
 
 namespace glint {
 namespace {
@@ -173,13 +172,8 @@ gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, con
 
 namespace {
 
-// The parts of a mesh, as indices into SceneLayout::parts.
-struct PartIndices {
-    std::vector<std::uint32_t> main;
-    std::vector<std::uint32_t> decided;  // of opaque triangles whose primitives have others in `main`
-};
-// The parts of each mesh that has triangles.
-using PartsOfMesh = std::map<std::uint32_t, PartIndices>;
+// Parts by whether they are seen from both sides.
+using PartRanges = std::map<bool, std::vector<std::vector<TriangleRange>>>;
 
 // Appends the triangles of a primitive to `ranges`. It begins a new part when one is full.
 void appendRanges(std::uint32_t primitive, std::uint32_t triangleCount, const BlasCapacity& capacity,
@@ -205,9 +199,6 @@ void appendRanges(std::uint32_t primitive, std::uint32_t triangleCount, const Bl
     }
 }
 
-// Parts by whether they are seen from both sides.
-using PartRanges = std::map<bool, std::vector<std::vector<TriangleRange>>>;
-
 // Appends the range of a primitive, which fits into one part. It begins a new part when one is full.
 void appendRange(const TriangleRange& range, const BlasCapacity& capacity,
                  std::vector<std::vector<TriangleRange>>& ranges) {
@@ -215,125 +206,41 @@ void appendRange(const TriangleRange& range, const BlasCapacity& capacity,
     ranges.back().back() = range;
 }
 
-// The inputs of a scene's partition.
-struct PartitionInput {
-    const PackageScene& known;
-    const SceneView& scene;
-    std::span<const GpuPrimitive> primitives;
-    const BlasCapacity& capacity;
-    const std::map<std::uint32_t, OpacitySplit>& splits;
-};
+}  // namespace
 
-// Appends the parts of a mesh and returns their indices. If `instance` is given, it alone uses these parts.
-PartIndices partition(const PartitionInput& input, std::uint32_t mesh, std::optional<std::uint32_t> instance,
-                      std::vector<MeshPart>& parts) {
+std::vector<MeshPart> partitionMesh(std::span<const PartedPrimitive> primitives,
+                                    const BlasCapacity& capacity) {
     PartRanges members;
     PartRanges decided;
-    const PrimitiveRange own = primitivesOf(input.scene.primitives, mesh);
-    for (std::uint32_t i = own.first; i < own.end; ++i) {
-        const PrimitiveView& view = input.scene.primitives[i];
-        const std::uint32_t count = input.primitives[i].triangleCount;
+    for (std::uint32_t i = 0; i < primitives.size(); ++i) {
+        const auto& [count, doubleSided, split] = primitives[i];
         if (count == 0) {
             continue;
         }
-        const std::uint32_t flags = input.known.findPrimitive(view.mesh, view.primitive)->geometryFlags;
-        const bool doubleSided = (flags & gpu::kGeometryDoubleSided) != 0;
-        const auto split = input.splits.find(i);
-        if (split == input.splits.end()) {
-            appendRanges(i, count, input.capacity, members[doubleSided]);
+        if (!split) {
+            appendRanges(i, count, capacity, members[doubleSided]);
             continue;
         }
-        const auto [tested, opaque] = split->second;
+        const auto [tested, opaque] = *split;
         if (tested == 0) {
-            appendRange({i, 0, opaque, count, true}, input.capacity, members[doubleSided]);
+            appendRange({i, 0, opaque, count, true}, capacity, members[doubleSided]);
             continue;
         }
-        appendRange({i, 0, tested, count, false}, input.capacity, members[doubleSided]);
+        appendRange({i, 0, tested, count, false}, capacity, members[doubleSided]);
         if (opaque > 0) {
-            appendRange({i, tested, opaque, 0, true}, input.capacity, decided[doubleSided]);
+            appendRange({i, tested, opaque, 0, true}, capacity, decided[doubleSided]);
         }
     }
-    PartIndices indices;
-    const auto append = [&](PartRanges& from, std::vector<std::uint32_t>& target) {
-        for (auto& [doubleSided, blases] : from) {
+    std::vector<MeshPart> parts;
+    for (PartRanges* const from : {&members, &decided}) {
+        for (auto& [doubleSided, blases] : *from) {
             for (std::vector<TriangleRange>& ranges : blases) {
-                target.push_back(static_cast<std::uint32_t>(parts.size()));
-                parts.push_back({mesh, doubleSided, std::move(ranges), instance});
+                parts.push_back({doubleSided, std::move(ranges)});
             }
         }
-    };
-    append(members, indices.main);
-    append(decided, indices.decided);
-    return indices;
+    }
+    return parts;
 }
-
-// Makes the parts that instances share. A mesh gets such parts unless all its instances deform it.
-PartsOfMesh sharedParts(const PartitionInput& input, const std::vector<bool>& deforms,
-                        std::vector<MeshPart>& parts) {
-    const SceneView& scene = input.scene;
-    std::set<std::uint32_t> meshes;
-    for (const PrimitiveView& view : scene.primitives) {
-        meshes.insert(view.mesh);
-    }
-    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-        if (deforms[i]) {
-            meshes.erase(scene.instances[i].mesh);
-        }
-    }
-    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-        if (!deforms[i]) {
-            meshes.insert(scene.instances[i].mesh);
-        }
-    }
-    PartsOfMesh partsOfMesh;
-    for (const std::uint32_t mesh : meshes) {
-        PartIndices indices = partition(input, mesh, std::nullopt, parts);
-        if (!indices.main.empty()) {
-            partsOfMesh[mesh] = std::move(indices);
-        }
-    }
-    return partsOfMesh;
-}
-
-void placeDeformed(const DeformedAddresses& deformed, std::uint32_t instance, std::uint32_t primitive,
-                   gpu::GeometryRecord& record) {
-    if (const auto found = deformed.find({instance, primitive}); found != deformed.end()) {
-        record.positions = found->second.positions;
-        record.normals = found->second.normals;
-        record.tangents = found->second.tangents;
-        record.flags &=
-            ~(gpu::kGeometryPackedPositions | gpu::kGeometryPackedNormals | gpu::kGeometryPackedTangents);
-    }
-}
-
-// Appends the records and draws of a part of an instance.
-void placePart(const PartitionInput& input, const DeformedAddresses& deformed, std::uint32_t part,
-               std::uint32_t instance, bool hidden, SceneLayout& layout) {
-    const bool mirrored = (layout.instances[instance].flags & gpu::kInstanceMirrored) != 0;
-    const MeshPart& placed = layout.parts[part];
-    layout.partInstances.push_back({part, instance, static_cast<std::uint32_t>(layout.geometries.size())});
-    for (const TriangleRange& range : placed.ranges) {
-        const PrimitiveView& view = input.scene.primitives[range.primitive];
-        const package::PrimitiveEntry& entry = *input.known.findPrimitive(view.mesh, view.primitive);
-        if (range.drawn > 0) {
-            layout.draws.push_back({static_cast<std::uint32_t>(layout.geometries.size()), 3 * range.drawn,
-                                    placed.doubleSided, mirrored, instance, hidden, range.primitive});
-            layout.triangles += range.drawn;
-        }
-        layout.geometries.push_back(
-            makeGeometryRecord(entry, input.primitives[range.primitive], range.first, instance));
-        layout.primitives.push_back(range.primitive);
-        placeDeformed(deformed, instance, range.primitive, layout.geometries.back());
-    }
-}
-
-Diagnostic tooManyGeometries(std::string where) {
-    return makeError("scene-geometries", std::move(where),
-                     "the scene's instances have more than 2^24 - 2 primitives altogether",
-                     "join primitives of a material, or use fewer instances");
-}
-
-}  // namespace
 
 std::vector<float> joinAttributes(const Package& package, const package::PrimitiveEntry& entry,
                                   const PrimitiveView& view) {
@@ -368,83 +275,11 @@ std::vector<float> joinAllAttributes(const Package& package, const PrimitiveView
     return joined;
 }
 
-Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, MemoryPool& pool,
-                                                   Uploader& uploader, const Package& package,
-                                                   const PackageScene& known,
-                                                   std::span<const PrimitiveView> primitives,
-                                                   std::span<const GridPositions> positions,
-                                                   const PrimitiveUpload& how,
-                                                   std::span<const std::vector<std::uint32_t>> ordered) {
-    std::vector<GpuPrimitive> uploaded;
-    uploaded.reserve(primitives.size());
-    for (std::size_t i = 0; i < primitives.size(); ++i) {
-        const PrimitiveView& view = primitives[i];
-        const std::span<const std::uint32_t> indices =
-            ordered.empty() || ordered[i].empty() ? view.indices : std::span(ordered[i]);
-        const std::vector<float> attributes =
-            joinAttributes(package, *known.findPrimitive(view.mesh, view.primitive), view);
-        GLINT_TRY(auto primitive, uploadPrimitive(context, pool, uploader, view,
-                                                  {indices, attributes, positions[i].words}, how));
-        uploaded.push_back(std::move(primitive));
-    }
-    return uploaded;
-}
-
 PrimitiveRange primitivesOf(std::span<const PrimitiveView> primitives, std::uint32_t mesh) {
     const auto first = std::ranges::lower_bound(primitives, mesh, {}, &PrimitiveView::mesh);
     const auto end = std::ranges::upper_bound(primitives, mesh, {}, &PrimitiveView::mesh);
     return {static_cast<std::uint32_t>(first - primitives.begin()),
             static_cast<std::uint32_t>(end - primitives.begin())};
-}
-
-Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scene,
-                                std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
-                                const DeformedAddresses& deformed,
-                                const std::map<std::uint32_t, OpacitySplit>& splits) {
-    SceneLayout layout;
-    const PartitionInput input{known, scene, primitives, capacity, splits};
-    std::vector<bool> deforms(scene.instances.size());
-    for (const auto& [place, vertices] : deformed) {
-        deforms[place.first] = true;
-    }
-    const PartsOfMesh partsOfMesh = sharedParts(input, deforms, layout.parts);
-    // The parts of decided triangles, each with its instance. They are placed after all others.
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> decided;
-    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-        const InstanceView& instance = scene.instances[i];
-        const gpu::InstanceRecord record = makeInstanceRecord(instance.objectToWorld);
-        layout.instances.push_back(record);
-        PartIndices parts;
-        if (deforms[i]) {
-            parts = partition(input, instance.mesh, i, layout.parts);
-        } else if (const auto shared = partsOfMesh.find(instance.mesh); shared != partsOfMesh.end()) {
-            parts = shared->second;
-        }
-        // An instance that is not visible is left out. A flattened one can't be in a TLAS, whose transforms
-        // must be invertible. It is not drawn either: a surface that the camera sees and reflections don't
-        // would be worse than none. In a scene that moves, such an instance keeps its place but is hidden,
-        // because it may be whole again in the next frame.
-        const bool hidden = !instance.visible || !isInvertible(instance.objectToWorld);
-        if (hidden && !scene.moves) {
-            continue;
-        }
-        for (const std::uint32_t part : parts.main) {
-            placePart(input, deformed, part, i, hidden, layout);
-        }
-        for (const std::uint32_t part : parts.decided) {
-            decided.emplace_back(part, i);
-        }
-        if (layout.geometries.size() > kMostGeometries) {
-            return tooManyGeometries("instance " + std::to_string(i));
-        }
-    }
-    for (const auto& [part, instance] : decided) {
-        placePart(input, deformed, part, instance, false, layout);
-    }
-    if (layout.geometries.size() > kMostGeometries) {
-        return tooManyGeometries("");
-    }
-    return layout;
 }
 
 namespace {
@@ -468,20 +303,32 @@ bool isAlike(const Draw& a, const Draw& b) {
 std::vector<DrawBatch> batchDraws(std::span<const Draw> draws) {
     std::vector<DrawBatch> batches;
     for (std::size_t first = 0; first < draws.size();) {
-        const std::size_t stride = endOfInstance(draws, first) - first;
-        const std::span<const Draw> own = draws.subspan(first, stride);
-        std::size_t end = first + stride;
-        while (
-            end < draws.size() && endOfInstance(draws, end) - end == stride &&
-            draws[end].geometry == draws[end - stride].geometry + stride &&
-            std::equal(own.begin(), own.end(), draws.begin() + static_cast<std::ptrdiff_t>(end), isAlike)) {
-            end += stride;
+        const std::size_t count = endOfInstance(draws, first) - first;
+        const std::span<const Draw> own = draws.subspan(first, count);
+        std::size_t end = first + count;
+        // Records without a draw may lie between those of two instances.
+        const std::uint32_t stride =
+            end < draws.size() ? draws[end].geometry - own[0].geometry : static_cast<std::uint32_t>(count);
+        const auto continues = [&](std::size_t next) {
+            if (next >= draws.size() || stride < count || endOfInstance(draws, next) - next != count) {
+                return false;
+            }
+            for (std::size_t i = 0; i < count; ++i) {
+                if (draws[next + i].geometry != draws[next + i - count].geometry + stride ||
+                    !isAlike(own[i], draws[next + i])) {
+                    return false;
+                }
+            }
+            return true;
+        };
+        while (continues(end)) {
+            end += count;
         }
+        const auto instances = static_cast<std::uint32_t>((end - first) / count);
         for (const Draw& draw : own) {
             if (!draw.hidden) {
-                batches.push_back({draw.geometry, static_cast<std::uint32_t>(stride),
-                                   static_cast<std::uint32_t>((end - first) / stride), draw.vertexCount,
-                                   draw.doubleSided, draw.mirrored});
+                batches.push_back({draw.geometry, instances > 1 ? stride : static_cast<std::uint32_t>(count),
+                                   instances, draw.vertexCount, draw.doubleSided, draw.mirrored});
             }
         }
         first = end;
@@ -489,16 +336,16 @@ std::vector<DrawBatch> batchDraws(std::span<const Draw> draws) {
     return batches;
 }
 
-VkAccelerationStructureInstanceKHR makePlaced(bool doubleSided, const PartInstance& placed,
+VkAccelerationStructureInstanceKHR makePlaced(bool doubleSided, std::uint32_t customIndex,
                                               const std::array<float, 12>& objectToWorld,
                                               VkDeviceAddress blas) {
     VkAccelerationStructureInstanceKHR instance{};
     static_assert(sizeof(instance.transform) == sizeof(objectToWorld));
     std::memcpy(&instance.transform, objectToWorld.data(), sizeof(objectToWorld));
-    // A custom index has 24 bits and the mask 8. layOutScene() has checked that the index fits.
-    instance.instanceCustomIndex = placed.customIndex & 0xFFFFFFU;
+    // A custom index has 24 bits and the mask 8. The number of records is below kMostGeometries.
+    instance.instanceCustomIndex = customIndex & 0xFFFFFFU;
     // A shader binding table that has hit records has one for each geometry record.
-    instance.instanceShaderBindingTableRecordOffset = placed.customIndex & 0xFFFFFFU;
+    instance.instanceShaderBindingTableRecordOffset = customIndex & 0xFFFFFFU;
     instance.mask = 0xFF;
     // Facing is determined in object space, so that a mirroring transform changes nothing. The default agrees
     // with glTF: a front is clockwise to a left-handed eye, which is counter-clockwise to a right-handed one.

@@ -11,10 +11,8 @@
 #include <glint/scene_view.h>
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace glint {
@@ -79,17 +77,6 @@ Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, 
                                      const PrimitiveView& view, const PrimitiveContent& content,
                                      const PrimitiveUpload& how);
 
-// Queues the copies in `uploader`. Primitives without triangles get no buffer. `positions` are those of
-// packPositions(), whose values the primitives have. `ordered` holds the indices of each primitive in another
-// order of its triangles; if it is empty, the primitives' own indices are used.
-Result<std::vector<GpuPrimitive>> uploadPrimitives(Context::State& context, MemoryPool& pool,
-                                                   Uploader& uploader, const Package& package,
-                                                   const PackageScene& known,
-                                                   std::span<const PrimitiveView> primitives,
-                                                   std::span<const GridPositions> positions,
-                                                   const PrimitiveUpload& how,
-                                                   std::span<const std::vector<std::uint32_t>> ordered = {});
-
 // Makes the record of a geometry whose addresses `source` has: a primitive, or the view of a host's geometry.
 template <typename Source>
 gpu::GeometryRecord recordOf(const package::PrimitiveEntry& entry, const Source& source,
@@ -116,19 +103,9 @@ gpu::GeometryRecord recordOf(const package::PrimitiveEntry& entry, const Source&
 gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, const GpuPrimitive& primitive,
                                        std::uint32_t firstTriangle, std::uint32_t instance);
 
-// The deformed vertices of one primitive of one instance. The address of an attribute that it lacks is 0.
-struct DeformedVertices {
-    VkDeviceAddress positions = 0;
-    VkDeviceAddress normals = 0;
-    VkDeviceAddress tangents = 0;
-};
-// Keyed by indices into SceneView::instances and SceneView::primitives. An instance that is in the map has
-// its own parts.
-using DeformedAddresses = std::map<std::pair<std::uint32_t, std::uint32_t>, DeformedVertices>;
-
 // Consecutive triangles of a primitive, which form a geometry of a BLAS.
 struct TriangleRange {
-    std::uint32_t primitive = 0;  // index into SceneView::primitives
+    std::uint32_t primitive = 0;  // of the mesh
     std::uint32_t first = 0;
     std::uint32_t count = 0;  // in the BLAS
     std::uint32_t drawn = 0;  // triangles of the raster pass, from `first` on; 0: another geometry draws them
@@ -139,10 +116,8 @@ struct TriangleRange {
 // because culling is a property of the BLAS's instances. A mesh above the capacity of a BLAS has several
 // parts of a kind. Primitives without triangles are in no part.
 struct MeshPart {
-    std::uint32_t mesh = 0;
     bool doubleSided = false;
     std::vector<TriangleRange> ranges;
-    std::optional<std::uint32_t> instance{};  // the only instance that uses the part, as it deforms the mesh
 };
 
 // The triangles of a primitive whose alpha test was decided. They come in this order; those through which
@@ -152,12 +127,17 @@ struct OpacitySplit {
     std::uint32_t opaque = 0;
 };
 
-// A part placed in the world, which is an instance of the TLAS.
-struct PartInstance {
-    std::uint32_t part = 0;
-    std::uint32_t instance = 0;     // index into SceneView::instances
-    std::uint32_t customIndex = 0;  // index of its first geometry record
+// The properties of a primitive that decide in which parts its triangles are.
+struct PartedPrimitive {
+    std::uint32_t triangleCount = 0;
+    bool doubleSided = false;
+    std::optional<OpacitySplit> split{};
 };
+
+// Returns the parts of a mesh: single-sided ones first, and those of decided triangles, whose primitives have
+// others in other parts, after all others. Pure. The capacity must be at least one triangle and one geometry.
+std::vector<MeshPart> partitionMesh(std::span<const PartedPrimitive> primitives,
+                                    const BlasCapacity& capacity);
 
 // A draw of the raster pass. It shows one geometry record.
 struct Draw {
@@ -165,9 +145,9 @@ struct Draw {
     std::uint32_t vertexCount = 0;
     bool doubleSided = false;
     bool mirrored = false;
-    std::uint32_t instance = 0;   // index into SceneView::instances
+    std::uint32_t instance = 0;   // of the scene
     bool hidden = false;          // the instance is flattened or not visible at present
-    std::uint32_t primitive = 0;  // index into SceneView::primitives
+    std::uint32_t primitive = 0;  // of the mesh
 };
 
 // The primitives of a mesh, as indices [first, end). The primitives are sorted as SceneView::primitives are.
@@ -176,32 +156,6 @@ struct PrimitiveRange {
     std::uint32_t end = 0;
 };
 PrimitiveRange primitivesOf(std::span<const PrimitiveView> primitives, std::uint32_t mesh);
-
-// The instance and the primitive of a geometry record.
-struct GeometryPlace {
-    std::uint32_t instance = 0;  // index into SceneView::instances
-    std::uint32_t mesh = 0;
-    std::uint32_t primitive = 0;  // of the mesh
-};
-
-struct SceneLayout {
-    std::vector<MeshPart> parts;  // in the order of meshes; single-sided parts first
-    std::vector<PartInstance> partInstances;
-    std::vector<Draw> draws;  // at most one for each geometry record, in their order
-    std::vector<gpu::GeometryRecord> geometries;
-    std::vector<std::uint32_t> primitives;       // of each geometry record: index into SceneView::primitives
-    std::vector<gpu::InstanceRecord> instances;  // one for each instance of the scene
-    std::uint64_t triangles = 0;                 // of all instances
-};
-
-// Pure. `primitives` are those of uploadPrimitives(). The capacity must be at least one triangle. `splits`
-// has one for each primitive whose alpha test was decided, by index; the records of its opaque triangles
-// follow those of all others, so that a split changes the number of no other record. Error
-// "scene-geometries": there are more records than the 24 bits of a custom index can number.
-Result<SceneLayout> layOutScene(const PackageScene& known, const SceneView& scene,
-                                std::span<const GpuPrimitive> primitives, const BlasCapacity& capacity,
-                                const DeformedAddresses& deformed = {},
-                                const std::map<std::uint32_t, OpacitySplit>& splits = {});
 
 // Instance i of the batch shows the GeometryRecord geometry + i * stride.
 struct DrawBatch {
@@ -214,12 +168,12 @@ struct DrawBatch {
 };
 
 // Joins draws into batches whose instances and geometry records follow each other and have the same
-// primitives. Batches are in the order of their first draws. Hidden draws are left out. `draws` are those of
-// SceneLayout, instance by instance. Pure; O(draws).
+// primitives. Batches are in the order of their first draws. Hidden draws are left out. `draws` come instance
+// by instance, at most one for each geometry record. Pure; O(draws).
 std::vector<DrawBatch> batchDraws(std::span<const Draw> draws);
 
-// Makes an instance of the TLAS.
-VkAccelerationStructureInstanceKHR makePlaced(bool doubleSided, const PartInstance& placed,
+// Makes an instance of the TLAS. `customIndex` is the index of its first geometry record.
+VkAccelerationStructureInstanceKHR makePlaced(bool doubleSided, std::uint32_t customIndex,
                                               const std::array<float, 12>& objectToWorld,
                                               VkDeviceAddress blas);
 

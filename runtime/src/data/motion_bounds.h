@@ -76,16 +76,8 @@ struct BlasHistory {
     void apply(BuildAction action, double surfaceNow);
 };
 
-// The changes of the TLAS since its last build.
-struct TlasHistory {
-    std::uint32_t updates = 0;
-    std::vector<Box> boxes;  // boxes of the instances at the build
-
-    // The TLAS is built anew if an instance has moved farther than its box was long. Until then no node above
-    // the instance has grown by more than the instance's own size. `moved` says whether an instance or a BLAS
-    // has changed.
-    BuildAction next(bool moved, std::span<const Box> now) const;
-    void apply(BuildAction action, std::span<const Box> now);
-};
+// Returns whether a box has moved, since a build of the TLAS, by more than its length at that time. Until
+// then no node above the instance has grown by more than the instance's own size.
+bool hasLeft(const Box& built, const Box& now);
 
 }  // namespace glint

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <utility>
 #include <vector>
 
 namespace glint {
@@ -15,38 +16,59 @@ void discard(MemoryPool& pool, Buffer&& buffer);
 void discard(MemoryPool& pool, DeviceImage&& image);
 void discard(MemoryPool& pool, AccelerationStructure&& structure);
 
-// A retired resource waits for the next recording, whose commands may still use it, and then for its frame.
-class Retired {
+// Resources that are freed together, with the object. Their pool must outlive it.
+class RetiredLot {
 public:
-    explicit Retired(MemoryPool& pool) : pool_(pool) {}
+    RetiredLot() = default;
+    explicit RetiredLot(MemoryPool& pool) : pool_(&pool) {}
+    RetiredLot(RetiredLot&& other) noexcept = default;
+    RetiredLot& operator=(RetiredLot&& other) noexcept;
+    RetiredLot(const RetiredLot&) = delete;
+    RetiredLot& operator=(const RetiredLot&) = delete;
+    ~RetiredLot();
 
     void add(Buffer&& buffer);
     void add(DeviceImage&& image);
     void add(AccelerationStructure&& structure);
     void add(UniqueDescriptorPool&& descriptors);
     void add(UniqueImageView&& view);
-    // Assigns the resources that were added since the last call to this frame.
-    void close(std::uint64_t frame);
-    // Frees the resources of frames up to `frame`.
-    void complete(std::uint64_t frame);
+    bool isEmpty() const;
     std::uint64_t bytes() const;
     std::uint32_t count() const;  // of buffers and images
 
 private:
-    struct Lot {
-        std::uint64_t frame = 0;
-        std::vector<AccelerationStructure> structures;
-        std::vector<Buffer> buffers;
-        std::vector<DeviceImage> images;
-        std::vector<UniqueDescriptorPool> descriptors;
-        std::vector<UniqueImageView> views;
+    void free();
 
-        bool isEmpty() const;
-        std::uint64_t bytes() const;
-    };
+    MemoryPool* pool_ = nullptr;
+    std::vector<AccelerationStructure> structures_;
+    std::vector<Buffer> buffers_;
+    std::vector<DeviceImage> images_;
+    std::vector<UniqueDescriptorPool> descriptors_;
+    std::vector<UniqueImageView> views_;
+};
+
+// A retired resource waits for the next recording, whose commands may still use it, and then for its frame.
+class Retired {
+public:
+    explicit Retired(MemoryPool& pool) : pool_(pool), open_(pool) {}
+
+    template <typename Resource>
+    void add(Resource&& resource) {
+        open_.add(std::forward<Resource>(resource));
+    }
+    // Assigns the resources that were added since the last call to this frame.
+    void close(std::uint64_t frame);
+    // Returns them instead, to whom knows when the recording is complete.
+    RetiredLot take();
+    // Frees the resources of frames up to `frame`.
+    void complete(std::uint64_t frame);
+    std::uint64_t bytes() const;
+    std::uint32_t count() const;
+
+private:
     MemoryPool& pool_;
-    Lot open_;
-    std::deque<Lot> closed_;  // by ascending frame
+    RetiredLot open_;
+    std::deque<std::pair<std::uint64_t, RetiredLot>> closed_;  // by ascending frame
 };
 
 }  // namespace glint

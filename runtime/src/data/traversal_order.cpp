@@ -332,19 +332,6 @@ std::vector<std::uint32_t> orderSplit(const PrimitiveView& view, std::span<const
     return indicesOf(triangles);
 }
 
-// Returns the box around the vertices that the triangles use, because primitives may share an array and use
-// different parts of it.
-Box boxOf(const PrimitiveView& view) {
-    LeafBox box;
-    for (const std::uint32_t corner : view.indices) {
-        box.extend(view.positions[corner]);
-    }
-    if (box.isVoid()) {
-        return Box::nothing();
-    }
-    return {{box.sides[0], box.sides[1], box.sides[2]}, {-box.sides[3], -box.sides[4], -box.sides[5]}};
-}
-
 }  // namespace
 
 LeafOrder leafOrderFor(const Context::State& context, TraversalOrder wanted) {
@@ -376,35 +363,15 @@ std::vector<std::vector<std::uint32_t>> orderedTriangles(
     return ordered;
 }
 
-InstanceOrder::InstanceOrder(std::span<const PrimitiveView> primitives, std::span<const MeshPart> parts,
-                             LeafOrder order)
-    : order_(order), deformed_(parts.size()) {
-    std::vector<Box> boxes(primitives.size());
-    forEach(primitives.size(), [&](std::size_t i) { boxes[i] = boxOf(primitives[i]); });
-    for (std::size_t part = 0; part < parts.size(); ++part) {
-        Box box = Box::nothing();
-        for (const TriangleRange& range : parts[part].ranges) {
-            box.extend(boxes[range.primitive]);
-        }
-        boxes_.push_back(box);
-        if (parts[part].instance) {
-            const std::uint32_t first = parts[part].ranges.front().primitive;
-            const std::uint32_t last = parts[part].ranges.back().primitive;
-            deformed_[part] = std::make_unique<MotionBounds>(primitives.subspan(first, last - first + 1));
-        }
+Box boxOf(const PrimitiveView& view, std::span<const std::uint32_t> indices) {
+    LeafBox box;
+    for (const std::uint32_t corner : indices) {
+        box.extend(view.positions[corner]);
     }
-}
-
-std::vector<std::uint32_t> InstanceOrder::at(std::span<const InstanceView> instances,
-                                             std::span<const PartInstance> placed) const {
-    std::vector<LeafBox> boxes;
-    boxes.reserve(placed.size());
-    for (const PartInstance& place : placed) {
-        const InstanceView& instance = instances[place.instance];
-        boxes.emplace_back(deformed_[place.part] ? deformed_[place.part]->at(instance)
-                                                 : transformed(boxes_[place.part], instance.objectToWorld));
+    if (box.isVoid()) {
+        return Box::nothing();
     }
-    return order_(boxes, threadsOfMachine());
+    return {{box.sides[0], box.sides[1], box.sides[2]}, {-box.sides[3], -box.sides[4], -box.sides[5]}};
 }
 
 }  // namespace glint

@@ -14,7 +14,6 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -60,22 +59,9 @@ std::vector<std::vector<std::uint32_t>> orderedTriangles(
     std::span<const std::vector<std::uint32_t>> sorted = {},
     const std::map<std::uint32_t, OpacitySplit>& splits = {});
 
-// Knows the boxes of a TLAS's instances in any pose of the scene.
-class InstanceOrder {
-public:
-    // Keeps no reference to its arguments. `primitives` are those of the scene.
-    InstanceOrder(std::span<const PrimitiveView> primitives, std::span<const MeshPart> parts,
-                  LeafOrder order);
-
-    // Returns the order of `placed` at a pose: placed[result[i]] goes to place i.
-    std::vector<std::uint32_t> at(std::span<const InstanceView> instances,
-                                  std::span<const PartInstance> placed) const;
-
-private:
-    LeafOrder order_;
-    std::vector<Box> boxes_;                               // by part: the undeformed box in the mesh's space
-    std::vector<std::unique_ptr<MotionBounds>> deformed_;  // by part; null unless an instance deforms it
-};
+// Returns the box around the vertices that the triangles use, because primitives may share an array and use
+// different parts of it. It is empty if a coordinate is not finite.
+Box boxOf(const PrimitiveView& view, std::span<const std::uint32_t> indices);
 
 // Returns values[order[0]], values[order[1]] and so on.
 template <typename T>

@@ -17,14 +17,6 @@ constexpr MemoryDependency kFrameToCopy{
     VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT,
     VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT | VK_ACCESS_2_TRANSFER_WRITE_BIT};
 
-// Returns where in a buffer of the list an address is; null if in none.
-const Buffer* bufferAt(const std::vector<Buffer>& buffers, VkDeviceAddress address) {
-    const auto found = std::ranges::find_if(buffers, [&](const Buffer& buffer) {
-        return address >= buffer.address && address < buffer.address + buffer.bytes;
-    });
-    return found == buffers.end() ? nullptr : &*found;
-}
-
 // The rows of FrameConstants::previousView for the camera of the constants.
 void fillView(const gpu::FrameConstants& constants, gpu::vec4 (&rows)[4]) {
     const auto unjittered = [&](const gpu::vec4& row, float jitter, std::uint32_t pixels) {
@@ -45,12 +37,9 @@ void fillView(const gpu::FrameConstants& constants, gpu::vec4 (&rows)[4]) {
 
 Result<std::unique_ptr<MotionHistory>> MotionHistory::create(const GpuScene::State& scene) {
     std::unique_ptr<MotionHistory> history(new MotionHistory(scene));
-    const bool moves = scene.motion != nullptr || scene.editor != nullptr;
-    if (moves) {
+    if (isChanging(scene)) {
         GLINT_TRY_DO(history->makeRoom());
-    }
-    if (scene.motion != nullptr && !scene.deformed.addresses.empty()) {
-        GLINT_TRY_DO(history->createVertices());
+        GLINT_TRY_DO(history->makeVertices());
     }
     return history;
 }
@@ -66,41 +55,51 @@ Status MotionHistory::makeRoom() {
 }
 
 // Geometries that do not deform keep their positions, in whatever form they are.
-Status MotionHistory::createVertices() {
-    std::vector<gpu::PreviousVertices>& table = newTable_;
-    table.reserve(scene_->geometryPositions.size());
+Status MotionHistory::makeVertices() {
+    std::vector<gpu::PreviousVertices> table;
+    std::vector<Copy> copies;
     VkDeviceSize bytes = 0;
-    std::vector<std::size_t> deformed;  // places in `table` of `copies_`, one for each geometry that deforms
+    std::vector<std::size_t> deformed;  // places in `table` of `copies`, one for each geometry that deforms
     std::vector<std::size_t> copyOf;
-    for (const GeometryPositions& own : scene_->geometryPositions) {
-        const Buffer* const source =
-            own.vertexCount > 0 ? bufferAt(scene_->deformed.buffers, own.positions) : nullptr;
+    for (const GeometryPositions& own : geometryPositions(*scene_)) {
         table.push_back({own.positions});
-        if (source == nullptr) {
+        if (own.buffer == VK_NULL_HANDLE) {
             continue;
         }
-        const VkDeviceSize offset = own.positions - source->address;
-        const auto known = std::ranges::find_if(copies_, [&](const Copy& copy) {
-            return copy.source == source->handle.get() && copy.region.srcOffset == offset;
+        const auto known = std::ranges::find_if(copies, [&](const Copy& copy) {
+            return copy.source == own.buffer && copy.region.srcOffset == own.offset;
         });
         deformed.push_back(table.size() - 1);
-        copyOf.push_back(static_cast<std::size_t>(known - copies_.begin()));
-        if (known == copies_.end()) {
+        copyOf.push_back(static_cast<std::size_t>(known - copies.begin()));
+        if (known == copies.end()) {
             const VkDeviceSize size = VkDeviceSize{3 * sizeof(float)} * own.vertexCount;
-            copies_.push_back({source->handle.get(), {offset, bytes, size}});
+            copies.push_back({own.buffer, {own.offset, bytes, size}});
             bytes += (size + kVertexAlignment - 1) / kVertexAlignment * kVertexAlignment;
         }
     }
-    if (copies_.empty()) {
+    Buffer vertices;
+    Buffer places;
+    if (!copies.empty()) {
+        GLINT_TRY(vertices, createBuffer(scene_->context, pool_, bytes, kHistoryUsage));
+        for (std::size_t i = 0; i < deformed.size(); ++i) {
+            table[deformed[i]].positions = vertices.address + copies[copyOf[i]].region.dstOffset;
+        }
+        GLINT_TRY(places, createBuffer(scene_->context, pool_, table.size() * sizeof(gpu::PreviousVertices),
+                                       kHistoryUsage));
+    } else {
         table.clear();
-        return okStatus();
     }
-    GLINT_TRY(vertices_, createBuffer(scene_->context, pool_, bytes, kHistoryUsage));
-    for (std::size_t i = 0; i < deformed.size(); ++i) {
-        table[deformed[i]].positions = vertices_.address + copies_[copyOf[i]].region.dstOffset;
+    for (Buffer* const buffer : {&vertices_, &table_}) {
+        if (buffer->handle.get() != VK_NULL_HANDLE) {
+            outgrown_.push_back(std::move(*buffer));
+        }
     }
-    GLINT_TRY(table_, createBuffer(scene_->context, pool_, table.size() * sizeof(gpu::PreviousVertices),
-                                   kHistoryUsage));
+    vertices_ = std::move(vertices);
+    table_ = std::move(places);
+    newTable_ = std::move(table);
+    copies_ = std::move(copies);
+    hasVertices_ = false;
+    shapes_ = shapeVersion(*scene_);
     return okStatus();
 }
 
@@ -124,9 +123,12 @@ Status MotionHistory::fill(gpu::FrameConstants& constants) {
     if (instances_.handle.get() != VK_NULL_HANDLE && instances_.bytes < scene_->instances.bytes) {
         GLINT_TRY_DO(makeRoom());
     }
+    if (instances_.handle.get() != VK_NULL_HANDLE && shapes_ != shapeVersion(*scene_)) {
+        GLINT_TRY_DO(makeVertices());
+    }
     std::ranges::copy(view_ ? view_->rows : next_.rows, constants.previousView);
     constants.previousInstances = hasInstances_ ? instances_.address : scene_->instances.address;
-    const bool hasVertices = hasInstances_ && table_.handle.get() != VK_NULL_HANDLE;
+    const bool hasVertices = hasInstances_ && hasVertices_;
     constants.previousVertices = hasVertices ? table_.address : 0;
     constants.hasPreviousVertices = hasVertices ? 1 : 0;
     return okStatus();
@@ -146,6 +148,7 @@ void MotionHistory::record(VkCommandBuffer commands) {
         vk.CmdCopyBuffer(commands, copy.source, vertices_.handle.get(), 1, &copy.region);
     }
     hasInstances_ = true;
+    hasVertices_ = table_.handle.get() != VK_NULL_HANDLE;
 }
 
 void MotionHistory::addMemory(std::vector<MemoryItem>& items) const {

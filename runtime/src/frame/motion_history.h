@@ -35,7 +35,7 @@ public:
 private:
     explicit MotionHistory(const GpuScene::State& scene) : scene_(&scene), pool_(scene.context) {}
 
-    Status createVertices();
+    Status makeVertices();
     Status makeRoom();
     void recordTable(VkCommandBuffer commands);
 
@@ -58,7 +58,9 @@ private:
     std::vector<Copy> copies_;
     std::optional<View> view_;   // of the last frame
     View next_{};                // of the frame that is recorded
-    bool hasInstances_ = false;  // instances_ and vertices_ hold those of the last frame
+    std::uint64_t shapes_ = 0;   // shapeVersion() of vertices_ and table_
+    bool hasInstances_ = false;  // instances_ holds those of the last frame
+    bool hasVertices_ = false;   // the same of vertices_
 };
 
 }  // namespace glint

@@ -197,18 +197,17 @@ Result<std::optional<SurfacePlace>> Renderer::readPlace(std::uint32_t x, std::ui
         return makeError("render-size", "", "the picture has no such pixel",
                          "name one within its width and height");
     }
-    if (state_->scene.places.empty()) {
-        return makeError("scene-edited", "", "the scene is edited, so the numbers of its upload may be stale",
-                         "ask its SceneEditor, or upload the scene without SceneView::editable");
-    }
     GLINT_TRY(const auto identities, readIdentities(*state_));
     const std::uint32_t geometry = identities[std::size_t{y} * state_->size.width + x][0];
     if (geometry == gpu::kNoSurface) {
         return std::optional<SurfacePlace>();
     }
-    const GeometryPlace& place = state_->scene.places[geometry];
+    const std::optional<GeometryPlace> place = placeOf(state_->scene, geometry);
+    if (!place) {
+        return std::optional<SurfacePlace>();  // an edit has removed it since the frame
+    }
     return std::optional(
-        SurfacePlace{place.instance, place.mesh, place.primitive, state_->scene.shaderIds[geometry]});
+        SurfacePlace{place->instance.index, place->mesh, place->primitive, place->shaderId, place->instance});
 }
 
 Result<LinearImage> Renderer::readOutput() {

@@ -58,7 +58,7 @@ struct NextPackage {
 struct Leftovers {
     std::uint64_t recording = 0;
     EarlierBuffers buffers;
-    SceneLeftovers scene;
+    RetiredLot scene;
     std::optional<Timer> timer;
     std::unique_ptr<NextPackage> next;  // one that was given up
     std::unique_ptr<Pipelines> pipelines;

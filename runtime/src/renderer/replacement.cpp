@@ -260,7 +260,7 @@ void switchPackage(Renderer::State& state, VkCommandBuffer commands) {
         refuse(state, status.error());
         return;
     }
-    Result<SceneLeftovers> scene = recordReplacement(state.scene, *next.package, next.scene, commands);
+    Result<RetiredLot> scene = recordReplacement(state.scene, *next.package, next.scene, commands);
     if (!scene) {
         refuse(state, scene.error());
         return;

@@ -104,12 +104,4 @@ Result<DescriptorSet> makeSceneSet(const GpuScene::State& state, VkAccelerationS
     return set;
 }
 
-Status createSceneSet(GpuScene::State& state) {
-    GLINT_TRY_DO(createSetLayout(state));
-    GLINT_TRY(auto set, makeSceneSet(state, state.tlas.handle.get(), VK_NULL_HANDLE));
-    state.descriptorPool = std::move(set.pool);
-    state.set = set.set;
-    return okStatus();
-}
-
 }  // namespace glint

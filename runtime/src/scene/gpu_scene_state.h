@@ -8,7 +8,6 @@
 #include "data/geometry.h"
 #include "data/light_tree.h"
 #include "data/materials.h"
-#include "data/traversal_order.h"
 #include "scene/scene_upload.h"
 
 #include <glint/package.h>
@@ -24,12 +23,23 @@
 
 namespace glint {
 
-struct SceneMotion;
+struct SceneStore;
 
-// The place of a geometry record's positions.
+// The place of a geometry record's positions. Those that follow joints or morph weights are in a buffer of
+// their instance, at an offset.
 struct GeometryPositions {
     VkDeviceAddress positions = 0;
-    std::uint32_t vertexCount = 0;  // of those that follow joints or morph weights; 0 for others
+    std::uint32_t vertexCount = 0;  // of a geometry with vertices of its own; 0 for others
+    VkBuffer buffer = VK_NULL_HANDLE;
+    VkDeviceSize offset = 0;
+};
+
+// The instance and the primitive of a geometry record.
+struct GeometryPlace {
+    InstanceHandle instance;      // its index is that of SceneView::instances, unless edits have changed it
+    std::uint32_t mesh = 0;       // of SceneView::primitives, or the index of a mesh that an edit has added
+    std::uint32_t primitive = 0;  // of the mesh
+    std::uint32_t shaderId = 0;
 };
 
 // The data that the upload took from the package. Another package may replace it if it agrees with the data
@@ -62,13 +72,10 @@ struct ScenePackage {
     std::uint64_t number = 0;  // of replacements so far
     std::string scene;         // name in the package
     std::vector<package::PrimitiveEntry> entries;
-    std::vector<std::uint32_t> entryOf;          // by geometry record: index into `entries`
-    std::vector<std::uint32_t> entryOfUploaded;  // by SceneView::primitives
     std::vector<package::TextureEntry> textures;
     std::vector<std::array<float, 2>> texels;  // sizes of the textures
     std::vector<package::SamplerEntry> samplers;
     std::vector<Attribute> attributes;
-    std::vector<ChangingMaterial> hostMaterials;  // of scenes that do not move: those of SceneView::materials
     bool positionFetch = false;
     bool lightTree = false;
     std::optional<package::EmissionEntry> emission{};
@@ -87,24 +94,15 @@ struct GpuScene::State {
 
     Context::State& context;
     MemoryPool pool;
-    std::unique_ptr<Compaction> compaction;  // null if there is nothing more to compact
-    std::unique_ptr<SceneUpload> upload;     // null when the device has completed it
-    ScenePackage package;                    // the package that draws the scene
-    std::array<double, 3> origin{};          // SceneView::origin, or that of the last MotionView
-    std::vector<GpuPrimitive> primitives;
-    DeformedBuffers deformed;
+    std::unique_ptr<Compaction> compaction;             // null if there is nothing more to compact
+    std::unique_ptr<SceneUpload> upload;                // null when the device has completed it
+    ScenePackage package;                               // the package that draws the scene
+    std::array<double, 3> origin{};                     // SceneView::origin, or that of the last MotionView
     std::map<std::uint32_t, DeviceMicromap> micromaps;  // by index into SceneView::primitives
-    std::vector<AccelerationStructure> blases;          // the BLASes that are built once
-    std::vector<VkDeviceAddress> partBlases;            // indexed as SceneLayout::parts
-    // Null if the TLAS has its instances in the scene's own order.
-    std::unique_ptr<InstanceOrder> instanceOrder;
     AccelerationStructure tlas;
     Buffer geometries;
-    std::vector<std::uint32_t> shaderIds;  // one for each geometry record
-    // One for each geometry record, for Renderer::readPlace(); empty in scenes that are edited.
-    std::vector<GeometryPlace> places;
-    std::vector<GeometryPositions>
-        geometryPositions;  // by record, if some vertices follow joints or morph weights
+    // The shader IDs of the shader binding table: one for each geometry record of a sealed scene.
+    std::vector<std::uint32_t> shaderIds;
     Buffer instances;
     Buffer materials;
     Buffer lights;
@@ -126,28 +124,29 @@ struct GpuScene::State {
     UniqueSetLayout setLayout;
     UniqueDescriptorPool descriptorPool;
     VkDescriptorSet set = VK_NULL_HANDLE;
-    std::vector<Draw> draws;  // empty if the scene does not move: its batches are enough
     std::vector<DrawBatch> batches;
-    // The materials that an update may change, with their values on the device. Empty if the scene does not
-    // move.
+    // The materials to which the host has given values, with these values. A pose may change them.
     std::vector<ChangingMaterial> changing;
     MaterialTable materialLayout;  // without records
     Statistics statistics;
-    std::unique_ptr<SceneMotion> motion;  // null if the scene does not move
-    // Null if the scene can't be edited. The editor of an editable scene holds its primitives, BLASes and
-    // draws, and this state holds the data that the renderer reads.
-    std::unique_ptr<SceneEditor> editor;
+    std::unique_ptr<SceneStore> store;      // the content; null only while it is made
+    std::unique_ptr<SceneEditor> editor;    // null if the scene can't be edited
     std::unique_ptr<TextureStream> stream;  // null unless SceneView::streamsTextures
 };
+
+// Returns whether instances may move, come or go after the upload.
+bool isChanging(const GpuScene::State& state);
+// Returns the number of the present arrangement of geometry records, and where the positions of each are; the
+// list is empty if no instance has vertices of its own.
+std::uint64_t shapeVersion(const GpuScene::State& state);
+std::vector<GeometryPositions> geometryPositions(const GpuScene::State& state);
+// Returns nothing if no instance has the record.
+std::optional<GeometryPlace> placeOf(const GpuScene::State& state, std::uint32_t geometry);
 
 // Returns how many textures the array of set 0 has.
 inline std::uint32_t textureCapacity(const GpuScene::State& state) {
     return state.textureRoom > 0 ? state.textureRoom : static_cast<std::uint32_t>(state.textures.size());
 }
-
-// Creates the layout, the pool and set 0. The set is filled from the state's structures, textures and
-// samplers.
-Status createSceneSet(GpuScene::State& state);
 
 Status createSetLayout(GpuScene::State& state);
 

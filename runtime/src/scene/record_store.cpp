@@ -1,21 +1,31 @@
 #include "scene/record_store.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace glint {
 
+void RunAllocator::insert(std::uint32_t first, std::uint32_t count) {
+    free_.emplace(first, count);
+    bySize_.emplace(count, first);
+}
+
+void RunAllocator::erase(Place place) {
+    bySize_.erase({place->second, place->first});
+    free_.erase(place);
+}
+
 std::uint32_t RunAllocator::allocate(std::uint32_t count) {
-    const auto room = std::ranges::find_if(
-        free_, [&](const IndexRange& range) { return range.end - range.first >= count; });
-    if (room == free_.end()) {
-        const std::uint32_t first = end_;
+    const auto room = bySize_.lower_bound({count, 0});
+    if (count == 0 || room == bySize_.end()) {
+        const std::uint32_t first = count == 0 ? 0 : end_;
         end_ += count;
         return first;
     }
-    const std::uint32_t first = room->first;
-    room->first += count;
-    if (room->first == room->end) {
-        free_.erase(room);
+    const auto [size, first] = *room;
+    erase(free_.find(first));
+    if (size > count) {
+        insert(first + count, size - count);
     }
     return first;
 }
@@ -24,19 +34,23 @@ void RunAllocator::release(std::uint32_t first, std::uint32_t count) {
     if (count == 0) {
         return;
     }
-    auto place = std::ranges::lower_bound(free_, first, {}, &IndexRange::first);
-    place = free_.insert(place, {first, first + count});
-    if (const auto next = place + 1; next != free_.end() && next->first == place->end) {
-        place->end = next->end;
-        free_.erase(next);
+    const auto next = free_.lower_bound(first);
+    const bool touchesNext = next != free_.end() && next->first == first + count;
+    const auto before = next == free_.begin() ? free_.end() : std::prev(next);
+    const bool touchesBefore = before != free_.end() && before->first + before->second == first;
+    if (touchesNext) {
+        count += next->second;
+        erase(next);
     }
-    if (place != free_.begin() && (place - 1)->end == place->first) {
-        (place - 1)->end = place->end;
-        free_.erase(place);
+    if (touchesBefore) {
+        first = before->first;
+        count += before->second;
+        erase(before);
     }
-    if (free_.back().end == end_) {
-        end_ = free_.back().first;
-        free_.pop_back();
+    if (first + count == end_) {
+        end_ = first;
+    } else {
+        insert(first, count);
     }
 }
 
@@ -55,22 +69,12 @@ void RecordStore::writeBytes(std::uint32_t index, std::span<const std::uint8_t> 
 
 void RecordStore::replaceBytes(std::span<const std::uint8_t> records) {
     const auto wanted = static_cast<std::uint32_t>(records.size() / stride_);
-    const std::uint32_t both = std::min(wanted, count());
-    const auto isSame = [&](std::uint32_t index) {
-        return std::ranges::equal(records.subspan(index * stride_, stride_), at(index));
-    };
-    std::uint32_t first = 0;
-    while (first < both && isSame(first)) {
-        ++first;
-    }
-    std::uint32_t end = wanted;
-    while (wanted == both && end > first && isSame(end - 1)) {
-        --end;
-    }
     shrink(wanted);
-    bytes_.assign(records.begin(), records.end());
-    if (end > first) {
-        dirty_.push_back({first, end});
+    for (std::uint32_t index = 0; index < wanted; ++index) {
+        const std::span<const std::uint8_t> record = records.subspan(index * stride_, stride_);
+        if (index >= count() || !std::ranges::equal(record, at(index))) {
+            writeBytes(index, record);
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -41,6 +42,19 @@ public:
     }
     const Entry* find(Handle handle) const {
         return const_cast<Slots*>(this)->find(handle);
+    }
+    bool has(std::uint32_t index) const {
+        return index < slots_.size() && slots_[index].entry.has_value();
+    }
+    // Requires an index with an entry.
+    Entry& at(std::uint32_t index) {
+        return *slots_[index].entry;
+    }
+    const Entry& at(std::uint32_t index) const {
+        return *slots_[index].entry;
+    }
+    Handle handleAt(std::uint32_t index) const {
+        return {index, slots_[index].generation};
     }
     // Requires a handle that names an entry.
     Entry take(Handle handle) {
@@ -96,7 +110,8 @@ struct IndexRange {
     std::uint32_t end = 0;
 };
 
-// Finds room for runs of consecutive records. A run gets the lowest place that has room.
+// Finds room for runs of consecutive records. A run gets the smallest place that has room, and the lowest of
+// these. Takes O(log n) time for n places.
 class RunAllocator {
 public:
     std::uint32_t allocate(std::uint32_t count);
@@ -107,7 +122,12 @@ public:
     }
 
 private:
-    std::vector<IndexRange> free_;  // below end_, by ascending index; no two of them touch
+    using Place = std::map<std::uint32_t, std::uint32_t>::iterator;
+    void insert(std::uint32_t first, std::uint32_t count);
+    void erase(Place place);
+
+    std::map<std::uint32_t, std::uint32_t> free_;  // first and count, below end_; no two of them touch
+    std::set<std::pair<std::uint32_t, std::uint32_t>> bySize_;  // count and first of the same
     std::uint32_t end_ = 0;
 };
 
@@ -123,7 +143,7 @@ public:
         static_assert(std::is_trivially_copyable_v<T>);
         writeBytes(index, std::span(reinterpret_cast<const std::uint8_t*>(&record), sizeof record));
     }
-    // Replaces the records by these, and writes the range from the first to the last that differs.
+    // Replaces the records by these, and writes those that differ.
     template <typename T>
     void replace(std::span<const T> records) {
         static_assert(std::is_trivially_copyable_v<T>);
@@ -132,9 +152,17 @@ public:
     void replaceBytes(std::span<const std::uint8_t> records);
     // Forgets the records from `count` on.
     void shrink(std::uint32_t count);
+    // Forgets everything, also of the device, for records of another size.
+    void reset(std::size_t stride) {
+        *this = RecordStore(stride);
+    }
 
     std::span<const std::uint8_t> at(std::uint32_t index) const {
         return std::span(bytes_).subspan(index * stride_, stride_);
+    }
+    // The records of a range, which all must be there.
+    std::span<const std::uint8_t> at(IndexRange range) const {
+        return std::span(bytes_).subspan(range.first * stride_, (range.end - range.first) * stride_);
     }
     template <typename T>
     T read(std::uint32_t index) const {
@@ -155,6 +183,10 @@ public:
     std::vector<IndexRange> dirty() const;
     void clearDirty() {
         dirty_.clear();
+    }
+    // Lets the next copy take all records.
+    void touchAll() {
+        dirty_ = {{0, count()}};
     }
 
     // The size of the array on the device, in records.

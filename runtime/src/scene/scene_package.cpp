@@ -1,12 +1,10 @@
 #include "scene/scene_package.h"
 
-#include "context/commands.h"
-#include "context/upload.h"
 #include "data/materials.h"
 #include "data/opacity_split.h"
 #include "data/scene_checks.h"
 #include "package/package.h"
-#include "scene/gpu_scene_state.h"
+#include "scene/scene_store.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -24,7 +22,7 @@ Diagnostic otherScene(std::string where, std::string what) {
         "same attributes and textures");
 }
 
-std::string placeOf(const package::PrimitiveEntry& entry) {
+std::string placeOfEntry(const package::PrimitiveEntry& entry) {
     return "mesh " + std::to_string(entry.mesh) + ", primitive " + std::to_string(entry.primitive);
 }
 
@@ -63,6 +61,31 @@ std::vector<ScenePackage::Emission> emissionsOf(const Package& package, const Ma
     return emissions;
 }
 
+// Checks that the attributes that the package's key reads were uploaded.
+Status checkAttributes(const GpuPrimitive& uploaded, const Package& package,
+                       const package::PrimitiveEntry& entry) {
+    const std::uint64_t key = std::uint64_t{entry.featureInputs} << 32U | entry.featureLobes;
+    const bool readsDeclared = std::ranges::any_of(
+        package.attributes(), [&](const auto& attribute) { return (attribute.feature & key) != 0; });
+    const struct {
+        const char* name;
+        bool needed;
+        VkDeviceAddress address;
+    } attributes[] = {{"normals", (entry.featureInputs & kInputNormals) != 0, uploaded.normals},
+                      {"tangents", (entry.featureInputs & kInputTangents) != 0, uploaded.tangents},
+                      {"texCoords0", (entry.featureInputs & kInputTexCoord0) != 0, uploaded.texCoords0},
+                      {"texCoords1", (entry.featureInputs & kInputTexCoord1) != 0, uploaded.texCoords1},
+                      {"colors", (entry.featureInputs & kInputVertexColor) != 0, uploaded.colors},
+                      {"attributes of packs", readsDeclared, uploaded.attributes}};
+    for (const auto& [name, needed, address] : attributes) {
+        if (needed && address == 0 && uploaded.triangleCount > 0) {
+            return otherScene(placeOfEntry(entry),
+                              std::string("the package's key reads ") + name + ", which were not uploaded");
+        }
+    }
+    return okStatus();
+}
+
 // Compares the inputs from which the importer's vertices, the textures and the acceleration structures were
 // made.
 Status checkPrimitives(const GpuScene::State& scene, const Package& package, const PackageScene& known) {
@@ -76,42 +99,27 @@ Status checkPrimitives(const GpuScene::State& scene, const Package& package, con
         const package::PrimitiveEntry& before = now.entries[i];
         const package::PrimitiveEntry& after = known.primitives[i];
         if (std::tie(before.mesh, before.primitive) != std::tie(after.mesh, after.primitive)) {
-            return otherScene(placeOf(before), "the package does not know this primitive");
+            return otherScene(placeOfEntry(before), "the package does not know this primitive");
         }
         if (before.geometryFlags != after.geometryFlags) {
-            return otherScene(placeOf(before),
+            return otherScene(placeOfEntry(before),
                               "the primitive's material is now tested for alpha, double-sided, a light or "
                               "passed by light where it was not, or the other way round");
         }
         if (now.emission && before.materialIndex != after.materialIndex) {
-            return otherScene(placeOf(before),
+            return otherScene(placeOfEntry(before),
                               "the primitive has another material, and triangles are lights");
         }
     }
-    for (std::size_t i = 0; i < scene.primitives.size(); ++i) {
-        const GpuPrimitive& uploaded = scene.primitives[i];
-        const package::PrimitiveEntry& entry = known.primitives[now.entryOfUploaded[i]];
-        const std::uint64_t key = std::uint64_t{entry.featureInputs} << 32U | entry.featureLobes;
-        const bool readsDeclared = std::ranges::any_of(
-            package.attributes(), [&](const auto& attribute) { return (attribute.feature & key) != 0; });
-        const struct {
-            const char* name;
-            bool needed;
-            VkDeviceAddress address;
-        } attributes[] = {{"normals", (entry.featureInputs & kInputNormals) != 0, uploaded.normals},
-                          {"tangents", (entry.featureInputs & kInputTangents) != 0, uploaded.tangents},
-                          {"texCoords0", (entry.featureInputs & kInputTexCoord0) != 0, uploaded.texCoords0},
-                          {"texCoords1", (entry.featureInputs & kInputTexCoord1) != 0, uploaded.texCoords1},
-                          {"colors", (entry.featureInputs & kInputVertexColor) != 0, uploaded.colors},
-                          {"attributes of packs", readsDeclared, uploaded.attributes}};
-        for (const auto& [name, needed, address] : attributes) {
-            if (needed && address == 0 && uploaded.triangleCount > 0) {
-                return otherScene(placeOf(entry), std::string("the package's key reads ") + name +
-                                                      ", which were not uploaded");
+    Status status = okStatus();
+    scene.store->meshes.forEach([&](MeshHandle /*handle*/, const StoredMesh& mesh) {
+        for (const StoredPrimitive& primitive : mesh.primitives) {
+            if (status) {
+                status = checkAttributes(primitive.device, package, known.primitives[primitive.entryIndex]);
             }
         }
-    }
-    return okStatus();
+    });
+    return status;
 }
 
 // Returns whether both find the emission at the same places of records. The features that follow are for
@@ -135,42 +143,27 @@ Status checkEmission(const ScenePackage& now, const Package& package, const Pack
     return okStatus();
 }
 
-// The bytes that change in the scene's records, before they are copied.
-struct Changes {
-    std::vector<std::uint8_t> materials;
-    std::vector<ChangingMaterial> hostMaterials;
-    std::vector<VkBufferCopy> geometries;  // from the end of the materials on
-    std::vector<std::uint8_t> keys;
-};
-
-// The first members of a GeometryRecord, which are those that a package decides.
-constexpr std::size_t kKeyBytes = offsetof(gpu::GeometryRecord, instanceIndex);
-static_assert(offsetof(gpu::GeometryRecord, shaderId) == 0 && kKeyBytes == 4 * sizeof(std::uint32_t));
-
-std::array<std::uint32_t, 4> keyOf(const package::PrimitiveEntry& entry) {
-    return {entry.shaderId, entry.materialIndex, entry.featureLobes, entry.featureInputs};
-}
-
-std::span<const ChangingMaterial> hostMaterialsOf(const GpuScene::State& scene) {
-    return scene.motion != nullptr ? scene.changing : scene.package.hostMaterials;
+// The host's values of materials, as views.
+std::vector<MaterialView> hostMaterialsOf(const GpuScene::State& scene) {
+    std::vector<MaterialView> views;
+    for (const ChangingMaterial& material : scene.changing) {
+        views.push_back({material.material, material.record});
+    }
+    return views;
 }
 
 // Triangles that no ray tests stay so, whichever package draws the scene.
 Status checkDecided(const GpuScene::State& scene, const Package& package, const PackageScene& known) {
     const ScenePackage& now = scene.package;
     std::vector<std::uint8_t> records(known.materials.bytes.begin(), known.materials.bytes.end());
-    std::vector<MaterialView> views;
-    for (const ChangingMaterial& material : hostMaterialsOf(scene)) {
-        views.push_back({material.material, material.record});
-    }
-    if (now.decided.empty() || !replaceMaterials(views, known.materials, records)) {
+    if (now.decided.empty() || !replaceMaterials(hostMaterialsOf(scene), known.materials, records)) {
         return okStatus();  // other checks report such materials
     }
     for (const ScenePackage::Decided& decided : now.decided) {
         const package::PrimitiveEntry& entry = known.primitives[decided.entry];
         if (package.opacity() == nullptr ||
             alphaInputs(*package.opacity(), tableWith(known.materials, records), entry) != decided.inputs) {
-            return otherScene(placeOf(entry),
+            return otherScene(placeOfEntry(entry),
                               "the alpha of the primitive's material is another, and the upload has proved "
                               "which of its triangles need no test");
         }
@@ -178,46 +171,41 @@ Status checkDecided(const GpuScene::State& scene, const Package& package, const 
     return okStatus();
 }
 
-Result<Changes> changesOf(const GpuScene::State& scene, const PackageScene& known) {
-    const ScenePackage& now = scene.package;
-    Changes changes;
-    changes.materials = materialsWithSizes(scene.context, known, now.texels);
-    std::vector<MaterialView> views;
-    for (const ChangingMaterial& material : hostMaterialsOf(scene)) {
-        views.push_back({material.material, material.record});
-    }
-    GLINT_TRY(changes.hostMaterials, replaceMaterials(views, known.materials, changes.materials));
-    for (std::size_t i = 0; i < now.entryOf.size(); ++i) {
-        const auto key = keyOf(known.primitives[now.entryOf[i]]);
-        if (key == keyOf(now.entries[now.entryOf[i]])) {
-            continue;
+// Writes the fields of geometry records that a package decides.
+void writeEntries(SceneStore& store, const PackageScene& known) {
+    store.meshes.forEach([&](MeshHandle /*handle*/, StoredMesh& mesh) {
+        for (StoredPrimitive& primitive : mesh.primitives) {
+            primitive.entry = known.primitives[primitive.entryIndex];
         }
-        changes.geometries.push_back({changes.keys.size(), i * sizeof(gpu::GeometryRecord), kKeyBytes});
-        const auto* const bytes = reinterpret_cast<const std::uint8_t*>(key.data());
-        changes.keys.insert(changes.keys.end(), bytes, bytes + kKeyBytes);
-    }
-    // Offsets of copies to storage need no alignment beyond four bytes, which records have.
-    for (VkBufferCopy& copy : changes.geometries) {
-        copy.srcOffset += changes.materials.size();
-    }
-    return changes;
+        for (const std::uint32_t instance : mesh.instances) {
+            forEachGeometry(
+                mesh, store.instanceSlots.at(instance),
+                [&](const TriangleRange&, const StoredPrimitive& primitive, std::uint32_t geometry) {
+                    const package::PrimitiveEntry& entry = primitive.entry;
+                    auto record = store.geometries.read<gpu::GeometryRecord>(geometry);
+                    const auto keyOf = [](const auto& from) {
+                        return std::tie(from.shaderId, from.materialIndex, from.featureLobes,
+                                        from.featureInputs);
+                    };
+                    if (keyOf(record) != keyOf(entry)) {
+                        record.shaderId = entry.shaderId;
+                        record.materialIndex = entry.materialIndex;
+                        record.featureLobes = entry.featureLobes;
+                        record.featureInputs = entry.featureInputs;
+                        store.geometries.write(geometry, record);
+                    }
+                });
+        }
+    });
 }
 
 }  // namespace
 
-ScenePackage describePackage(const Package& package, const SceneView& scene, const SceneLayout& layout,
-                             std::span<const ChangingMaterial> hostMaterials) {
+ScenePackage describePackage(const Package& package, const SceneView& scene) {
     const PackageScene known = package.scene(scene.packageScene);
     ScenePackage described;
     described.scene = known.name;
     described.entries.assign(known.primitives.begin(), known.primitives.end());
-    for (const PrimitiveView& view : scene.primitives) {
-        const package::PrimitiveEntry* const entry = known.findPrimitive(view.mesh, view.primitive);
-        described.entryOfUploaded.push_back(static_cast<std::uint32_t>(entry - known.primitives.data()));
-    }
-    for (const std::uint32_t primitive : layout.primitives) {
-        described.entryOf.push_back(described.entryOfUploaded[primitive]);
-    }
     described.textures.assign(known.textures.begin(), known.textures.end());
     for (const package::TextureEntry& texture : known.textures) {
         const ImageView& image = scene.images[texture.image];
@@ -225,7 +213,6 @@ ScenePackage describePackage(const Package& package, const SceneView& scene, con
     }
     described.samplers.assign(known.samplers.begin(), known.samplers.end());
     described.attributes = attributesOf(package);
-    described.hostMaterials.assign(hostMaterials.begin(), hostMaterials.end());
     described.positionFetch = package.positionFetch();
     described.lightTree = package.lightSamples() > 0;
     if (package.emission() != nullptr) {
@@ -270,7 +257,7 @@ Result<std::uint32_t> findScene(const GpuScene::State& scene, const Package& pac
     GLINT_TRY_DO(checkPrimitives(scene, package, known));
     GLINT_TRY_DO(checkEmission(now, package, known));
     GLINT_TRY_DO(checkDecided(scene, package, known));
-    for (const ChangingMaterial& material : hostMaterialsOf(scene)) {
+    for (const ChangingMaterial& material : scene.changing) {
         if (material.material >= known.materials.size() ||
             material.record.size() != known.materials.recordBytes) {
             return otherScene("material " + std::to_string(material.material),
@@ -281,52 +268,48 @@ Result<std::uint32_t> findScene(const GpuScene::State& scene, const Package& pac
 }
 
 std::vector<std::uint32_t> shaderIdsIn(const GpuScene::State& scene, const PackageScene& known) {
-    std::vector<std::uint32_t> ids;
-    for (const std::uint32_t entry : scene.package.entryOf) {
-        ids.push_back(known.primitives[entry].shaderId);
-    }
+    const SceneStore& store = *scene.store;
+    std::vector<std::uint32_t> ids(store.geometries.count());
+    store.meshes.forEach([&](MeshHandle /*handle*/, const StoredMesh& mesh) {
+        for (const std::uint32_t instance : mesh.instances) {
+            forEachGeometry(
+                mesh, store.instanceSlots.at(instance),
+                [&](const TriangleRange&, const StoredPrimitive& primitive, std::uint32_t geometry) {
+                    ids[geometry] = known.primitives[primitive.entryIndex].shaderId;
+                });
+        }
+    });
     return ids;
 }
 
-Result<SceneLeftovers> recordReplacement(GpuScene::State& scene, const Package& package, std::uint32_t index,
-                                         VkCommandBuffer commands) {
+Result<RetiredLot> recordReplacement(GpuScene::State& scene, const Package& package, std::uint32_t index,
+                                     VkCommandBuffer commands) {
     const PackageScene known = package.scene(index);
-    GLINT_TRY(auto changes, changesOf(scene, known));
-    SceneLeftovers leftovers;
-    const auto staged = std::make_shared<MemoryPool>(scene.context);
-    leftovers.pools.push_back(staged);
-    const VkDeviceSize materialBytes = changes.materials.size();
-    GLINT_TRY(auto staging, createBuffer(scene.context, *staged, materialBytes + changes.keys.size(),
-                                         VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload));
-    std::memcpy(staging.mapped, changes.materials.data(), materialBytes);
-    std::memcpy(staging.mapped + materialBytes, changes.keys.data(), changes.keys.size());
-    if (scene.materials.bytes != std::max<VkDeviceSize>(materialBytes, 1)) {
-        auto pool = std::make_shared<MemoryPool>(scene.context);
-        GLINT_TRY(auto materials,
-                  createBuffer(scene.context, *pool, materialBytes,
-                               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT));
-        leftovers.buffers.push_back(std::exchange(scene.materials, std::move(materials)));
-        leftovers.pools.push_back(std::exchange(scene.package.pool, std::move(pool)));
+    const ScenePackage& now = scene.package;
+    SceneStore& store = *scene.store;
+    std::vector<std::uint8_t> materials = materialsWithSizes(scene.context, known, now.texels);
+    GLINT_TRY(auto changing, replaceMaterials(hostMaterialsOf(scene), known.materials, materials));
+    const RecordStore materialsBefore = store.materials;
+    const RecordStore geometriesBefore = store.geometries;
+    if (known.materials.recordBytes != store.materials.stride()) {
+        store.materials.reset(known.materials.recordBytes);
     }
-    const DeviceTable& vk = scene.context.vk;
-    recordDependency(scene.context, commands, kAllToAll);
-    if (materialBytes > 0) {
-        const VkBufferCopy whole{0, 0, materialBytes};
-        vk.CmdCopyBuffer(commands, staging.handle.get(), scene.materials.handle.get(), 1, &whole);
+    store.materials.replaceBytes(materials);
+    writeEntries(store, known);
+    RetiredLot leftovers;
+    if (Status status = recordChanges(store, commands, store.lastFrame, {}, &leftovers); !status) {
+        store.materials = materialsBefore;
+        store.geometries = geometriesBefore;
+        PackageScene before = known;
+        before.primitives = now.entries;
+        writeEntries(store, before);
+        return status.error();
     }
-    if (!changes.geometries.empty()) {
-        vk.CmdCopyBuffer(commands, staging.handle.get(), scene.geometries.handle.get(),
-                         static_cast<std::uint32_t>(changes.geometries.size()), changes.geometries.data());
-    }
-    recordDependency(scene.context, commands, kAllToAll);
-    leftovers.buffers.push_back(std::move(staging));
-
     scene.shaderIds = shaderIdsIn(scene, known);
     scene.package.entries.assign(known.primitives.begin(), known.primitives.end());
     ++scene.package.number;
     scene.materialLayout = known.materials.part(0, 0);
-    (scene.motion != nullptr ? scene.changing : scene.package.hostMaterials) =
-        std::move(changes.hostMaterials);
+    scene.changing = std::move(changing);
     return leftovers;
 }
 

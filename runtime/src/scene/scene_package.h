@@ -3,7 +3,7 @@
 
 #include "context/resources.h"
 #include "data/geometry.h"
-#include "data/materials.h"
+#include "data/retired.h"
 #include "scene/gpu_scene_state.h"
 
 #include <glint/package.h>
@@ -16,9 +16,8 @@
 
 namespace glint {
 
-// Returns the data that an upload has taken. `layout` is that of the scene.
-ScenePackage describePackage(const Package& package, const SceneView& scene, const SceneLayout& layout,
-                             std::span<const ChangingMaterial> hostMaterials);
+// Returns the data that an upload has taken.
+ScenePackage describePackage(const Package& package, const SceneView& scene);
 
 // Returns the index of the scene in `package`. Errors: "scene-package" (it has no such scene, or differs in
 // data that only an upload can change), "position-fetch", "half-precision".
@@ -27,18 +26,12 @@ Result<std::uint32_t> findScene(const GpuScene::State& scene, const Package& pac
 // Returns the shader ID of each geometry record in `package`. Requires findScene().
 std::vector<std::uint32_t> shaderIdsIn(const GpuScene::State& scene, const PackageScene& known);
 
-// Resources that a replacement leaves behind. Commands that were recorded until then may use them, and those
-// of the replacement use them too. Members are destroyed in reverse order.
-struct SceneLeftovers {
-    std::vector<std::shared_ptr<MemoryPool>> pools;
-    std::vector<Buffer> buffers;
-};
-
 // Records the copies that bring the scene's records of geometries and materials to `package`, which must run
 // before all commands that read them, and makes `scene` one of that package. Values of materials that the
-// host has given stay. Requires findScene(), which gave `index`. With an error nothing changes. Errors: those
+// host has given stay. Returns the resources that commands use which were recorded until then, or that these
+// commands use. Requires findScene(), which gave `index`. With an error nothing changes. Errors: those
 // of buffers.
-Result<SceneLeftovers> recordReplacement(GpuScene::State& scene, const Package& package, std::uint32_t index,
-                                         VkCommandBuffer commands);
+Result<RetiredLot> recordReplacement(GpuScene::State& scene, const Package& package, std::uint32_t index,
+                                     VkCommandBuffer commands);
 
 }  // namespace glint

@@ -1,4 +1,4 @@
-// The builds of an upload: BLASes, opacity micromaps, the TLAS.
+// The parts of an upload that scenes do not have later: sizes for compaction, and opacity micromaps.
 #include "scene/scene_upload.h"
 
 #include "context/commands.h"
@@ -17,82 +17,39 @@ constexpr MemoryDependency kBuildToQuery{VK_PIPELINE_STAGE_2_ACCELERATION_STRUCT
                                          VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
                                          VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR};
 
-// All data that the recorded builds refer to, besides memory.
-struct Builds {
-    std::vector<BlasBuild> all;
-    std::vector<VkAccelerationStructureKHR> handles;
-    ScratchRange scratch;
-    VkQueryPool sizes = VK_NULL_HANDLE;
+}  // namespace
 
-    std::vector<BlasWork> works() const {
-        std::vector<BlasWork> works;
-        for (const BlasBuild& build : all) {
-            works.push_back({&build});
-        }
-        return works;
+Compaction& compactionOf(SceneUpload& upload) {
+    if (upload.compaction == nullptr) {
+        upload.compaction = std::make_unique<Compaction>(upload.context);
     }
-};
+    return *upload.compaction;
+}
 
-Result<UniqueQueryPool> createSizes(Context::State& context, std::uint32_t count) {
+Status prepareCompaction(SceneUpload& upload) {
+    if (upload.compaction == nullptr) {
+        return okStatus();
+    }
     VkQueryPoolCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
     info.queryType = VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR;
-    info.queryCount = count;
-    GLINT_TRY(auto queries,
-              createHandle<UniqueQueryPool>(context, context.vk.CreateQueryPool, "vkCreateQueryPool", info));
-    context.vk.ResetQueryPool(context.handles.device, queries.get(), 0, count);
-    return queries;
-}
-
-void record(const Context::State& context, const Builds& builds, VkCommandBuffer commands) {
-    recordBuilds(context, commands, builds.works(), builds.scratch);
-    recordDependency(context, commands, kBuildToQuery);
-    context.vk.CmdWriteAccelerationStructuresPropertiesKHR(
-        commands, static_cast<std::uint32_t>(builds.handles.size()), builds.handles.data(),
-        VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR, builds.sizes, 0);
-}
-
-}  // namespace
-
-Result<std::vector<AccelerationStructure>> addBlases(SceneUpload& upload, std::span<const BlasInput> inputs,
-                                                     BlasStatistics& statistics) {
+    info.queryCount = static_cast<std::uint32_t>(upload.compaction->parts.size());
     Context::State& context = upload.context;
-    std::vector<AccelerationStructure> structures;
-    structures.reserve(inputs.size());
-    if (inputs.empty()) {
-        return structures;
+    GLINT_TRY(upload.compaction->sizes,
+              createHandle<UniqueQueryPool>(context, context.vk.CreateQueryPool, "vkCreateQueryPool", info));
+    context.vk.ResetQueryPool(context.handles.device, upload.compaction->sizes.get(), 0, info.queryCount);
+    return okStatus();
+}
+
+void recordCompactedSizes(const SceneUpload& upload, VkCommandBuffer commands,
+                          std::span<const VkAccelerationStructureKHR> structures) {
+    if (structures.empty()) {
+        return;
     }
-    upload.compaction = std::make_unique<Compaction>(context);
-    auto builds = std::make_shared<Builds>();
-    builds->all.reserve(inputs.size());
-    for (const BlasInput& input : inputs) {
-        BlasBuild build = describeBuild(context, input);
-        GLINT_TRY(auto structure, createStructure(context, upload.compaction->pool, build.structureBytes,
-                                                  VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR));
-        statistics.bytes += build.structureBytes;
-        build.info.dstAccelerationStructure = structure.handle.get();
-        builds->handles.push_back(structure.handle.get());
-        builds->all.push_back(std::move(build));
-        structures.push_back(std::move(structure));
-    }
-    builds->scratch.bytes = scratchBytesOf(context, builds->works());
-    GLINT_TRY(auto scratch, createScratch(context, upload.pool, builds->scratch.bytes));
-    builds->scratch.address = scratch.address;
-    upload.keep(std::move(scratch.buffer));
-    upload.compaction->count = static_cast<std::uint32_t>(inputs.size());
-    GLINT_TRY(auto sizes, createSizes(context, upload.compaction->count));
-    builds->sizes = sizes.get();
-    upload.compaction->sizes = std::move(sizes);
-    GLINT_TRY(upload.timer, Timer::create(context, 2));
-    upload.stretches = 1;
-    upload.uploader->add([&context, &upload, builds](VkCommandBuffer commands) {
-        upload.timer->recordReset(commands);
-        recordDependency(context, commands, kAllToAll);
-        upload.timer->recordBegin(commands, SceneUpload::kBlasStretch);
-        record(context, *builds, commands);
-        upload.timer->recordEnd(commands, SceneUpload::kBlasStretch);
-    });
-    return structures;
+    recordDependency(upload.context, commands, kBuildToQuery);
+    upload.context.vk.CmdWriteAccelerationStructuresPropertiesKHR(
+        commands, static_cast<std::uint32_t>(structures.size()), structures.data(),
+        VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR, upload.compaction->sizes.get(), 0);
 }
 
 namespace {
@@ -247,35 +204,6 @@ Result<std::vector<DeviceMicromap>> addMicromaps(SceneUpload& upload, MemoryPool
     }
     builder.build();
     return made;
-}
-
-Result<AccelerationStructure> addTlas(SceneUpload& upload, MemoryPool& pool,
-                                      std::span<const VkAccelerationStructureInstanceKHR> instances) {
-    Context::State& context = upload.context;
-    const Result<PreparedTlas> prepared = prepareTlas(context, upload.pool, instances, false, upload.kept);
-    if (!prepared) {
-        return prepared.error();
-    }
-    Result<AccelerationStructure> structure =
-        createStructure(context, pool, prepared->build.sizes.accelerationStructureSize,
-                        VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR);
-    if (!structure) {
-        return structure.error();
-    }
-    const bool timed = upload.timer.has_value();
-    upload.stretches += timed ? 1 : 0;
-    upload.uploader->add([&context, &upload, timed, prepared = *prepared,
-                          target = structure->handle.get()](VkCommandBuffer commands) {
-        recordDependency(context, commands, kAllToAll);
-        if (timed) {
-            upload.timer->recordBegin(commands, SceneUpload::kTlasStretch);
-        }
-        recordTlasBuild(context, commands, prepared, target);
-        if (timed) {
-            upload.timer->recordEnd(commands, SceneUpload::kTlasStretch);
-        }
-    });
-    return structure;
 }
 
 }  // namespace glint

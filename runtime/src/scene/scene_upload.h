@@ -5,7 +5,6 @@
 #include "context/commands.h"
 #include "context/upload.h"
 #include "data/acceleration.h"
-#include "data/deformer.h"
 #include "data/opacity_micromap.h"
 
 #include <glint/scene.h>
@@ -22,27 +21,23 @@ namespace glint {
 // --- Compaction ---
 // BLASes are built at their full size. The size of a compacted copy is known when the device has built them.
 
-// The place of a BLAS in a scene that is edited.
-struct PartOfMesh {
+// The place of a BLAS: a part of a mesh, or of an instance with its own shape.
+struct PartPlace {
     MeshHandle mesh;
-    std::size_t primitive = 0;
-    std::size_t part = 0;
+    InstanceHandle instance;
+    std::uint32_t part = 0;
 };
 
 struct Compaction {
     explicit Compaction(Context::State& context) : pool(context) {}
 
-    // It holds the structures as they were built, and what the recording needs. Members are destroyed in
-    // reverse order: the pool's memory last.
+    // It holds the structures as they were built. Members are destroyed in reverse order: the pool's memory
+    // last.
     MemoryPool pool;
-    UniqueQueryPool sizes;  // of the compacted copies: one for each BLAS of the upload
-    std::uint32_t count = 0;
+    UniqueQueryPool sizes;  // of the compacted copies, in the order of `parts`
     std::vector<AccelerationStructure> replaced;
-    std::vector<Buffer> kept;
-    // The TLAS of a scene that neither moves nor is edited, as it was built.
-    std::vector<VkAccelerationStructureInstanceKHR> placed;
-    std::vector<PartOfMesh> parts;       // in a scene that is edited
-    bool queued = false;                 // the editor has the copies
+    std::vector<PartPlace> parts;
+    bool queued = false;                 // the next recording makes the copies
     std::optional<std::uint64_t> frame;  // frame of the recorded copies
 };
 
@@ -63,31 +58,18 @@ struct SceneUpload : StagedCopies {
         }
     }
 
-    // The stretches that `timer` measures.
-    static constexpr std::uint32_t kBlasStretch = 0;
-    static constexpr std::uint32_t kTlasStretch = 1;
-
-    std::unique_ptr<Deformer> deformer;  // of a scene that does not move and is not in its rest pose
-    std::optional<Timer> timer;
-    std::uint32_t stretches = 0;             // recorded ones
-    std::unique_ptr<Compaction> compaction;  // null if there is no BLAS to compact
+    std::unique_ptr<Compaction> compaction{};  // null if there is no BLAS to compact
 };
 
-// --- Structures ---
+// Returns the compaction that follows an upload, which it makes at the first call.
+Compaction& compactionOf(SceneUpload& upload);
+// Makes room for the sizes of the compacted copies, if there are any. Errors: those of Vulkan's calls.
+Status prepareCompaction(SceneUpload& upload);
+// Records the reading of these sizes. `structures` are those of Compaction::parts.
+void recordCompactedSizes(const SceneUpload& upload, VkCommandBuffer commands,
+                          std::span<const VkAccelerationStructureKHR> structures);
 
-struct BlasStatistics {
-    std::uint64_t bytes = 0;  // before compaction
-};
-// Creates a BLAS for each input, and queues their builds in the upload. They are in the memory of the
-// upload's Compaction, which is made here, and stay at their full size until it is recorded. Errors: those of
-// memory and Vulkan's calls.
-Result<std::vector<AccelerationStructure>> addBlases(SceneUpload& upload, std::span<const BlasInput> inputs,
-                                                     BlasStatistics& statistics);
-
-// Creates a TLAS in memory of `pool`, and queues its build in the upload. `instances` may be empty. Error
-// "tlas-limit".
-Result<AccelerationStructure> addTlas(SceneUpload& upload, MemoryPool& pool,
-                                      std::span<const VkAccelerationStructureInstanceKHR> instances);
+// --- Opacity micromaps ---
 
 // Returns the highest level that the device takes, at most opacity::kMaxLevel; 0 without the extension.
 std::uint32_t micromapLevel(const Context::State& context);

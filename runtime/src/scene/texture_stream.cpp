@@ -1,6 +1,6 @@
 #include "scene/texture_stream.h"
 
-#include "scene/scene_editor.h"
+#include "scene/scene_store.h"
 
 #include <algorithm>
 #include <string>
@@ -96,8 +96,8 @@ Status adoptViews(TextureStream::State& state, std::map<std::uint32_t, UniqueIma
     // The set of a scene that is edited stays in use until the editor's next recording.
     Retired* retired = &state.retired;
     if (state.scene.editor != nullptr) {
-        state.scene.editor->state().setDirty = true;
-        retired = &state.scene.editor->state().retired;
+        state.scene.store->setDirty = true;
+        retired = &state.scene.store->retired;
     } else {
         Result<DescriptorSet> set = makeSceneSet(state.scene, state.scene.tlas.handle.get(), VK_NULL_HANDLE);
         if (!set) {

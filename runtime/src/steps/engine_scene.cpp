@@ -228,8 +228,6 @@ Result<std::unique_ptr<EngineScene>> EngineScene::record(Context& context, const
         }
     }
     state->upload->record(commands, frame);
-    state->addresses = {state->geometries.address, state->instances.address, state->previousInstances.address,
-                        state->materials.address,  state->lights.address,    state->firstRecords.address};
     return std::unique_ptr<EngineScene>(new EngineScene(std::move(state)));
 }
 
@@ -246,19 +244,23 @@ void EngineScene::complete(std::uint64_t frame) {
 }
 
 Result<std::unique_ptr<EngineScene>> EngineScene::share(Context& context, GpuScene& scene) {
-    const GpuScene::State& given = scene.state();
-    if (given.editor != nullptr) {
-        return makeError("scene-edit-share", "",
-                         "the scene can be edited, and its records then move to other addresses",
-                         "upload it without SceneView::editable");
-    }
     auto state = std::make_unique<State>(context.state());
-    state->addresses = {given.geometries.address, given.instances.address, given.instances.address,
-                        given.materials.address,  given.lights.address,    0};
-    state->shaderIds = given.shaderIds;
-    state->lightCount = given.lightCount;
-    state->shared = true;
+    state->shared = &scene.state();
+    state->shaderIds = state->shared->shaderIds;
     return std::unique_ptr<EngineScene>(new EngineScene(std::move(state)));
+}
+
+EngineScene::State::Addresses EngineScene::State::addresses() const {
+    if (shared != nullptr) {
+        return {shared->geometries.address, shared->instances.address, shared->instances.address,
+                shared->materials.address,  shared->lights.address,    0};
+    }
+    return {geometries.address, instances.address, previousInstances.address,
+            materials.address,  lights.address,    firstRecords.address};
+}
+
+std::uint32_t EngineScene::State::lightsNow() const {
+    return shared != nullptr ? shared->lightCount : lightCount;
 }
 
 EngineScene::EngineScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -266,7 +268,7 @@ EngineScene::~EngineScene() = default;
 
 Status EngineScene::update(VkCommandBuffer commands, std::span<const std::array<float, 12>> instances,
                            std::span<const LightView> lights, const std::array<double, 3>& originMoved) {
-    if (state_->shared) {
+    if (state_->shared != nullptr) {
         return makeError("engine-scene", "", "the scene is that of a GpuScene", "use GpuScene::update()");
     }
     if (instances.size() != state_->placed.size() || lights.size() > state_->lightCapacity) {
@@ -300,7 +302,7 @@ Status EngineScene::update(VkCommandBuffer commands, std::span<const std::array<
 }
 
 VkDeviceAddress EngineScene::materials() const {
-    return state_->addresses.materials;
+    return state_->addresses().materials;
 }
 
 std::uint64_t EngineScene::bytes() const {

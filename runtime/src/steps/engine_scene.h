@@ -27,7 +27,7 @@ struct EngineScene::State {
     Buffer materials;
     Buffer lights;
     Buffer firstRecords;
-    // The addresses of these buffers, or of those of a GpuScene.
+    // The addresses of these buffers, or of those of `shared` as it is now.
     struct Addresses {
         VkDeviceAddress geometries = 0;
         VkDeviceAddress instances = 0;
@@ -36,10 +36,11 @@ struct EngineScene::State {
         VkDeviceAddress lights = 0;
         VkDeviceAddress firstRecords = 0;
     };
-    Addresses addresses;
-    bool shared = false;
+    Addresses addresses() const;
+    const GpuScene::State* shared = nullptr;
     std::vector<std::array<float, 12>> placed;  // the transforms of the instances
-    std::uint32_t lightCount = 0;
+    std::uint32_t lightsNow() const;
+    std::uint32_t lightCount = 0;  // of a scene that is not shared
     std::uint32_t lightCapacity = 0;
     RecordsBy recordsBy = RecordsBy::CustomIndex;
     std::vector<std::uint32_t> shaderIds;  // of the shader binding table's hit records

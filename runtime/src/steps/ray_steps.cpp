@@ -150,16 +150,17 @@ gpu::FrameConstants makeConstants(const RaySteps::State& state, const RayBatch& 
     constants.seed = batch.seed;
     constants.time = batch.time;
     constants.effects = state.size.effects.all;
-    constants.lightCount = state.scene.lightCount;
+    constants.lightCount = state.scene.lightsNow();
     constants.maxSampleRadiance = std::numeric_limits<float>::infinity();
     constants.lengthUnit = constants.perLengthUnit = 1.0F;
     fillOutside(outsideOf(batch), constants);
-    constants.geometries = state.scene.addresses.geometries;
-    constants.instances = state.scene.addresses.instances;
-    constants.previousInstances = state.scene.addresses.previousInstances;
-    constants.materials = state.scene.addresses.materials;
-    constants.lights = state.scene.addresses.lights;
-    constants.firstRecords = state.scene.addresses.firstRecords;
+    const EngineScene::State::Addresses addresses = state.scene.addresses();
+    constants.geometries = addresses.geometries;
+    constants.instances = addresses.instances;
+    constants.previousInstances = addresses.previousInstances;
+    constants.materials = addresses.materials;
+    constants.lights = addresses.lights;
+    constants.firstRecords = addresses.firstRecords;
     constants.recordsBy = static_cast<std::uint32_t>(state.scene.recordsBy);
     constants.rayMask = batch.mask;
     constants.tlasAddress = {static_cast<std::uint32_t>(batch.tlas),

@@ -98,19 +98,16 @@ struct OrderedMeshes {
         : primitives(data.primitives),
           instances(data.instances),
           indices(orderedTriangles(data.primitives, {std::uint64_t{1} << 24U, 1}, halvingOrder)) {
-        std::vector<MeshPart> parts;
-        std::vector<PartInstance> placed;
-        for (std::uint32_t i = 0; i < instances.size(); ++i) {
-            MeshPart& part = parts.emplace_back();
-            const PrimitiveRange own = primitivesOf(primitives, instances[i].mesh);
-            for (std::uint32_t primitive = own.first; primitive < own.end; ++primitive) {
-                part.ranges.push_back({primitive, 0, 0});
+        std::vector<LeafBox> leaves;
+        for (const InstanceView& instance : instances) {
+            Box box = Box::nothing();
+            const PrimitiveRange own = primitivesOf(primitives, instance.mesh);
+            for (std::uint32_t i = own.first; i < own.end; ++i) {
+                box.extend(boxOf(primitives[i], primitives[i].indices));
             }
-            placed.push_back({i, i, i});
+            leaves.emplace_back(transformed(box, instance.objectToWorld));
         }
-        const std::vector<std::uint32_t> order =
-            InstanceOrder(primitives, parts, halvingOrder).at(instances, placed);
-        instances = permuted<InstanceView>(instances, order);
+        instances = permuted<InstanceView>(instances, halvingOrder(leaves, 1));
         for (std::size_t i = 0; i < primitives.size(); ++i) {
             primitives[i].indices = indices[i];
         }

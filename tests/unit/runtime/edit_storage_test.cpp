@@ -59,6 +59,19 @@ TEST(EditStorage, RunsTakeTheLowestRoom) {
     runs.release(0, 0);
 }
 
+TEST(EditStorage, RunsTakeTheSmallestRoom) {
+    RunAllocator runs;
+    for (const std::uint32_t count : {5U, 1U, 3U, 1U, 3U, 1U}) {
+        runs.allocate(count);
+    }
+    runs.release(0, 5);
+    runs.release(6, 3);
+    runs.release(10, 3);
+    EXPECT_EQ(runs.allocate(2), 6U) << "the lowest of two with the same room";
+    EXPECT_EQ(runs.allocate(1), 8U);
+    EXPECT_EQ(runs.allocate(4), 0U);
+}
+
 TEST(EditStorage, RecordsAreDirtyUntilTheyAreCopied) {
     RecordStore store(sizeof(int));
     store.write(0, 7);
@@ -81,7 +94,7 @@ TEST(EditStorage, RecordsAreDirtyUntilTheyAreCopied) {
     EXPECT_EQ(store.read<int>(0), 7);
 }
 
-TEST(EditStorage, ReplacedRecordsAreDirtyFromTheFirstThatDiffers) {
+TEST(EditStorage, ReplacedRecordsAreDirtyWhereTheyDiffer) {
     RecordStore store(sizeof(int));
     const auto replace = [&](const std::vector<int>& records) {
         store.clearDirty();
@@ -96,6 +109,8 @@ TEST(EditStorage, ReplacedRecordsAreDirtyFromTheFirstThatDiffers) {
     EXPECT_EQ(middle[0].first, 1U);
     EXPECT_EQ(middle[0].end, 3U);
     EXPECT_EQ(store.read<int>(2), 6);
+    EXPECT_EQ(replace({2, 5, 6, 5}).size(), 2U);
+    replace({1, 5, 6, 4});
     const std::vector<IndexRange> longer = replace({1, 5, 6, 4, 9});
     ASSERT_EQ(longer.size(), 1U);
     EXPECT_EQ(longer[0].first, 4U);

@@ -195,35 +195,16 @@ TEST(TraversalOrder, PermutesWholeTriangles) {
     }
 }
 
-// A primitive that shares an array of vertices is placed only by the vertices that it uses, in the current
-// pose.
-TEST(TraversalOrder, OrdersInstancesByWhereTheyAre) {
-    constexpr std::size_t kCount = 256;
+// A primitive that shares an array of vertices is placed only by the vertices that it uses.
+TEST(TraversalOrder, BoxesLeaveOtherVerticesOut) {
     Hills hills(2);
     hills.positions.push_back({1e6F, 1e6F, 1e6F});
-    const std::array<PrimitiveView, 1> primitives{hills.view()};
-    const std::vector<MeshPart> parts{{0, false, {{0, 0, 8}}}};
-    const InstanceOrder order(primitives, parts, halvingOrder);
-    std::vector<InstanceView> instances(kCount);
-    std::vector<PartInstance> placed;
-    std::mt19937 random(2);
-    for (const bool shuffled : {false, true}) {
-        std::vector<std::uint32_t> places = asTheyCome(kCount);
-        if (shuffled) {
-            std::ranges::shuffle(places, random);
-        }
-        placed.clear();
-        std::vector<LeafBox> leaves;
-        for (std::uint32_t i = 0; i < kCount; ++i) {
-            instances[i].objectToWorld[3] = 2.0F * static_cast<float>(places[i] % 16);
-            instances[i].objectToWorld[7] = 2.0F * static_cast<float>(places[i] / 16);
-            placed.push_back({0, i, i});
-            leaves.push_back(
-                boxAround({instances[i].objectToWorld[3], instances[i].objectToWorld[7], 0.0F}, 0.5F));
-        }
-        const double least = halvedTreeCost(leaves, halvingOrder(leaves, 1));
-        EXPECT_LT(halvedTreeCost(leaves, order.at(instances, placed)), 1.02 * least);
-    }
+    const PrimitiveView view = hills.view();
+    const Box box = boxOf(view, view.indices);
+    EXPECT_FALSE(box.isEmpty());
+    EXPECT_LT(box.max[0], 10.0);
+    hills.positions[0][1] = NAN;
+    EXPECT_TRUE(boxOf(hills.view(), view.indices).isEmpty());
 }
 
 }  // namespace

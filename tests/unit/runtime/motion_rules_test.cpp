@@ -1,8 +1,10 @@
 // Tests boxes of deformed meshes, and the rules that depend on them.
 #include "data/motion_bounds.h"
+#include "scene/top_level.h"
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 namespace glint {
@@ -68,21 +70,79 @@ TEST(MotionRules, ABottomLevelIsRefittedUntilItIsWorn) {
     EXPECT_EQ(history.next(true, 60.0), BuildAction::Refit) << "counts from the last build";
 }
 
-TEST(MotionRules, TheTopLevelIsUpdatedUntilAnInstanceLeaves) {
-    TlasHistory history;
-    const std::vector<Box> start{box(0, 0, 0, 1), box(5, 0, 0, 2)};
-    history.apply(BuildAction::Build, start);
-    EXPECT_EQ(history.next(false, start), BuildAction::Keep);
-    EXPECT_EQ(history.next(true, start), BuildAction::Refit);
-    // The diagonals are 1.73 and 3.46 m.
-    EXPECT_EQ(history.next(true, std::vector{box(1.7, 0, 0, 1), box(5, 0, 0, 2)}), BuildAction::Refit);
-    EXPECT_EQ(history.next(true, std::vector{box(1.8, 0, 0, 1), box(5, 0, 0, 2)}), BuildAction::Build);
-    EXPECT_EQ(history.next(true, std::vector{box(0, 0, 0, 1), box(5, 3.4, 0, 2)}), BuildAction::Refit);
-    EXPECT_EQ(history.next(true, std::vector{box(0, 0, 0, 1), box(5, 3.5, 0, 2)}), BuildAction::Build);
-    for (std::uint32_t i = 0; i < kMaxRefits; ++i) {
-        history.apply(BuildAction::Refit, start);
+// Two instances of a TLAS that may be updated, and is built.
+struct TwoPlaced {
+    TwoPlaced() {
+        move(0, start[0]);
+        move(1, start[1]);
+        build();
     }
-    EXPECT_EQ(history.next(true, start), BuildAction::Build);
+    void move(std::uint32_t geometry, const Box& to) {
+        VkAccelerationStructureInstanceKHR placed{};
+        placed.instanceCustomIndex = geometry & 0xFFFFFFU;
+        placed.transform.matrix[0][3] = static_cast<float>(to.min[0]);
+        placed.transform.matrix[1][3] = static_cast<float>(to.min[1]);
+        top.set(placed, to);
+    }
+    BuildAction next(MotionView::Builds builds = MotionView::Builds::ByRule) const {
+        return top.next(false, builds);
+    }
+    void build() {
+        top.prepare(BuildAction::Build);
+        top.apply(BuildAction::Build);
+    }
+
+    // The diagonals are 1.73 and 3.46 m.
+    const std::array<Box, 2> start{box(0, 0, 0, 1), box(5, 0, 0, 2)};
+    TopLevel top{true, nullptr};
+};
+
+TEST(MotionRules, TheTopLevelIsUpdatedUntilAnInstanceLeaves) {
+    EXPECT_EQ(TwoPlaced().next(), BuildAction::Keep);
+    EXPECT_EQ(TwoPlaced().top.next(true, MotionView::Builds::ByRule), BuildAction::Refit);
+    const auto after = [](std::uint32_t instance, const Box& to) {
+        TwoPlaced placed;
+        placed.move(instance, to);
+        return placed.next();
+    };
+    EXPECT_EQ(after(0, box(0, 0, 0, 1)), BuildAction::Keep);
+    EXPECT_EQ(after(0, box(1.7, 0, 0, 1)), BuildAction::Refit);
+    EXPECT_EQ(after(0, box(1.8, 0, 0, 1)), BuildAction::Build);
+    EXPECT_EQ(after(1, box(5, 3.4, 0, 2)), BuildAction::Refit);
+    EXPECT_EQ(after(1, box(5, 3.5, 0, 2)), BuildAction::Build);
+    TwoPlaced placed;
+    for (std::uint32_t i = 0; i < kMaxRefits; ++i) {
+        placed.move(0, box(0.001 * i, 0, 0, 1));
+        ASSERT_NE(placed.next(), BuildAction::Build) << i;
+        placed.top.apply(BuildAction::Refit);
+    }
+    placed.move(0, box(0.5, 0, 0, 1));
+    EXPECT_EQ(placed.next(), BuildAction::Build);
+    EXPECT_EQ(placed.next(MotionView::Builds::Refit), BuildAction::Refit);
+    placed.build();
+    EXPECT_EQ(placed.next(MotionView::Builds::Rebuild), BuildAction::Keep);
+}
+
+TEST(MotionRules, InstancesThatComeOrGoNeedABuild) {
+    TwoPlaced placed;
+    placed.move(7, box(9, 0, 0, 1));
+    EXPECT_EQ(placed.next(MotionView::Builds::Refit), BuildAction::Build);
+    placed.build();
+    placed.top.remove(0);
+    EXPECT_EQ(placed.next(), BuildAction::Build);
+    placed.build();
+    EXPECT_EQ(placed.top.records().count(), 2U);
+    // The last one has its place now, and is still found.
+    placed.move(7, box(9.5, 0, 0, 1));
+    EXPECT_EQ(placed.top.records().count(), 2U);
+    EXPECT_EQ(placed.next(), BuildAction::Refit);
+    TopLevel fixed(false, nullptr);
+    fixed.set({}, box(0, 0, 0, 1));
+    fixed.apply(BuildAction::Build);
+    VkAccelerationStructureInstanceKHR moved{};
+    moved.transform.matrix[0][3] = 0.01F;
+    fixed.set(moved, box(0.01, 0, 0, 1));
+    EXPECT_EQ(fixed.next(false, MotionView::Builds::ByRule), BuildAction::Build);
 }
 
 }  // namespace

@@ -100,8 +100,6 @@ Status Window::applyPose() {
         if (!one || !one->picture.isReady() || one->picture.moment() == moment) {
             continue;
         }
-        // Poses are written to memory that frames in flight read.
-        GLINT_TRY_DO(presenter_->waitForFrames());
         finishSamples();
         if (Status posed = one->picture.pose(moment, presenter_->submitted() + 1); !posed) {
             report(posed.error());

@@ -1,0 +1,355 @@
+// The content of a scene: entries that handles name, the records that the device has copies of, and the work
+// that the device still has to do. The upload, poses, edits and compaction write it by the same functions,
+// and recordChanges() brings the device up to date.
+//
+// A scene that is not edited is sealed: a BLAS has all primitives of a mesh that are seen alike, alpha tests
+// are decided where they can be, and records of materials are the package's. The meshes of other scenes have
+// a BLAS for each primitive, and the TLAS holds the properties that follow from materials, so that a change
+// of materials builds no BLAS.
+#pragma once
+
+#include "context/commands.h"
+#include "context/upload.h"
+#include "data/acceleration.h"
+#include "data/deformer.h"
+#include "data/emitters.h"
+#include "data/geometry.h"
+#include "data/instance_math.h"
+#include "data/motion_bounds.h"
+#include "data/retired.h"
+#include "scene/case_table.h"
+#include "scene/gpu_scene_state.h"
+#include "scene/record_store.h"
+#include "scene/scene_upload.h"
+#include "scene/top_level.h"
+
+#include <glint/package.h>
+#include <glint/result.h>
+#include <glint/scene.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glint {
+
+// A texture of a scene that is edited. Its image is GpuScene::State::textures at the handle's index.
+struct StoredTexture {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    bool srgb = false;
+    std::uint32_t uses = 0;                          // by materials
+    std::shared_ptr<const EmissionTexels> texels{};  // of a colour, if emission may have textures
+};
+
+// A material of a scene that is edited. Its record is in SceneStore::materials at the handle's index.
+struct StoredMaterial {
+    std::vector<MaterialKey> keys;
+    std::vector<TextureUse> textures;
+    // The primitives of meshes, and of instances, that have it: how many of each.
+    std::map<std::uint32_t, std::uint32_t> meshes{};     // by index
+    std::map<std::uint32_t, std::uint32_t> instances{};  // by index
+};
+
+// A part and its BLAS, which instances that keep their shape share.
+struct StoredPart : MeshPart {
+    AccelerationStructure blas{};  // without a handle if all instances of a sealed mesh change their shape
+    Box box = Box::nothing();
+    std::optional<MotionBounds> bounds{};  // of a mesh that may change its shape
+};
+
+struct StoredPrimitive {
+    GpuPrimitive device;
+    AttributeMask attributes = 0;
+    MaterialHandle material{};                    // of a scene that is edited
+    package::PrimitiveEntry entry{};              // of a sealed scene
+    std::uint32_t entryIndex = 0;                 // the same, in PackageScene::primitives
+    std::shared_ptr<const EmitterShape> shape{};  // in packages with emissive lights
+    const DeviceMicromap* micromap = nullptr;     // of a sealed scene
+    DeformSource source{};
+};
+
+struct StoredMesh {
+    std::vector<StoredPrimitive> primitives;
+    std::vector<StoredPart> parts;
+    std::uint32_t geometryCount = 0;               // records of an instance
+    std::uint32_t jointCount = 0;                  // joints that a pose must have
+    std::uint32_t weightCount = 0;                 // the most morph targets of a primitive
+    std::shared_ptr<const MotionBounds> bounds{};  // if the mesh may change its shape
+    std::vector<std::uint32_t> instances{};        // their indices, in no order
+
+    bool mayDeform() const {
+        return jointCount > 0 || weightCount > 0;
+    }
+    // Returns whether the pose moves vertices.
+    bool deformsIn(const InstanceView& pose) const {
+        return std::ranges::any_of(primitives, [&](const StoredPrimitive& primitive) {
+            return primitive.source.moves(!pose.joints.empty(), !pose.morphWeights.empty());
+        });
+    }
+};
+
+// The vertices and BLASes of an instance that changes its shape.
+struct OwnShape {
+    std::vector<DeformedVertices> vertices;     // by primitive
+    std::vector<AccelerationStructure> blases;  // by part
+    std::vector<BlasBuild> builds;              // the same
+    std::vector<BlasHistory> histories;         // the same
+    IndexRange pose;                            // in SceneStore::poses: rows of joints, then weights
+    std::uint32_t joints = 0;
+    std::uint32_t weights = 0;
+    IndexRange records;  // in SceneStore::deforms, one for each primitive that moves
+    bool isBuilt = false;
+};
+
+struct StoredInstance {
+    MeshHandle mesh;
+    Rows objectToWorld{};
+    bool visible = true;
+    std::vector<MaterialHandle> materials;  // one for each primitive of the mesh; some may name nothing
+    std::uint32_t firstGeometry = 0;
+    std::uint32_t geometryCount = 0;  // 0 if a sealed scene that stays still leaves the instance out
+    std::uint32_t placeInMesh = 0;    // in StoredMesh::instances
+    std::unique_ptr<OwnShape> shape{};
+
+    bool isShown() const {
+        return visible && isInvertible(objectToWorld);
+    }
+};
+
+struct SceneStore {
+    SceneStore(GpuScene::State& owner, const Package& package, const SceneView& view);
+
+    GpuScene::State& scene;
+    // Settings of the upload.
+    bool moves = false;     // GpuScene::update() gives poses
+    bool editable = false;  // the scene has an editor; otherwise it is sealed
+    BlasCapacity capacity;
+    LeafOrder leafOrder = nullptr;  // null: structures get their input as it is
+    VertexForm vertices = VertexForm::Compact;
+    bool dataAccess = false;                         // BLASes let shaders read positions
+    bool passesLight = false;                        // a ray meets each triangle at most once
+    bool buildsTree = false;                         // the package chooses lights by a hierarchy
+    std::optional<package::EmissionEntry> emission;  // none without emissive lights
+    std::vector<package::SamplerEntry> samplers;     // of GpuScene::State::samplers
+    DeviceImage white;                               // for places without a texture
+
+    // Scenes that are edited.
+    std::optional<CaseTable> cases;
+    bool trustsTextures = false;  // Package::trustTextures()
+    Slots<StoredTexture, TextureHandle> textures;
+    Slots<StoredMaterial, MaterialHandle> materialSlots;
+
+    Slots<StoredMesh, MeshHandle> meshes;
+    Slots<StoredInstance, InstanceHandle> instanceSlots;
+    Slots<LightView, LightHandle> lightSlots;
+    std::vector<LightHandle> lightOrder;  // the place of a light is the index of its record
+
+    // Handles by their numbers at the upload.
+    std::vector<TextureHandle> firstTextures;
+    std::vector<MaterialHandle> firstMaterials;
+    std::map<std::uint32_t, MeshHandle> firstMeshes;
+    std::vector<InstanceHandle> firstInstances;
+    std::vector<LightHandle> firstLights;
+
+    RecordStore geometries{sizeof(gpu::GeometryRecord)};
+    RecordStore instances{sizeof(gpu::InstanceRecord)};
+    RecordStore materials;
+    RecordStore lights{sizeof(gpu::LightRecord)};
+    RecordStore lightNodes{sizeof(gpu::LightNode)};
+    RecordStore emitters{sizeof(gpu::EmitterRecord)};
+    RecordStore firstEmitters{sizeof(std::uint32_t)};  // of each geometry record
+    RecordStore poses{sizeof(gpu::vec4)};
+    RecordStore deforms{sizeof(gpu::DeformRecord)};
+    RunAllocator geometryRuns;
+    RunAllocator poseRuns;
+    RunAllocator deformRuns;
+    TopLevel topLevel;
+    Buffer poseBuffer;
+    Buffer deformBuffer;
+    Buffer placedBuffer;  // TopLevel::records() on the device
+
+    // Instances that change their shape, and those of them with another pose since the last recording.
+    std::optional<DeformPass> deformPass;
+    std::set<std::uint32_t> shaped;    // by index
+    std::set<std::uint32_t> reshaped;  // by index
+    std::uint64_t shapeVersion = 0;    // changes when geometry records do, if some instance has its own shape
+
+    // Instances with a material that is a light, by generation: in the order in which they were added.
+    std::map<std::uint32_t, InstanceHandle> emissiveInstances;
+    std::set<std::uint32_t> emissiveMaterials;  // of those that were shown at the last recording
+    EmitterMeans emitterMeans;
+    // Returns the texels of a texture of a sealed scene by its number. It exists during the upload.
+    std::function<std::shared_ptr<const EmissionTexels>(std::uint32_t)> texelsOf;
+
+    // The work of the next recording.
+    std::unique_ptr<Uploader> ownUploader;  // null in the upload, which has one of its own
+    Uploader* uploader = nullptr;
+    std::vector<BlasBuild> builds;  // of BLASes that instances share, with their destinations
+    bool drawsDirty = true;
+    bool lightsDirty = true;     // other lights
+    bool lightsMoved = false;    // the same lights with other values
+    bool emittersDirty = false;  // other emissive triangles
+    bool emittersMoved = false;  // the same at other places, or brighter
+    bool setDirty = true;
+    bool trims = false;
+
+    Scratch tlasScratch;
+    VkDeviceSize tlasScratchBytes = 0;
+    std::uint32_t tlasCapacity = 0;  // instances
+    std::uint32_t firstTlasCapacity = 0;
+    Retired retired;
+    std::uint64_t lastFrame = 0;
+    // Null after the upload, in which BLASes are built together.
+    SceneUpload* upload = nullptr;
+
+    // The properties of the upload that every pose must have.
+    std::vector<std::uint32_t> posedMeshes;
+    std::vector<std::size_t> posedJoints;
+    std::vector<std::size_t> posedWeights;
+    std::vector<std::uint32_t> posedLights;
+    // The values of the last pose, or of the upload. A pose writes what differs from them, so edits of other
+    // things stay.
+    std::vector<Rows> lastRows;
+    std::vector<bool> lastVisible;
+    std::vector<gpu::LightRecord> lastLights;
+    std::optional<Timer> timer;  // deform, BLASes, TLAS
+    MotionStatistics statistics;
+    bool posed = false;
+
+    bool keeps() const {
+        return moves || editable;
+    }
+};
+
+// --- Meshes and instances (store_meshes.cpp) ---
+
+// The content of a mesh. `positions` and `ordered` are as many as the primitives, whose positions are those
+// that the device reads; `ordered` may be empty, as may the indices of a primitive in it.
+struct MeshContent {
+    std::span<const PrimitiveView> primitives;
+    std::span<const GridPositions> positions;
+    std::span<const std::vector<std::uint32_t>> ordered{};
+    // Of sealed meshes.
+    std::vector<const package::PrimitiveEntry*> entries{};
+    std::vector<std::optional<OpacitySplit>> splits{};
+    std::vector<const DeviceMicromap*> micromaps{};
+    bool isShared = true;  // some instance keeps the mesh's shape
+};
+// Uploads a mesh, whose BLASes the next recording builds. The caller sets the materials, or the entries. With
+// an error nothing changes, unless this is the upload.
+Result<MeshHandle> addMesh(SceneStore& store, const Package& package, const MeshContent& content);
+// Retires a mesh that no instance has.
+void retireMesh(SceneStore& store, MeshHandle mesh);
+
+// Adds an instance whose mesh and materials have been checked. A pose with joints or weights gives it a shape
+// of its own, for which the scene's first such instance needs `package`. Errors: those of memory, and
+// "scene-package" (the package has no pass that deforms).
+Result<InstanceHandle> placeInstance(SceneStore& store, const Package* package, StoredInstance instance,
+                                     const InstanceView& pose);
+void removeInstance(SceneStore& store, InstanceHandle handle);
+void moveInstance(SceneStore& store, InstanceHandle handle, const Rows& objectToWorld, bool visible);
+// Gives the instance another mesh and materials, in its rest pose. Both have been checked.
+void exchangeMesh(SceneStore& store, InstanceHandle handle, MeshHandle mesh,
+                  std::span<const MaterialHandle> materials);
+// Gives a primitive of the instance a material of its own, which has been checked, or takes it away.
+void setOwnMaterial(SceneStore& store, InstanceHandle handle, std::size_t primitive, MaterialHandle material);
+// Gives the instance the joints and weights of `pose`, or takes its own shape away if it has neither. The
+// errors are those of placeInstance().
+Status poseInstance(SceneStore& store, const Package* package, InstanceHandle handle,
+                    const InstanceView& pose);
+// The joints and weights of an instance. The spans hold until the store changes.
+InstanceView poseOf(const SceneStore& store, const StoredInstance& instance);
+
+// Writes the geometry records of an instance, whose materials have been checked.
+void writeGeometries(SceneStore& store, InstanceHandle handle, const StoredInstance& instance);
+// The entry of a primitive of an instance: its key, its shader and its material.
+package::PrimitiveEntry entryOf(const SceneStore& store, const StoredInstance& instance,
+                                std::size_t primitive);
+// Puts the instance's parts into the TLAS, at their places, or takes them out if it is not shown.
+void placeParts(SceneStore& store, const StoredInstance& instance);
+// Writes where deformed vertices and poses are, after one of the arrays has moved to these addresses.
+void writeDeforms(SceneStore& store, std::uint32_t instance, VkDeviceAddress poses);
+// The draws of all instances.
+std::vector<Draw> drawsOf(SceneStore& store);
+
+// Calls visit(range, primitive, geometry) for all geometry records of an instance.
+template <typename Visit>
+void forEachGeometry(const StoredMesh& mesh, const StoredInstance& instance, const Visit& visit) {
+    std::uint32_t geometry = instance.firstGeometry;
+    for (std::size_t part = 0; part < mesh.parts.size() && instance.geometryCount > 0; ++part) {
+        for (const TriangleRange& range : mesh.parts[part].ranges) {
+            visit(range, mesh.primitives[range.primitive], geometry++);
+        }
+    }
+}
+
+// The structure of a part: of a mesh, or of an instance with its own shape. Null if edits have removed it.
+AccelerationStructure* structureAt(SceneStore& store, const PartPlace& place);
+
+// --- Materials of scenes that are edited (edit_materials.cpp) ---
+
+// Finds the shading of a material on a primitive. Has the errors that SceneEditor lists.
+Result<Shading> shadingOf(const SceneStore& store, MaterialHandle material, AttributeMask attributes);
+// Lists the key in the report if the fallback shades it.
+void addTo(EditReport& report, const SceneStore& store, MaterialHandle material, const Shading& shading);
+// The material of a primitive of an instance.
+MaterialHandle materialOf(const SceneStore& store, const StoredInstance& instance, std::size_t primitive);
+// Writes a material's record. Lights follow if its emission has changed.
+void writeMaterial(SceneStore& store, std::uint32_t material, std::span<const std::uint8_t> record);
+
+// --- Lights and emissive triangles (store_lights.cpp) ---
+
+// Returns the texels of a texture that may be an emission, or null.
+std::shared_ptr<const EmissionTexels> emissionTexels(const SceneStore& store, const ImageView& image,
+                                                     bool srgb);
+LightHandle addLight(SceneStore& store, const LightView& light);
+void setLight(SceneStore& store, LightHandle handle, const LightView& light);
+void removeLight(SceneStore& store, LightHandle handle);
+// Notes that an instance, whose geometry records have been written, is or was a light.
+void noteEmitters(SceneStore& store, InstanceHandle handle, const StoredInstance& instance);
+// Notes that an instance has moved, or was shown or hidden (`changes`), or `removed`.
+void moveEmitters(SceneStore& store, InstanceHandle handle, bool changes, bool removed = false);
+// Notes that a texture has another image.
+void replaceEmission(SceneStore& store, TextureHandle texture);
+// Brings records of emissive triangles and the hierarchy of lights up to date.
+void settleLights(SceneStore& store);
+
+// --- The device (store_record.cpp) ---
+
+// Error "scene-edit-frame": the frame is before the last one.
+Status checkFrame(const SceneStore& store, std::uint64_t frame);
+// Records everything that has changed, for a frame that is at or after the last one. `builds` overrules the
+// rules for refits. `leftovers`, if given, gets the resources that are no longer needed when the recording is
+// complete; else complete() for the frame frees them. With an error nothing is recorded, and the changes wait
+// for the next call.
+Status recordChanges(SceneStore& store, VkCommandBuffer commands, std::uint64_t frame,
+                     MotionView::Builds builds = MotionView::Builds::ByRule, RetiredLot* leftovers = nullptr);
+// Reads the device times of the last recording into milliseconds of deforming, BLASes and the TLAS.
+Result<std::vector<double>> readTimes(const SceneStore& store);
+
+// --- The upload (store_upload.cpp) ---
+
+// Makes the content of a scene and records its upload. `known` may be a scene without tables.
+Status uploadScene(GpuScene::State& state, const Package& package, const PackageScene& known,
+                   const SceneView& view, SceneUpload& upload, VkCommandBuffer commands);
+
+// --- Poses (pose.cpp) ---
+
+// These implement GpuScene::update() and GpuScene::motion().
+Status recordPose(GpuScene::State& state, VkCommandBuffer commands, const MotionView& view,
+                  std::uint64_t frame);
+Result<MotionStatistics> readMotion(const GpuScene::State& state);
+
+std::string placeOf(const char* what, std::uint32_t index);
+// Error "scene-edit-handle".
+Diagnostic unknownHandle(const char* what);
+
+}  // namespace glint

@@ -1,0 +1,263 @@
+// SceneStore: lights, and emissive triangles as lights.
+#include "data/instance_math.h"
+#include "data/materials.h"
+#include "scene/scene_store.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace glint {
+namespace {
+
+bool isEmitterRecord(const SceneStore& store, std::uint32_t geometry) {
+    return (store.geometries.read<gpu::GeometryRecord>(geometry).flags & gpu::kGeometryEmitter) != 0;
+}
+
+bool emitsLight(const SceneStore& store, const StoredInstance& instance) {
+    const std::uint32_t end = instance.firstGeometry + instance.geometryCount;
+    for (std::uint32_t i = instance.firstGeometry; i < end; ++i) {
+        if (isEmitterRecord(store, i)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool hasTexture(const SceneStore& store) {
+    return store.emission->texture != package::EmissionEntry::kNone;
+}
+
+// The material's texture in the emission's slot. Requires that records have one.
+gpu::TextureRecord emissionRecord(const SceneStore& store, std::span<const std::uint8_t> record) {
+    return textureAt(tableWith(store.scene.materialLayout, record), 0, store.emission->texture);
+}
+
+// Returns null if the material has no texture there, or its texels are not known.
+std::shared_ptr<const EmissionTexels> texelsOf(const SceneStore& store, const StoredInstance& instance,
+                                               std::size_t primitive, const gpu::TextureRecord& record) {
+    if (!store.editable) {
+        return store.texelsOf(record.textureIndex);
+    }
+    const StoredMaterial& material = *store.materialSlots.find(materialOf(store, instance, primitive));
+    const auto use = std::ranges::find(material.textures, store.emission->texture, &TextureUse::slot);
+    return use == material.textures.end() ? nullptr : store.textures.find(use->texture)->texels;
+}
+
+// An update of a sealed scene may move the textures of some materials.
+bool mayChange(const SceneStore& store, std::uint32_t material) {
+    return !store.editable && store.moves &&
+           std::ranges::find(store.scene.changing, material, &ChangingMaterial::material) !=
+               store.scene.changing.end();
+}
+
+// Appends the parts of an instance.
+void addParts(SceneStore& store, const StoredInstance& instance, std::uint32_t number,
+              std::vector<EmitterPart>& parts) {
+    const StoredMesh& mesh = *store.meshes.find(instance.mesh);
+    forEachGeometry(
+        mesh, instance,
+        [&](const TriangleRange& range, const StoredPrimitive& primitive, std::uint32_t geometry) {
+            const auto record = store.geometries.read<gpu::GeometryRecord>(geometry);
+            if ((record.flags & gpu::kGeometryEmitter) == 0) {
+                return;
+            }
+            const std::span<const std::uint8_t> values = store.materials.at(record.materialIndex);
+            EmitterPart& part = parts.emplace_back();
+            part.geometry = geometry;
+            part.instance = number;
+            part.primitive = range.primitive;
+            part.material = record.materialIndex;
+            part.first = range.first;
+            part.count = range.count;
+            part.twoSided = (record.flags & gpu::kGeometryDoubleSided) != 0;
+            part.luminance = emittedLuminance(values, *store.emission);
+            part.shape = primitive.shape;
+            if (instance.shape != nullptr && instance.shape->vertices[range.primitive].positions != 0) {
+                part.motion = mesh.bounds;
+            }
+            if (hasTexture(store)) {
+                const gpu::TextureRecord texture = emissionRecord(store, values);
+                const bool isRead = (record.featureInputs & store.emission->textureInput) != 0;
+                std::optional<EmitterTexture> emission =
+                    emitterTexture(*store.emission, record.featureInputs, texture, store.samplers,
+                                   isRead ? texelsOf(store, instance, range.primitive, texture) : nullptr);
+                if (emission) {
+                    emission->animated = mayChange(store, record.materialIndex);
+                }
+                part.texels = store.emitterMeans.find(part.shape, record.materialIndex, emission);
+            }
+            store.emissiveMaterials.insert(record.materialIndex);
+        });
+}
+
+// Calls visit(instance) for the instances that are lights. Those that are hidden are left out, unless they
+// may be shown without other changes.
+template <typename Visit>
+void forEachEmissive(const SceneStore& store, const Visit& visit) {
+    for (const auto& [generation, handle] : store.emissiveInstances) {
+        const StoredInstance& instance = *store.instanceSlots.find(handle);
+        if (store.moves || instance.isShown()) {
+            visit(instance);
+        }
+    }
+}
+
+void gatherEmitters(SceneStore& store) {
+    std::vector<EmitterPart> parts;
+    std::uint32_t number = 0;
+    store.emissiveMaterials.clear();
+    forEachEmissive(store,
+                    [&](const StoredInstance& instance) { addParts(store, instance, number++, parts); });
+    store.emitterMeans.forgetUnused();
+    store.scene.emitters = Emitters(*store.emission, std::move(parts));
+    store.firstEmitters.replace(
+        std::span<const std::uint32_t>(store.scene.emitters.firstsOf(store.geometries.count())));
+}
+
+}  // namespace
+
+std::shared_ptr<const EmissionTexels> emissionTexels(const SceneStore& store, const ImageView& image,
+                                                     bool srgb) {
+    const std::uint64_t wanted = bytesOfLevel(TexelFormat::Rgba8, image.width, image.height, 0);
+    const bool readable = !isBlockFormat(image.format) || image.decoded.size() == wanted;
+    if (!store.emission || !hasTexture(store) || !srgb || !readable) {
+        return nullptr;
+    }
+    return std::make_shared<EmissionTexels>(image, srgb);
+}
+
+namespace {
+
+std::uint32_t placeOfLight(const SceneStore& store, LightHandle handle) {
+    const auto place = std::ranges::find(store.lightOrder, handle);
+    return static_cast<std::uint32_t>(place - store.lightOrder.begin());
+}
+
+}  // namespace
+
+LightHandle addLight(SceneStore& store, const LightView& light) {
+    const LightHandle handle = store.lightSlots.add(light);
+    store.lights.write(static_cast<std::uint32_t>(store.lightOrder.size()), makeLightRecord(light));
+    store.lightOrder.push_back(handle);
+    store.lightsDirty = true;
+    return handle;
+}
+
+void setLight(SceneStore& store, LightHandle handle, const LightView& light) {
+    LightView& entry = store.lightSlots.at(handle.index);
+    (entry.type == light.type ? store.lightsMoved : store.lightsDirty) = true;
+    entry = light;
+    store.lights.write(placeOfLight(store, handle), makeLightRecord(light));
+}
+
+void removeLight(SceneStore& store, LightHandle handle) {
+    store.lightSlots.take(handle);
+    std::erase(store.lightOrder, handle);
+    std::vector<gpu::LightRecord> records;
+    for (const LightHandle other : store.lightOrder) {
+        records.push_back(makeLightRecord(*store.lightSlots.find(other)));
+    }
+    store.lights.replace(std::span<const gpu::LightRecord>(records));
+    store.lightsDirty = true;
+}
+
+void noteEmitters(SceneStore& store, InstanceHandle handle, const StoredInstance& instance) {
+    if (!store.emission) {
+        return;
+    }
+    const bool was = store.emissiveInstances.contains(handle.generation);
+    const bool is = emitsLight(store, instance);
+    if (is) {
+        store.emissiveInstances[handle.generation] = handle;
+    } else if (was) {
+        store.emissiveInstances.erase(handle.generation);
+    }
+    store.emittersDirty = store.emittersDirty || was || is;
+    // These places may have held records of another instance. gatherEmitters() numbers those that are lights.
+    const std::uint32_t end = instance.firstGeometry + instance.geometryCount;
+    for (std::uint32_t i = instance.firstGeometry; i < end; ++i) {
+        store.firstEmitters.write(i, gpu::kNoEmitter);
+    }
+}
+
+void moveEmitters(SceneStore& store, InstanceHandle handle, bool changes, bool removed) {
+    const auto found = store.emissiveInstances.find(handle.generation);
+    if (found == store.emissiveInstances.end()) {
+        return;
+    }
+    store.emittersMoved = true;
+    // Hidden triangles of a scene that moves stay lights, which are dark.
+    store.emittersDirty = store.emittersDirty || removed || (changes && !store.moves);
+    if (removed) {
+        store.emissiveInstances.erase(found);
+    }
+}
+
+void replaceEmission(SceneStore& store, TextureHandle texture) {
+    if (!store.emission || !hasTexture(store)) {
+        return;
+    }
+    store.materialSlots.forEach([&](MaterialHandle handle, const StoredMaterial& material) {
+        const auto use = std::ranges::find(material.textures, store.emission->texture, &TextureUse::slot);
+        if (use != material.textures.end() && use->texture == texture &&
+            store.emissiveMaterials.contains(handle.index)) {
+            store.emittersDirty = true;
+        }
+    });
+}
+
+void writeMaterial(SceneStore& store, std::uint32_t material, std::span<const std::uint8_t> record) {
+    if (store.emissiveMaterials.contains(material)) {
+        const std::span<const std::uint8_t> old = store.materials.at(material);
+        const bool brightens =
+            emittedLuminance(old, *store.emission) != emittedLuminance(record, *store.emission);
+        if (store.editable) {
+            bool changes = brightens;
+            if (hasTexture(store)) {
+                const gpu::TextureRecord before = emissionRecord(store, old);
+                const gpu::TextureRecord after = emissionRecord(store, record);
+                changes = changes || !std::ranges::equal(std::as_bytes(std::span(&before, 1)),
+                                                         std::as_bytes(std::span(&after, 1)));
+            }
+            store.emittersDirty = store.emittersDirty || changes;
+        } else if (brightens) {
+            const ChangingMaterial changed{material, {record.begin(), record.end()}};
+            store.scene.emitters.takeMaterials(std::span(&changed, 1));
+            store.emittersMoved = true;
+        }
+    }
+    store.materials.writeBytes(material, record);
+}
+
+void settleLights(SceneStore& store) {
+    GpuScene::State& scene = store.scene;
+    if (store.emittersDirty) {
+        gatherEmitters(store);
+    }
+    const bool moved = store.lightsMoved || store.emittersMoved;
+    const bool restructured = store.lightsDirty || store.emittersDirty;
+    if (!moved && !restructured) {
+        return;
+    }
+    std::vector<gpu::LightRecord> records;
+    for (std::uint32_t i = 0; i < store.lights.count(); ++i) {
+        records.push_back(store.lights.read<gpu::LightRecord>(i));
+    }
+    std::vector<InstanceView> views;
+    forEachEmissive(store, [&](const StoredInstance& instance) { views.push_back(poseOf(store, instance)); });
+    const std::vector<EmitterBounds> bounds = scene.emitters.boundsAt(views);
+    if (!store.buildsTree) {
+        scene.emitters.setLeaves(bounds);
+    } else if (store.moves && !restructured) {
+        refitLightTree(scene.lightTree, records, bounds);
+    } else {
+        scene.lightTree = buildLightTree(records, bounds, store.moves);
+        scene.emitters.setLeaves(scene.lightTree);
+    }
+    if (store.buildsTree) {
+        store.lightNodes.replace(std::span<const gpu::LightNode>(scene.lightTree.nodes));
+    }
+    store.emitters.replace(std::span<const gpu::EmitterRecord>(scene.emitters.records));
+}
+
+}  // namespace glint

@@ -1,0 +1,619 @@
+// SceneStore: meshes and their BLASes, instances and their shapes.
+#include "data/scene_checks.h"
+#include "data/traversal_order.h"
+#include "scene/scene_store.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+namespace glint {
+namespace {
+
+constexpr std::uint32_t kRowsOfJoint = 3;
+constexpr std::uint32_t kWeightsOfRow = 4;
+
+BlasInput inputOf(const SceneStore& store, const StoredMesh& mesh, const MeshPart& part,
+                  const OwnShape* shape) {
+    BlasInput input;
+    input.dataAccess = store.dataAccess;
+    input.updatable = shape != nullptr && store.keeps();
+    for (const TriangleRange& range : part.ranges) {
+        const StoredPrimitive& primitive = mesh.primitives[range.primitive];
+        BlasGeometry& geometry =
+            input.geometries.emplace_back(blasGeometry(primitive.device, range.first, range.count));
+        if (shape != nullptr && shape->vertices[range.primitive].positions != 0) {
+            geometry.positions = shape->vertices[range.primitive].positions;
+        }
+        if (store.editable) {
+            // The TLAS says whether the material is opaque.
+            geometry.once = store.passesLight;
+            continue;
+        }
+        const std::uint32_t flags = primitive.entry.geometryFlags;
+        geometry.opaque =
+            range.opaque || (flags & (gpu::kGeometryAlphaTested | gpu::kGeometryPassesLight)) == 0;
+        geometry.once = (flags & gpu::kGeometryPassesLight) != 0;
+        geometry.micromap = geometry.opaque ? nullptr : primitive.micromap;
+    }
+    return input;
+}
+
+// Makes the structure of a BLAS. Structures of an upload that will be compacted are in memory of their own.
+Status makeStructure(SceneStore& store, BlasBuild& build, const PartPlace& place, bool isCompacted,
+                     AccelerationStructure& made) {
+    GpuScene::State& scene = store.scene;
+    SceneUpload* const upload = isCompacted ? store.upload : nullptr;
+    MemoryPool& pool = upload != nullptr ? compactionOf(*upload).pool : scene.pool;
+    GLINT_TRY(made, createStructure(scene.context, pool, build.structureBytes,
+                                    VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR));
+    build.info.dstAccelerationStructure = made.handle.get();
+    if (upload != nullptr) {
+        upload->compaction->parts.push_back(place);
+    }
+    if (store.upload != nullptr) {
+        ++scene.statistics.blasCount;
+        scene.statistics.blasBytes += build.structureBytes;
+        scene.statistics.blasUncompactedBytes += build.structureBytes;
+    }
+    return okStatus();
+}
+
+Status makePrimitive(SceneStore& store, const Package& package, const MeshContent& content, std::size_t index,
+                     StoredPrimitive& made) {
+    GpuScene::State& scene = store.scene;
+    const PrimitiveView& view = content.primitives[index];
+    const bool isOrdered = !content.ordered.empty() && !content.ordered[index].empty();
+    const std::span<const std::uint32_t> indices =
+        isOrdered ? std::span(content.ordered[index]) : view.indices;
+    if (!content.entries.empty()) {
+        made.entry = *content.entries[index];
+        made.micromap = content.micromaps[index];
+    }
+    std::vector<float> declared;
+    if (!package.attributes().empty()) {
+        declared =
+            store.editable ? joinAllAttributes(package, view) : joinAttributes(package, made.entry, view);
+    }
+    MemoryPool& inputs = store.upload != nullptr ? store.upload->pool : scene.pool;
+    GLINT_TRY(made.device, uploadPrimitive(scene.context, scene.pool, *store.uploader, view,
+                                           {indices, declared, content.positions[index].words},
+                                           {store.vertices, store.capacity.triangles, &inputs}));
+    // A scene that has one pose needs them no longer when that is computed.
+    MemoryPool& sources = store.keeps() ? scene.pool : inputs;
+    GLINT_TRY(made.source, uploadDeformSource(scene.context, sources, *store.uploader, view));
+    if (store.editable) {
+        made.attributes = attributesOf(package, view);
+    }
+    if (store.emission && (store.editable || (made.entry.geometryFlags & gpu::kGeometryEmitter) != 0)) {
+        made.shape = std::make_shared<EmitterShape>(*store.emission, view, indices);
+    }
+    return okStatus();
+}
+
+std::vector<MeshPart> partsOf(const SceneStore& store, const StoredMesh& mesh, const MeshContent& content) {
+    std::vector<PartedPrimitive> parted;
+    for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+        PartedPrimitive& primitive = parted.emplace_back();
+        primitive.triangleCount = mesh.primitives[i].device.triangleCount;
+        if (!store.editable) {
+            primitive.doubleSided = (mesh.primitives[i].entry.geometryFlags & gpu::kGeometryDoubleSided) != 0;
+            primitive.split = content.splits.empty() ? std::nullopt : content.splits[i];
+        }
+    }
+    return partitionMesh(parted, store.capacity);
+}
+
+// The box around the triangles of a part that the BLAS has.
+Box boxOfPart(const MeshPart& part, const MeshContent& content) {
+    Box box = Box::nothing();
+    for (const TriangleRange& range : part.ranges) {
+        const PrimitiveView& view = content.primitives[range.primitive];
+        const bool isOrdered = !content.ordered.empty() && !content.ordered[range.primitive].empty();
+        const std::span<const std::uint32_t> indices =
+            isOrdered ? std::span(content.ordered[range.primitive]) : view.indices;
+        box.extend(boxOf(view, indices.subspan(std::size_t{3} * range.first, std::size_t{3} * range.count)));
+    }
+    return box;
+}
+
+Status makeParts(SceneStore& store, const MeshContent& content, StoredMesh& mesh) {
+    std::uint32_t number = 0;
+    for (MeshPart& part : partsOf(store, mesh, content)) {
+        StoredPart& made = mesh.parts.emplace_back();
+        static_cast<MeshPart&>(made) = std::move(part);
+        made.box = boxOfPart(made, content);
+        mesh.geometryCount += static_cast<std::uint32_t>(made.ranges.size());
+        if (mesh.mayDeform()) {
+            const std::uint32_t first = made.ranges.front().primitive;
+            made.bounds.emplace(content.primitives.subspan(first, made.ranges.back().primitive - first + 1));
+        }
+        if (content.isShared) {
+            BlasBuild build = describeBuild(store.scene.context, inputOf(store, mesh, made, nullptr));
+            GLINT_TRY_DO(makeStructure(store, build, {store.meshes.next(), {}, number}, true, made.blas));
+            store.builds.push_back(std::move(build));
+        }
+        ++number;
+    }
+    return okStatus();
+}
+
+Status fillMesh(SceneStore& store, const Package& package, const MeshContent& content, StoredMesh& mesh) {
+    for (std::size_t i = 0; i < content.primitives.size(); ++i) {
+        StoredPrimitive& primitive = mesh.primitives.emplace_back();
+        GLINT_TRY_DO(makePrimitive(store, package, content, i, primitive));
+        mesh.jointCount = std::max(mesh.jointCount, primitive.source.jointCount);
+        mesh.weightCount = std::max(mesh.weightCount, primitive.source.targets);
+    }
+    if (mesh.mayDeform()) {
+        mesh.bounds = std::make_shared<MotionBounds>(content.primitives);
+    }
+    return makeParts(store, content, mesh);
+}
+
+// Gives every resource of a mesh to `take`.
+template <typename Take>
+void takeMesh(StoredMesh& mesh, const Take& take) {
+    for (StoredPart& part : mesh.parts) {
+        take(std::move(part.blas));
+    }
+    for (StoredPrimitive& primitive : mesh.primitives) {
+        take(std::move(primitive.device.buffer));
+        take(std::move(primitive.device.buildInput));
+        take(std::move(primitive.source.buffer));
+    }
+}
+
+template <typename Take>
+void takeShape(OwnShape& shape, const Take& take) {
+    for (AccelerationStructure& blas : shape.blases) {
+        take(std::move(blas));
+    }
+    for (DeformedVertices& vertices : shape.vertices) {
+        take(std::move(vertices.buffer));
+    }
+}
+
+}  // namespace
+
+Result<MeshHandle> addMesh(SceneStore& store, const Package& package, const MeshContent& content) {
+    StoredMesh mesh;
+    const std::size_t copies = store.uploader->waiting();
+    const std::size_t builds = store.builds.size();
+    if (Status status = fillMesh(store, package, content, mesh); !status) {
+        if (store.upload == nullptr) {
+            store.uploader->forgetAfter(copies);
+            store.builds.resize(builds);
+            takeMesh(mesh, [&](auto&& resource) {
+                discard(store.scene.pool, std::forward<decltype(resource)>(resource));
+            });
+        }
+        return status.error();
+    }
+    // Only the next recording reads the input of builds.
+    for (StoredPrimitive& primitive : mesh.primitives) {
+        if (store.upload != nullptr) {
+            store.upload->keep(std::move(primitive.device.buildInput));
+        } else {
+            store.retired.add(std::move(primitive.device.buildInput));
+        }
+    }
+    return store.meshes.add(std::move(mesh));
+}
+
+void retireMesh(SceneStore& store, MeshHandle handle) {
+    StoredMesh mesh = store.meshes.take(handle);
+    // A mesh that comes and goes between two recordings is never built.
+    std::set<VkAccelerationStructureKHR> gone;
+    for (const StoredPart& part : mesh.parts) {
+        gone.insert(part.blas.handle.get());
+    }
+    std::erase_if(store.builds,
+                  [&](const BlasBuild& build) { return gone.contains(build.info.dstAccelerationStructure); });
+    takeMesh(mesh, [&](auto&& resource) { store.retired.add(std::forward<decltype(resource)>(resource)); });
+}
+
+namespace {
+
+void countUse(SceneStore& store, MaterialHandle material, std::uint32_t instance, bool adds) {
+    StoredMaterial* const entry = store.materialSlots.find(material);
+    if (entry == nullptr) {
+        return;
+    }
+    std::uint32_t& count = entry->instances[instance];
+    count = adds ? count + 1 : count - 1;
+    if (count == 0) {
+        entry->instances.erase(instance);
+    }
+}
+
+// Links the instance to its mesh and its materials, and gives it geometry records.
+void link(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
+    StoredMesh& mesh = *store.meshes.find(instance.mesh);
+    const bool isLeftOut = !store.keeps() && !instance.isShown();
+    instance.geometryCount = isLeftOut ? 0 : mesh.geometryCount;
+    instance.firstGeometry = store.geometryRuns.allocate(instance.geometryCount);
+    instance.placeInMesh = static_cast<std::uint32_t>(mesh.instances.size());
+    mesh.instances.push_back(index);
+    for (const MaterialHandle material : instance.materials) {
+        countUse(store, material, index, true);
+    }
+}
+
+void releaseShape(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
+    if (instance.shape == nullptr) {
+        return;
+    }
+    OwnShape& shape = *instance.shape;
+    takeShape(shape, [&](auto&& resource) { store.retired.add(std::forward<decltype(resource)>(resource)); });
+    store.poseRuns.release(shape.pose.first, shape.pose.end - shape.pose.first);
+    store.deformRuns.release(shape.records.first, shape.records.end - shape.records.first);
+    store.shaped.erase(index);
+    store.reshaped.erase(index);
+    instance.shape.reset();
+    ++store.shapeVersion;
+}
+
+// Takes the instance out of the TLAS and gives back its records and uses.
+void unlink(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
+    StoredMesh& mesh = *store.meshes.find(instance.mesh);
+    std::uint32_t geometry = instance.firstGeometry;
+    for (const StoredPart& part : mesh.parts) {
+        store.topLevel.remove(geometry);
+        geometry += static_cast<std::uint32_t>(part.ranges.size());
+    }
+    store.geometryRuns.release(instance.firstGeometry, instance.geometryCount);
+    const std::uint32_t last = mesh.instances.back();
+    mesh.instances[instance.placeInMesh] = last;
+    mesh.instances.pop_back();
+    if (last != index) {
+        store.instanceSlots.at(last).placeInMesh = instance.placeInMesh;
+    }
+    for (const MaterialHandle material : instance.materials) {
+        countUse(store, material, index, false);
+    }
+    releaseShape(store, index, instance);
+    store.drawsDirty = true;
+}
+
+void shrinkRecords(SceneStore& store) {
+    store.geometries.shrink(store.geometryRuns.end());
+    store.firstEmitters.shrink(store.geometryRuns.end());
+    store.instances.shrink(store.instanceSlots.end());
+}
+
+std::uint32_t rowsOfWeights(std::uint32_t weights) {
+    return (weights + kWeightsOfRow - 1) / kWeightsOfRow;
+}
+
+Status fillShape(SceneStore& store, InstanceHandle handle, const StoredMesh& mesh, OwnShape& shape) {
+    GpuScene::State& scene = store.scene;
+    for (const StoredPrimitive& primitive : mesh.primitives) {
+        DeformedVertices& vertices = shape.vertices.emplace_back();
+        if (primitive.source.moves(shape.joints > 0, shape.weights > 0)) {
+            GLINT_TRY(vertices, createDeformedVertices(scene.context, scene.pool, primitive.device));
+        }
+    }
+    for (std::uint32_t part = 0; part < mesh.parts.size(); ++part) {
+        BlasBuild& build = shape.builds.emplace_back(
+            describeBuild(scene.context, inputOf(store, mesh, mesh.parts[part], &shape)));
+        GLINT_TRY_DO(
+            makeStructure(store, build, {{}, handle, part}, !store.keeps(), shape.blases.emplace_back()));
+    }
+    shape.histories.resize(mesh.parts.size());
+    return okStatus();
+}
+
+// Makes the vertices and BLASes of an instance that `pose` gives a shape of its own.
+Result<std::unique_ptr<OwnShape>> makeShape(SceneStore& store, const Package* package, InstanceHandle handle,
+                                            const StoredMesh& mesh, const InstanceView& pose) {
+    if (!store.deformPass) {
+        GLINT_TRY(auto pass, DeformPass::create(store.scene.context, *package));
+        store.deformPass.emplace(std::move(pass));
+    }
+    auto shape = std::make_unique<OwnShape>();
+    shape->joints = static_cast<std::uint32_t>(pose.joints.size());
+    shape->weights = static_cast<std::uint32_t>(pose.morphWeights.size());
+    if (Status status = fillShape(store, handle, mesh, *shape); !status) {
+        takeShape(*shape, [&](auto&& resource) {
+            discard(store.scene.pool, std::forward<decltype(resource)>(resource));
+        });
+        return status.error();
+    }
+    const auto run = [](RunAllocator& runs, std::uint32_t count) {
+        const std::uint32_t first = runs.allocate(count);
+        return IndexRange{first, first + count};
+    };
+    shape->pose = run(store.poseRuns, kRowsOfJoint * shape->joints + rowsOfWeights(mesh.weightCount));
+    shape->records =
+        run(store.deformRuns,
+            static_cast<std::uint32_t>(std::ranges::count_if(
+                shape->vertices, [](const DeformedVertices& vertices) { return vertices.positions != 0; })));
+    return shape;
+}
+
+// Writes the joints and weights. Returns whether they are others than before.
+bool writePose(SceneStore& store, const OwnShape& shape, const InstanceView& pose) {
+    std::vector<gpu::vec4> rows(shape.pose.end - shape.pose.first);
+    if (!pose.joints.empty()) {
+        std::memcpy(rows.data(), pose.joints.data(), pose.joints.size_bytes());
+    }
+    if (!pose.morphWeights.empty()) {
+        std::memcpy(rows.data() + std::size_t{kRowsOfJoint} * shape.joints, pose.morphWeights.data(),
+                    pose.morphWeights.size_bytes());
+    }
+    bool changes = false;
+    for (std::uint32_t i = 0; i < rows.size(); ++i) {
+        const std::uint32_t row = shape.pose.first + i;
+        const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&rows[i]);
+        const bool isSame = row < store.poses.count() &&
+                            std::ranges::equal(store.poses.at(row), std::span(bytes, sizeof rows[i]));
+        if (!isSame) {
+            store.poses.write(row, rows[i]);
+            changes = true;
+        }
+    }
+    return changes;
+}
+
+// Gives the instance its shape, whose records of deforming are then written.
+void takeShape(SceneStore& store, std::uint32_t index, StoredInstance& instance,
+               std::unique_ptr<OwnShape> shape, const InstanceView& pose) {
+    writePose(store, *shape, pose);
+    instance.shape = std::move(shape);
+    store.shaped.insert(index);
+    store.reshaped.insert(index);
+    writeDeforms(store, index, store.poseBuffer.address);
+}
+
+gpu::GeometryRecord recordAt(const SceneStore& store, const StoredInstance& instance, std::uint32_t index,
+                             const TriangleRange& range, const StoredPrimitive& primitive) {
+    gpu::GeometryRecord record =
+        makeGeometryRecord(entryOf(store, instance, range.primitive), primitive.device, range.first, index);
+    if (instance.shape != nullptr && instance.shape->vertices[range.primitive].positions != 0) {
+        const DeformedVertices& own = instance.shape->vertices[range.primitive];
+        record.positions = own.positions;
+        record.normals = own.normals;
+        record.tangents = own.tangents;
+        record.flags &=
+            ~(gpu::kGeometryPackedPositions | gpu::kGeometryPackedNormals | gpu::kGeometryPackedTangents);
+    }
+    return record;
+}
+
+// A BLAS of a scene that is edited is opaque, and seen from both sides, if the material of its geometry says
+// so.
+VkAccelerationStructureInstanceKHR placedAt(const SceneStore& store, const StoredInstance& instance,
+                                            bool doubleSided, VkDeviceAddress blas, std::uint32_t geometry) {
+    if (!store.editable) {
+        return makePlaced(doubleSided, geometry, instance.objectToWorld, blas);
+    }
+    const auto record = store.geometries.read<gpu::GeometryRecord>(geometry);
+    VkAccelerationStructureInstanceKHR placed =
+        makePlaced((record.flags & gpu::kGeometryDoubleSided) != 0, geometry, instance.objectToWorld, blas);
+    const bool opaque = (record.flags & (gpu::kGeometryAlphaTested | gpu::kGeometryPassesLight)) == 0;
+    const std::uint32_t flags =
+        placed.flags | static_cast<std::uint32_t>(opaque ? VK_GEOMETRY_INSTANCE_FORCE_OPAQUE_BIT_KHR
+                                                         : VK_GEOMETRY_INSTANCE_FORCE_NO_OPAQUE_BIT_KHR);
+    placed.flags = flags & 0xFFU;
+    // The shader binding table has a record for each shader ID.
+    placed.instanceShaderBindingTableRecordOffset = record.shaderId & 0xFFFFFFU;
+    return placed;
+}
+
+}  // namespace
+
+AccelerationStructure* structureAt(SceneStore& store, const PartPlace& place) {
+    if (StoredMesh* const mesh = store.meshes.find(place.mesh); mesh != nullptr) {
+        return &mesh->parts[place.part].blas;
+    }
+    StoredInstance* const instance = store.instanceSlots.find(place.instance);
+    return instance == nullptr || instance->shape == nullptr ? nullptr : &instance->shape->blases[place.part];
+}
+
+package::PrimitiveEntry entryOf(const SceneStore& store, const StoredInstance& instance,
+                                std::size_t primitive) {
+    const StoredPrimitive& stored = store.meshes.find(instance.mesh)->primitives[primitive];
+    if (!store.editable) {
+        return stored.entry;
+    }
+    const MaterialHandle material = materialOf(store, instance, primitive);
+    const Shading shading = *shadingOf(store, material, stored.attributes);
+    package::PrimitiveEntry entry{};
+    entry.shaderId = shading.shaderId;
+    entry.materialIndex = material.index;
+    entry.featureLobes = static_cast<std::uint32_t>(shading.features);
+    entry.featureInputs = static_cast<std::uint32_t>(shading.features >> 32U);
+    entry.geometryFlags = shading.geometryFlags;
+    return entry;
+}
+
+void writeGeometries(SceneStore& store, InstanceHandle handle, const StoredInstance& instance) {
+    const StoredMesh& mesh = *store.meshes.find(instance.mesh);
+    forEachGeometry(
+        mesh, instance,
+        [&](const TriangleRange& range, const StoredPrimitive& primitive, std::uint32_t index) {
+            const gpu::GeometryRecord record = recordAt(store, instance, handle.index, range, primitive);
+            const std::uint32_t before = index < store.geometries.count()
+                                             ? store.geometries.read<gpu::GeometryRecord>(index).flags
+                                             : ~record.flags;
+            store.drawsDirty = store.drawsDirty || ((before ^ record.flags) & gpu::kGeometryDoubleSided) != 0;
+            store.geometries.write(index, record);
+        });
+    noteEmitters(store, handle, instance);
+    placeParts(store, instance);
+    ++store.shapeVersion;
+}
+
+void placeParts(SceneStore& store, const StoredInstance& instance) {
+    const StoredMesh& mesh = *store.meshes.find(instance.mesh);
+    const bool isPlaced = instance.isShown() && instance.geometryCount > 0;
+    const OwnShape* const shape = instance.shape.get();
+    const InstanceView pose = poseOf(store, instance);
+    std::uint32_t geometry = instance.firstGeometry;
+    for (std::size_t i = 0; i < mesh.parts.size() && instance.geometryCount > 0; ++i) {
+        const StoredPart& part = mesh.parts[i];
+        if (isPlaced) {
+            const VkDeviceAddress blas = shape != nullptr ? shape->blases[i].address : part.blas.address;
+            store.topLevel.set(
+                placedAt(store, instance, part.doubleSided, blas, geometry),
+                shape != nullptr ? part.bounds->at(pose) : transformed(part.box, instance.objectToWorld));
+        } else {
+            store.topLevel.remove(geometry);
+        }
+        geometry += static_cast<std::uint32_t>(part.ranges.size());
+    }
+}
+
+InstanceView poseOf(const SceneStore& store, const StoredInstance& instance) {
+    InstanceView view;
+    view.objectToWorld = instance.objectToWorld;
+    view.visible = instance.visible;
+    if (instance.shape != nullptr) {
+        const OwnShape& shape = *instance.shape;
+        const std::span<const std::uint8_t> bytes = store.poses.at(shape.pose);
+        view.joints = {reinterpret_cast<const Rows*>(bytes.data()), shape.joints};
+        view.morphWeights = {
+            reinterpret_cast<const float*>(bytes.data() + std::size_t{shape.joints} * sizeof(Rows)),
+            shape.weights};
+    }
+    return view;
+}
+
+void writeDeforms(SceneStore& store, std::uint32_t instance, VkDeviceAddress poses) {
+    const StoredInstance& placed = store.instanceSlots.at(instance);
+    const StoredMesh& mesh = *store.meshes.find(placed.mesh);
+    const OwnShape& shape = *placed.shape;
+    const VkDeviceAddress joints = poses + shape.pose.first * sizeof(gpu::vec4);
+    const VkDeviceAddress weights = joints + shape.joints * sizeof(Rows);
+    std::uint32_t record = shape.records.first;
+    for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+        if (shape.vertices[i].positions != 0) {
+            const StoredPrimitive& primitive = mesh.primitives[i];
+            store.deforms.write(record++,
+                                makeDeformRecord(primitive.device, primitive.source, shape.vertices[i],
+                                                 shape.joints > 0 ? joints : 0, weights));
+        }
+    }
+}
+
+Result<InstanceHandle> placeInstance(SceneStore& store, const Package* package, StoredInstance instance,
+                                     const InstanceView& pose) {
+    std::unique_ptr<OwnShape> shape;
+    const StoredMesh& mesh = *store.meshes.find(instance.mesh);
+    if (mesh.deformsIn(pose)) {
+        GLINT_TRY(shape, makeShape(store, package, store.instanceSlots.next(), mesh, pose));
+    }
+    const InstanceHandle handle = store.instanceSlots.add(std::move(instance));
+    StoredInstance& placed = store.instanceSlots.at(handle.index);
+    link(store, handle.index, placed);
+    if (shape != nullptr) {
+        takeShape(store, handle.index, placed, std::move(shape), pose);
+    }
+    store.instances.write(handle.index, makeInstanceRecord(placed.objectToWorld));
+    store.drawsDirty = true;
+    writeGeometries(store, handle, placed);
+    return handle;
+}
+
+void removeInstance(SceneStore& store, InstanceHandle handle) {
+    moveEmitters(store, handle, true, true);
+    unlink(store, handle.index, store.instanceSlots.at(handle.index));
+    store.instanceSlots.take(handle);
+    shrinkRecords(store);
+}
+
+void moveInstance(SceneStore& store, InstanceHandle handle, const Rows& objectToWorld, bool visible) {
+    StoredInstance& instance = store.instanceSlots.at(handle.index);
+    const bool wasShown = instance.isShown();
+    const gpu::InstanceRecord record = makeInstanceRecord(objectToWorld);
+    const bool turned = store.instances.read<gpu::InstanceRecord>(handle.index).flags != record.flags;
+    if (instance.objectToWorld != objectToWorld) {
+        instance.objectToWorld = objectToWorld;
+        store.instances.write(handle.index, record);
+    }
+    instance.visible = visible;
+    const bool shows = wasShown != instance.isShown();
+    moveEmitters(store, handle, shows);
+    placeParts(store, instance);
+    store.drawsDirty = store.drawsDirty || turned || shows;
+}
+
+void exchangeMesh(SceneStore& store, InstanceHandle handle, MeshHandle mesh,
+                  std::span<const MaterialHandle> materials) {
+    StoredInstance& instance = store.instanceSlots.at(handle.index);
+    unlink(store, handle.index, instance);
+    instance.mesh = mesh;
+    instance.materials.assign(materials.begin(), materials.end());
+    link(store, handle.index, instance);
+    writeGeometries(store, handle, instance);
+    shrinkRecords(store);
+}
+
+void setOwnMaterial(SceneStore& store, InstanceHandle handle, std::size_t primitive,
+                    MaterialHandle material) {
+    StoredInstance& instance = store.instanceSlots.at(handle.index);
+    instance.materials.resize(store.meshes.find(instance.mesh)->primitives.size());
+    countUse(store, instance.materials[primitive], handle.index, false);
+    countUse(store, material, handle.index, true);
+    instance.materials[primitive] = material;
+    writeGeometries(store, handle, instance);
+}
+
+Status poseInstance(SceneStore& store, const Package* package, InstanceHandle handle,
+                    const InstanceView& pose) {
+    StoredInstance& instance = store.instanceSlots.at(handle.index);
+    OwnShape* const shape = instance.shape.get();
+    const bool isSameKind =
+        shape != nullptr && shape->joints == pose.joints.size() && shape->weights == pose.morphWeights.size();
+    if (isSameKind) {
+        if (writePose(store, *shape, pose)) {
+            store.reshaped.insert(handle.index);
+            moveEmitters(store, handle, false);
+            placeParts(store, instance);
+        }
+        return okStatus();
+    }
+    std::unique_ptr<OwnShape> made;
+    const StoredMesh& mesh = *store.meshes.find(instance.mesh);
+    if (mesh.deformsIn(pose)) {
+        GLINT_TRY(made, makeShape(store, package, handle, mesh, pose));
+    }
+    if (made == nullptr && shape == nullptr) {
+        return okStatus();
+    }
+    releaseShape(store, handle.index, instance);
+    if (made != nullptr) {
+        takeShape(store, handle.index, instance, std::move(made), pose);
+    }
+    writeGeometries(store, handle, instance);
+    return okStatus();
+}
+
+std::vector<Draw> drawsOf(SceneStore& store) {
+    std::vector<Draw> draws;
+    std::uint64_t triangles = 0;
+    std::uint32_t geometries = 0;
+    store.instanceSlots.forEach([&](InstanceHandle handle, const StoredInstance& instance) {
+        const bool mirrored =
+            (store.instances.read<gpu::InstanceRecord>(handle.index).flags & gpu::kInstanceMirrored) != 0;
+        const bool isHidden = !instance.isShown();
+        geometries += instance.geometryCount;
+        forEachGeometry(
+            *store.meshes.find(instance.mesh), instance,
+            [&](const TriangleRange& range, const StoredPrimitive&, std::uint32_t geometry) {
+                if (range.drawn == 0) {
+                    return;
+                }
+                const auto record = store.geometries.read<gpu::GeometryRecord>(geometry);
+                draws.push_back({geometry, 3 * range.drawn, (record.flags & gpu::kGeometryDoubleSided) != 0,
+                                 mirrored, handle.index, isHidden, range.primitive});
+                triangles += range.drawn;
+            });
+    });
+    store.scene.statistics.triangles = triangles;
+    store.scene.statistics.geometries = geometries;
+    return draws;
+}
+
+}  // namespace glint

@@ -1,0 +1,504 @@
+// SceneStore: the work of the device for the changes since the last recording.
+#include "context/vulkan_table.h"
+#include "data/geometry.h"
+#include "scene/scene_store.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <optional>
+#include <utility>
+
+namespace glint {
+namespace {
+
+constexpr VkBufferUsageFlags kRecordUsage =
+    VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+
+// The stretches that SceneStore::timer measures.
+constexpr std::uint32_t kDeformStretch = 0;
+constexpr std::uint32_t kBlasStretch = 1;
+constexpr std::uint32_t kTlasStretch = 2;
+constexpr std::uint32_t kStretches = 3;
+
+constexpr VkPipelineStageFlags2 kBuildStage = VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR;
+constexpr MemoryDependency kDeformToBuild{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT,
+                                          VK_ACCESS_2_SHADER_WRITE_BIT, kBuildStage,
+                                          VK_ACCESS_2_SHADER_READ_BIT};
+
+// An array of records on the device. It has no buffer if nothing reads it.
+struct Array {
+    RecordStore& store;
+    Buffer& device;
+    bool isRead = true;
+    bool isKept = true;  // else it is needed for this recording alone
+    VkBufferUsageFlags usage = 0;
+};
+constexpr std::size_t kArrays = 10;
+constexpr std::size_t kPoseArray = 7;
+
+// Everything that a recording needs to allocate. Its destructor discards everything that was not handed over.
+struct Prepared {
+    explicit Prepared(SceneStore& store)
+        : kept(store.scene.pool), brief(store.upload != nullptr ? store.upload->pool : store.scene.pool) {}
+    ~Prepared() {
+        for (Buffer& buffer : arrays) {
+            discard(kept, std::move(buffer));
+        }
+        discard(brief, std::move(staging));
+        discard(brief, std::move(scratch.buffer));
+        discard(kept, std::move(tlas));
+        discard(kept, std::move(tlasScratch.buffer));
+    }
+    Prepared(const Prepared&) = delete;
+    Prepared& operator=(const Prepared&) = delete;
+
+    MemoryPool& kept;
+    MemoryPool& brief;                   // of resources that only this recording needs
+    std::array<Buffer, kArrays> arrays;  // for those arrays that get another size
+    std::array<std::uint32_t, kArrays> capacities{};
+    Buffer staging;
+    Scratch scratch;
+    AccelerationStructure tlas;
+    Scratch tlasScratch;
+    std::uint32_t tlasCapacity = 0;
+    std::optional<DescriptorSet> set;
+    TlasBuild build;
+};
+
+class Recorder {
+public:
+    Recorder(SceneStore& store, VkCommandBuffer commands, MotionView::Builds builds)
+        : store_(store),
+          scene_(store.scene),
+          context_(store.scene.context),
+          commands_(commands),
+          rule_(builds),
+          prepared_(store) {}
+
+    Status record(std::uint64_t frame, RetiredLot* leftovers) {
+        settleLights(store_);
+        decide();
+        for (const auto& step : {&Recorder::prepareArrays, &Recorder::prepareTlas, &Recorder::prepareStaging,
+                                 &Recorder::prepareSet}) {
+            GLINT_TRY_DO((this->*step)());
+        }
+        if (store_.drawsDirty) {
+            scene_.batches = batchDraws(drawsOf(store_));
+        }
+        recordAll();
+        finish();
+        if (leftovers != nullptr) {
+            *leftovers = store_.retired.take();
+        } else {
+            store_.retired.close(frame);
+        }
+        store_.lastFrame = frame;
+        return okStatus();
+    }
+
+private:
+    std::array<Array, kArrays> arrays() {
+        const bool isPosed = store_.deformPass.has_value();
+        return {{{store_.geometries, scene_.geometries},
+                 {store_.instances, scene_.instances},
+                 {store_.materials, scene_.materials},
+                 {store_.lights, scene_.lights},
+                 {store_.lightNodes, scene_.lightNodes, store_.buildsTree},
+                 {store_.emitters, scene_.emitterRecords, store_.emission.has_value()},
+                 {store_.firstEmitters, scene_.firstEmitters, store_.emission.has_value()},
+                 {store_.poses, store_.poseBuffer, isPosed, store_.keeps()},
+                 {store_.deforms, store_.deformBuffer, isPosed, store_.keeps()},
+                 {store_.topLevel.records(), store_.placedBuffer, true, store_.keeps(),
+                  VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR}}};
+    }
+
+    bool lightsChange() const {
+        return store_.lightsDirty || store_.lightsMoved || store_.emittersDirty || store_.emittersMoved;
+    }
+
+    // Decides which vertices are computed, and which structures are built or refitted.
+    void decide() {
+        for (const std::uint32_t index : store_.reshaped) {
+            const StoredInstance& instance = store_.instanceSlots.at(index);
+            const OwnShape& shape = *instance.shape;
+            const StoredMesh& mesh = *store_.meshes.find(instance.mesh);
+            const double surface = mesh.bounds->at(poseOf(store_, instance)).surface();
+            std::uint32_t record = shape.records.first;
+            for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+                if (shape.vertices[i].positions != 0) {
+                    deformed_.emplace_back(record++, mesh.primitives[i].device.vertexCount);
+                }
+            }
+            for (std::size_t i = 0; i < shape.builds.size(); ++i) {
+                const BuildAction action = actionOf(shape, shape.histories[i], surface);
+                shapes_.push_back({index, i, action, surface});
+                works_.push_back({&shape.builds[i], action == BuildAction::Refit});
+            }
+        }
+        for (const BlasBuild& build : store_.builds) {
+            works_.push_back({&build});
+        }
+        tlasAction_ = store_.topLevel.next(!works_.empty(), rule_);
+        if (store_.trims && tlasAction_ == BuildAction::Keep) {
+            tlasAction_ = BuildAction::Build;
+        }
+        store_.topLevel.prepare(tlasAction_);
+    }
+
+    BuildAction actionOf(const OwnShape& shape, const BlasHistory& history, double surface) const {
+        if (!shape.isBuilt) {
+            return BuildAction::Build;
+        }
+        return rule_ == MotionView::Builds::ByRule  ? history.next(true, surface)
+               : rule_ == MotionView::Builds::Refit ? BuildAction::Refit
+                                                    : BuildAction::Build;
+    }
+
+    // The size that an array or the TLAS should have. It doubles, and shrinks only after trim().
+    std::uint32_t capacityFor(std::uint32_t count, std::uint32_t now, std::uint32_t first) const {
+        if (store_.upload != nullptr || !store_.keeps()) {
+            return std::max(count, 1U);
+        }
+        if (count > now) {
+            return std::max(count, 2 * now);
+        }
+        return store_.trims ? std::max(count, first) : now;
+    }
+
+    Status prepareArrays() {
+        std::size_t i = 0;
+        for (const auto& [records, device, isRead, isKept, usage] : arrays()) {
+            // An array that is not kept is made for the recordings that read it.
+            const bool isIdle = !isKept && !(isRead && isNeeded(i));
+            const std::uint32_t capacity =
+                isIdle ? records.capacity
+                       : capacityFor(records.count(), records.capacity, records.firstCapacity);
+            prepared_.capacities[i] = capacity;
+            if (isRead && !isIdle && capacity != records.capacity) {
+                GLINT_TRY(prepared_.arrays[i],
+                          createBuffer(context_, isKept ? prepared_.kept : prepared_.brief,
+                                       capacity * records.stride(), kRecordUsage | usage));
+                if (!isKept) {
+                    records.touchAll();
+                }
+                if (i == kPoseArray) {
+                    for (const std::uint32_t instance : store_.shaped) {
+                        writeDeforms(store_, instance, prepared_.arrays[i].address);
+                    }
+                }
+            }
+            ++i;
+        }
+        return okStatus();
+    }
+
+    bool isNeeded(std::size_t array) const {
+        return array == kArrays - 1 ? tlasAction_ != BuildAction::Keep : !deformed_.empty();
+    }
+
+    Status prepareTlas() {
+        if (tlasAction_ == BuildAction::Keep) {
+            return okStatus();
+        }
+        const std::uint32_t count = store_.topLevel.records().count();
+        const std::uint32_t capacity = capacityFor(count, store_.tlasCapacity, store_.firstTlasCapacity);
+        TlasBuild& build = prepared_.build;
+        GLINT_TRY_DO(describeTlas(context_, 0, capacity, store_.topLevel.isUpdatable(), build));
+        if (capacity != store_.tlasCapacity) {
+            prepared_.tlasCapacity = capacity;
+            GLINT_TRY(prepared_.tlas,
+                      createStructure(context_, prepared_.kept, build.sizes.accelerationStructureSize,
+                                      VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR));
+        }
+        const VkDeviceSize bytes = std::max(build.sizes.buildScratchSize, build.sizes.updateScratchSize);
+        if (bytes > store_.tlasScratchBytes || prepared_.tlas.handle.get() != VK_NULL_HANDLE) {
+            GLINT_TRY(prepared_.tlasScratch,
+                      createScratch(context_, store_.keeps() ? prepared_.kept : prepared_.brief, bytes));
+            tlasScratchBytes_ = bytes;
+        }
+        return okStatus();
+    }
+
+    // Makes the staging buffer of the records, and scratch memory for BLASes.
+    Status prepareStaging() {
+        VkDeviceSize bytes = 0;
+        for (const auto& [records, device, isRead, isKept, usage] : arrays()) {
+            for (const IndexRange& range : records.dirty()) {
+                bytes += (range.end - range.first) * records.stride();
+            }
+        }
+        if (bytes > 0) {
+            GLINT_TRY(prepared_.staging, createBuffer(context_, prepared_.brief, bytes,
+                                                      VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload));
+        }
+        scratchBytes_ = scratchBytesOf(context_, works_);
+        if (scratchBytes_ > 0) {
+            GLINT_TRY(prepared_.scratch, createScratch(context_, prepared_.brief, scratchBytes_));
+        }
+        return okStatus();
+    }
+
+    // Sets of frames in flight stay as they are: another version gets another set.
+    Status prepareSet() {
+        const bool newTlas = prepared_.tlas.handle.get() != VK_NULL_HANDLE;
+        if (!store_.setDirty && !newTlas) {
+            return okStatus();
+        }
+        GLINT_TRY(prepared_.set,
+                  makeSceneSet(scene_, newTlas ? prepared_.tlas.handle.get() : scene_.tlas.handle.get(),
+                               store_.white.view.get()));
+        return okStatus();
+    }
+
+    bool hasWork() const {
+        const bool resized = std::ranges::any_of(
+            prepared_.arrays, [](const Buffer& buffer) { return buffer.handle.get() != VK_NULL_HANDLE; });
+        return resized || tlasAction_ != BuildAction::Keep || !works_.empty() ||
+               prepared_.staging.handle.get() != VK_NULL_HANDLE || store_.uploader->waiting() > 0;
+    }
+
+    // Keeps a buffer until the device has completed the recording.
+    void retire(Buffer&& buffer) {
+        if (store_.upload != nullptr) {
+            store_.upload->keep(std::move(buffer));
+        } else {
+            store_.retired.add(std::move(buffer));
+        }
+    }
+
+    void recordAll() {
+        if (!hasWork()) {
+            return;
+        }
+        // Earlier frames may still read the memory that is written here.
+        recordDependency(context_, commands_, kAllToAll);
+        recordResizes();
+        for (Buffer& staging : store_.uploader->record(commands_)) {
+            retire(std::move(staging));
+        }
+        recordCopies();
+        recordDependency(context_, commands_, kAllToAll);
+        const bool isTimed = !works_.empty() || tlasAction_ != BuildAction::Keep;
+        if (isTimed) {
+            store_.timer->recordReset(commands_);
+        }
+        recordStretch(isTimed, kDeformStretch, "deform", [&] { recordDeform(); });
+        recordStretch(isTimed, kBlasStretch, "bottom levels", [&] {
+            recordBuilds(context_, commands_, works_, {prepared_.scratch.address, scratchBytes_});
+        });
+        if (store_.upload != nullptr) {
+            recordCompactedSizes(*store_.upload, commands_, structures());
+        }
+        recordDependency(context_, commands_, kBuildsInOrder);
+        recordStretch(isTimed, kTlasStretch, "top level", [&] { recordTlas(); });
+        recordDependency(context_, commands_, kAllToAll);
+    }
+
+    template <typename Record>
+    void recordStretch(bool isTimed, std::uint32_t stretch, const char* name, const Record& record) {
+        if (!isTimed) {
+            return;
+        }
+        const DeviceTable& vk = context_.vk;
+        if (vk.CmdBeginDebugUtilsLabelEXT != nullptr) {
+            VkDebugUtilsLabelEXT label{};
+            label.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
+            label.pLabelName = name;
+            vk.CmdBeginDebugUtilsLabelEXT(commands_, &label);
+        }
+        store_.timer->recordBegin(commands_, stretch);
+        record();
+        store_.timer->recordEnd(commands_, stretch);
+        if (vk.CmdEndDebugUtilsLabelEXT != nullptr) {
+            vk.CmdEndDebugUtilsLabelEXT(commands_);
+        }
+    }
+
+    // Copies old content into arrays of another size.
+    void recordResizes() {
+        std::size_t i = 0;
+        bool copied = false;
+        for (const auto& [records, device, isRead, isKept, usage] : arrays()) {
+            Buffer& resized = prepared_.arrays[i];
+            if (resized.handle.get() != VK_NULL_HANDLE) {
+                const std::uint32_t kept =
+                    std::min({records.capacity, prepared_.capacities[i], records.count()});
+                if (kept > 0 && device.handle.get() != VK_NULL_HANDLE) {
+                    const VkBufferCopy region{0, 0, kept * records.stride()};
+                    context_.vk.CmdCopyBuffer(commands_, device.handle.get(), resized.handle.get(), 1,
+                                              &region);
+                    copied = true;
+                }
+                store_.retired.add(std::move(device));
+                device = std::move(resized);
+            }
+            records.capacity = prepared_.capacities[i];
+            ++i;
+        }
+        if (copied) {
+            recordDependency(context_, commands_, kTransferToTransfer);
+        }
+    }
+
+    void recordCopies() {
+        VkDeviceSize from = 0;
+        for (const auto& [records, device, isRead, isKept, usage] : arrays()) {
+            std::vector<VkBufferCopy> regions;
+            for (const IndexRange& range : records.dirty()) {
+                const std::span<const std::uint8_t> bytes = records.at(range);
+                std::memcpy(prepared_.staging.mapped + from, bytes.data(), bytes.size());
+                regions.push_back({from, range.first * records.stride(), bytes.size()});
+                from += bytes.size();
+            }
+            if (!regions.empty() && device.handle.get() != VK_NULL_HANDLE) {
+                context_.vk.CmdCopyBuffer(commands_, prepared_.staging.handle.get(), device.handle.get(),
+                                          static_cast<std::uint32_t>(regions.size()), regions.data());
+            }
+            records.clearDirty();
+        }
+    }
+
+    void recordDeform() {
+        if (!deformed_.empty()) {
+            store_.deformPass->record(commands_, store_.deformBuffer.address, deformed_);
+            recordDependency(context_, commands_, kDeformToBuild);
+        }
+    }
+
+    // The structures that an upload builds, in the order of its compaction.
+    std::vector<VkAccelerationStructureKHR> structures() {
+        std::vector<VkAccelerationStructureKHR> handles;
+        if (store_.upload->compaction != nullptr) {
+            for (const PartPlace& place : store_.upload->compaction->parts) {
+                handles.push_back(structureAt(store_, place)->handle.get());
+            }
+        }
+        return handles;
+    }
+
+    void recordTlas() {
+        if (tlasAction_ == BuildAction::Keep) {
+            return;
+        }
+        if (prepared_.tlas.handle.get() != VK_NULL_HANDLE) {
+            store_.retired.add(std::move(scene_.tlas));
+            scene_.tlas = std::move(prepared_.tlas);
+            store_.tlasCapacity = prepared_.tlasCapacity;
+        }
+        if (prepared_.tlasScratch.buffer.handle.get() != VK_NULL_HANDLE) {
+            store_.retired.add(std::move(store_.tlasScratch.buffer));
+            store_.tlasScratch = std::move(prepared_.tlasScratch);
+            store_.tlasScratchBytes = tlasScratchBytes_;
+        }
+        prepared_.build.geometry.geometry.instances.data.deviceAddress = store_.placedBuffer.address;
+        recordTlasBuild(context_, commands_,
+                        {prepared_.build, store_.tlasScratch.address, store_.topLevel.records().count()},
+                        scene_.tlas.handle.get(), tlasAction_ == BuildAction::Refit);
+    }
+
+    // Takes over everything that was prepared, and notes that nothing is pending.
+    void finish() {
+        if (prepared_.set) {
+            store_.retired.add(std::move(scene_.descriptorPool));
+            scene_.descriptorPool = std::move(prepared_.set->pool);
+            scene_.set = prepared_.set->set;
+        }
+        retire(std::move(prepared_.staging));
+        retire(std::move(prepared_.scratch.buffer));
+        if (!store_.keeps()) {
+            dropBriefs();
+        }
+        if (lightsChange()) {
+            scene_.lightCount = store_.lights.count();
+            scene_.emitterCount = store_.emitters.count();
+        }
+        scene_.statistics.instances = static_cast<std::uint32_t>(store_.instanceSlots.count());
+        store_.topLevel.apply(tlasAction_);
+        takeStatistics();
+        store_.reshaped.clear();
+        store_.builds.clear();
+        for (bool* const flag :
+             {&store_.drawsDirty, &store_.lightsDirty, &store_.lightsMoved, &store_.emittersDirty,
+              &store_.emittersMoved, &store_.setDirty, &store_.trims}) {
+            *flag = false;
+        }
+    }
+
+    // Gives up what a scene that stays still needs for no other recording.
+    void dropBriefs() {
+        retire(std::move(store_.tlasScratch.buffer));
+        store_.tlasScratchBytes = 0;
+        for (const auto& [records, device, isRead, isKept, usage] : arrays()) {
+            if (!isKept) {
+                retire(std::move(device));
+                device = {};
+                records.capacity = 0;
+            }
+        }
+    }
+
+    void takeStatistics() {
+        MotionStatistics& statistics = store_.statistics;
+        statistics = {};
+        statistics.deformed = static_cast<std::uint32_t>(store_.reshaped.size());
+        statistics.topLevel = static_cast<MotionStatistics::TopLevel>(tlasAction_);
+        for (const auto& [index, part, action, surface] : shapes_) {
+            OwnShape& shape = *store_.instanceSlots.at(index).shape;
+            shape.isBuilt = true;
+            shape.histories[part].apply(action, surface);
+            ++(action == BuildAction::Refit ? statistics.refits : statistics.rebuilds);
+        }
+    }
+
+    struct ShapePart {
+        std::uint32_t instance = 0;
+        std::size_t part = 0;
+        BuildAction action = BuildAction::Keep;
+        double surface = 0.0;
+    };
+
+    SceneStore& store_;
+    GpuScene::State& scene_;
+    Context::State& context_;
+    VkCommandBuffer commands_;
+    MotionView::Builds rule_;
+    Prepared prepared_;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> deformed_;
+    std::vector<ShapePart> shapes_;
+    std::vector<BlasWork> works_;
+    BuildAction tlasAction_ = BuildAction::Keep;
+    VkDeviceSize scratchBytes_ = 0;
+    VkDeviceSize tlasScratchBytes_ = 0;
+};
+
+static_assert(static_cast<int>(BuildAction::Keep) == static_cast<int>(MotionStatistics::TopLevel::Kept));
+static_assert(static_cast<int>(BuildAction::Refit) == static_cast<int>(MotionStatistics::TopLevel::Updated));
+static_assert(static_cast<int>(BuildAction::Build) == static_cast<int>(MotionStatistics::TopLevel::Rebuilt));
+
+}  // namespace
+
+Status checkFrame(const SceneStore& store, std::uint64_t frame) {
+    if (frame < store.lastFrame) {
+        return makeError(
+            "scene-edit-frame", "",
+            "frame " + std::to_string(frame) + " is recorded after frame " + std::to_string(store.lastFrame),
+            "number frames in the order in which they are recorded");
+    }
+    return okStatus();
+}
+
+Status recordChanges(SceneStore& store, VkCommandBuffer commands, std::uint64_t frame,
+                     MotionView::Builds builds, RetiredLot* leftovers) {
+    if (!store.timer) {
+        GLINT_TRY(auto timer, Timer::create(store.scene.context, kStretches));
+        store.timer.emplace(std::move(timer));
+    }
+    return Recorder(store, commands, builds).record(frame, leftovers);
+}
+
+Result<std::vector<double>> readTimes(const SceneStore& store) {
+    return store.timer->read(kStretches);
+}
+
+}  // namespace glint

@@ -1,0 +1,327 @@
+// Tests scenes that move and are edited at once: poses, skins and morphs beside edits, with two frames in
+// flight.
+#include "render/edited_scene.h"
+#include "render/harness.h"
+#include "render/moving_scenes.h"
+#include "render/scene_builder.h"
+#include "scene/scene_store.h"
+#include "support/nightly.h"
+
+#include <glint/session/scene_view.h>
+
+#include <array>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace glint::testing {
+namespace {
+
+constexpr std::uint32_t kWidth = 32;
+constexpr std::uint32_t kHeight = 18;
+
+// A mirror, a strip that follows joints, a strip with morph targets, and two squares.
+gltf::Scene playingScene() {
+    gltf::Scene scene = skinnedScene(0.3);
+    const gltf::Scene morphed = morphedScene({0.5, 0.2});
+    gltf::Primitive strip = morphed.meshes[1].primitives[0];
+    strip.material = addMaterial(scene, morphed.materials[static_cast<std::size_t>(strip.material)]);
+    const int mesh = addMesh(scene, std::move(strip));
+    scene.meshes[static_cast<std::size_t>(mesh)].weights = {0.0, 0.0};
+    addInstance(scene, mesh, placed(-1, -0.8, -3, 0.1));
+    scene.nodes.back().weights = {0.5, 0.2};
+    const int square = addMesh(scene, makeQuad(1, {-0.3F, -0.3F, 0}, {0.6F, 0, 0}, {0, 0.6F, 0}));
+    addInstance(scene, square, placed(1, 0, -3));
+    addInstance(scene, square, placed(1, 0.7, -2.8, 0.4));
+    return scene;
+}
+
+// A scene that is edited and moves, and a description of its content.
+class Playing {
+public:
+    Playing()
+        : scene_(playingScene()),
+          loaded_(scene_, EditedSceneOptions().settings),
+          frame_(defaultSetup(scene_, kWidth, kHeight).frame),
+          frames_(sharedContext()) {
+        if (!loaded_.ok()) {
+            return;
+        }
+        data_ = session::makeSceneView(scene_);
+        data_.moves = true;
+        SceneView view = data_.view();
+        view.editable = true;
+        gpuScene_ = uploadScene(loaded_.package(), view);
+        if (gpuScene_ == nullptr) {
+            return;
+        }
+        for (std::uint32_t i = 0; i < data_.instances.size(); ++i) {
+            Instance& instance = instances_.emplace_back();
+            instance.handle = editor().instance(i);
+            instance.uploaded = i;
+            instance.take(data_.instances[i]);
+        }
+        lights_ = data_.lights;
+        renderer_ = makeRenderer(loaded_.package(), *gpuScene_, options());
+    }
+    bool ok() const {
+        return renderer_ != nullptr;
+    }
+    GpuScene& gpuScene() {
+        return *gpuScene_;
+    }
+    SceneEditor& editor() {
+        return *gpuScene_->editor();
+    }
+
+    // Gives the nodes that play another pose, which the next frame takes.
+    void pose(std::mt19937& random) {
+        const auto value = [&](double least, double most) {
+            return std::uniform_real_distribution<double>(least, most)(random);
+        };
+        scene_.nodes[3].world = placed(value(-0.3, 0.3), 0.2, -2.5, value(-0.6, 0.6));
+        scene_.nodes[4].weights = {value(0, 1), value(0, 1)};
+        scene_.nodes[5].world = placed(1, value(-0.5, 0.5), -3, value(-1, 1));
+        scene_.lights[0].color[0] = static_cast<float>(value(0.2, 1));
+        session::poseSceneView(scene_, data_);
+        isPosed_ = true;
+        for (Instance& instance : instances_) {
+            if (instance.uploaded && kPlays[*instance.uploaded]) {
+                const bool visible = instance.view.visible;
+                instance.take(data_.instances[*instance.uploaded]);
+                instance.view.visible = visible;  // the pose shows and hides nothing
+            }
+        }
+        lights_[0] = data_.lights[0];
+    }
+    void edit(std::mt19937& random) {
+        const auto number = [&](std::size_t count) {
+            return std::uniform_int_distribution<std::size_t>(0, count - 1)(random);
+        };
+        const std::size_t chosen = number(instances_.size());
+        switch (number(5)) {
+            case 0:
+                add(number(data_.instances.size()), static_cast<float>(number(100)));
+                break;
+            case 1:
+                remove(chosen);
+                break;
+            case 2:
+                show(instances_[chosen], number(2) == 0);
+                break;
+            case 3:
+                move(instances_[chosen], static_cast<float>(number(100)));
+                break;
+            default:
+                change(instances_[chosen], number(data_.instances.size()));
+                break;
+        }
+    }
+    // Records the pose and the edits, and a frame after them.
+    void frame() {
+        const VkCommandBuffer commands = frames_.begin();
+        gpuScene_->complete(frames_.completed());
+        const Status recorded = isPosed_ ? gpuScene_->update(commands, data_.motion(), frames_.frame())
+                                         : editor().record(commands, frames_.frame());
+        EXPECT_TRUE(recorded) << (recorded ? "" : toString(recorded.error()));
+        isPosed_ = false;
+        const Status drawn = renderer_->record(commands, frame_);
+        EXPECT_TRUE(drawn) << (drawn ? "" : toString(drawn.error()));
+        frames_.submit();
+    }
+    void drain() {
+        frames_.drain();
+        gpuScene_->complete(frames_.completed());
+    }
+    void expectSameAsFresh(const std::string& what) {
+        frame();
+        drain();
+        const LinearImage image = drawn(*renderer_, frame_);
+        SceneView view = data_.view();
+        std::vector<InstanceView> views;
+        for (const Instance& instance : instances_) {
+            views.push_back(instance.view);
+        }
+        view.instances = views;
+        view.lights = lights_;
+        view.moves = false;
+        const auto fresh = uploadScene(loaded_.package(), view);
+        ASSERT_NE(fresh, nullptr);
+        const auto renderer = makeRenderer(loaded_.package(), *fresh, options());
+        ASSERT_NE(renderer, nullptr);
+        EXPECT_EQ(image.pixels, drawn(*renderer, frame_).pixels) << what;
+        expectNoValidationMessages();
+    }
+    // Removes what was added.
+    void clear() {
+        for (std::size_t i = instances_.size(); i-- > 0;) {
+            if (!instances_[i].uploaded) {
+                remove(i);
+            }
+        }
+    }
+    std::optional<SurfacePlace> placeAt(std::uint32_t x, std::uint32_t y) {
+        const auto place = renderer_->readPlace(x, y);
+        EXPECT_TRUE(place);
+        return place ? *place : std::nullopt;
+    }
+    InstanceHandle handleOf(std::size_t uploaded) const {
+        return instances_[uploaded].handle;
+    }
+
+private:
+    // The instances that a pose changes: the two strips and the first square.
+    static constexpr std::array<bool, 5> kPlays{false, true, true, true, false};
+
+    struct Instance {
+        InstanceHandle handle;
+        std::optional<std::size_t> uploaded{};  // its number
+        InstanceView view{};
+        std::vector<std::array<float, 12>> joints{};
+        std::vector<float> weights{};
+
+        void take(const InstanceView& other) {
+            joints.assign(other.joints.begin(), other.joints.end());
+            weights.assign(other.morphWeights.begin(), other.morphWeights.end());
+            view = other;
+            view.joints = joints;
+            view.morphWeights = weights;
+        }
+    };
+
+    static RendererOptions options() {
+        RendererOptions options = EditedSceneOptions().renderer;
+        options.width = kWidth;
+        options.height = kHeight;
+        return options;
+    }
+    static std::array<float, 12> rowsAt(float place) {
+        const float x = 0.03F * place - 1.5F;
+        return {0.5F, 0, 0, x, 0, 0.5F, 0, 0.2F * x, 0, 0, 0.5F, -2.2F - 0.1F * x};
+    }
+
+    // Adds an instance in the present pose of an uploaded one.
+    void add(std::size_t like, float place) {
+        Instance instance;
+        instance.take(data_.instances[like]);
+        instance.view.objectToWorld = rowsAt(place);
+        PlacedMesh placed;
+        placed.mesh = editor().mesh(instance.view.mesh);
+        placed.objectToWorld = instance.view.objectToWorld;
+        placed.joints = instance.joints;
+        placed.morphWeights = instance.weights;
+        const Result<AddedInstance> made = editor().addInstance(placed);
+        ASSERT_TRUE(made) << toString(made.error());
+        instance.handle = made->instance;
+        instance.view.visible = true;
+        // Moving a vector keeps its elements in place.
+        instances_.push_back(std::move(instance));
+    }
+    // Uploaded instances stay, since the others are counted after them.
+    void remove(std::size_t index) {
+        if (!instances_[index].uploaded) {
+            EXPECT_TRUE(editor().removeInstance(instances_[index].handle));
+            instances_.erase(instances_.begin() + static_cast<std::ptrdiff_t>(index));
+        }
+    }
+    void show(Instance& instance, bool visible) {
+        EXPECT_TRUE(editor().showInstance(instance.handle, visible));
+        instance.view.visible = visible;
+    }
+    void move(Instance& instance, float place) {
+        if (!instance.uploaded || !kPlays[*instance.uploaded]) {
+            instance.view.objectToWorld = rowsAt(place);
+            EXPECT_TRUE(editor().moveInstance(instance.handle, instance.view.objectToWorld));
+        }
+    }
+    // Gives an added instance another pose, or takes its pose away.
+    void change(Instance& instance, std::size_t like) {
+        if (instance.uploaded) {
+            return;
+        }
+        const InstanceView& other = data_.instances[like];
+        const bool isSame = other.mesh == instance.view.mesh;
+        const std::array<float, 12> rows = instance.view.objectToWorld;
+        const bool visible = instance.view.visible;
+        InstanceView rest;
+        rest.mesh = instance.view.mesh;
+        instance.take(isSame ? other : rest);
+        instance.view.objectToWorld = rows;
+        instance.view.visible = visible;
+        EXPECT_TRUE(editor().poseInstance(instance.handle, instance.joints, instance.weights));
+    }
+
+    gltf::Scene scene_;  // in its present pose
+    LoadedScene loaded_;
+    FrameOptions frame_;
+    TwoFrames frames_;
+    session::SceneViewData data_;
+    std::unique_ptr<GpuScene> gpuScene_;
+    std::unique_ptr<Renderer> renderer_;
+    std::vector<Instance> instances_;  // the uploaded ones first
+    std::vector<LightView> lights_;
+    bool isPosed_ = false;
+};
+
+TEST(LiveMotion, PosesAndEditsGiveThePictureOfAFreshUpload) {
+    Playing playing;
+    ASSERT_TRUE(playing.ok());
+    playing.expectSameAsFresh("as uploaded");
+    const std::uint64_t allocated = playing.gpuScene().allocatedBytes();
+    const int count = test::nightly() ? 10000 : 160;
+    const int interval = test::nightly() ? 100 : 20;
+    std::mt19937 random(7);
+    for (int i = 1; i <= count; ++i) {
+        if (random() % 2 == 0) {
+            playing.pose(random);
+        }
+        playing.edit(random);
+        if (i % interval == 0) {
+            playing.expectSameAsFresh("after " + std::to_string(i) + " edits");
+        } else {
+            playing.frame();
+        }
+    }
+    playing.clear();
+    playing.frame();
+    playing.drain();
+    playing.editor().trim();
+    playing.frame();
+    playing.drain();
+    EXPECT_EQ(playing.gpuScene().allocatedBytes(), allocated);
+}
+
+// What an edit has moved or hidden stays so, as long as the poses do not move or hide it themselves.
+TEST(LiveMotion, EditsOutlastPosesThatLeaveThemAlone) {
+    Playing playing;
+    ASSERT_TRUE(playing.ok());
+    std::mt19937 random(3);
+    const InstanceHandle square = playing.handleOf(4);
+    playing.frame();
+    playing.drain();
+    std::optional<SurfacePlace> seen;
+    std::uint32_t x = 0;
+    std::uint32_t y = 0;
+    for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
+        const std::optional<SurfacePlace> place = playing.placeAt(i % kWidth, i / kWidth);
+        if (place && place->handle == square) {
+            seen = place;
+            x = i % kWidth;
+            y = i / kWidth;
+        }
+    }
+    ASSERT_TRUE(seen) << "pixels name the instances of a scene that is edited";
+    EXPECT_EQ(seen->primitive, 0U);
+    EXPECT_TRUE(playing.editor().showInstance(square, false));
+    playing.pose(random);
+    playing.frame();
+    playing.pose(random);
+    playing.frame();
+    playing.drain();
+    const std::optional<SurfacePlace> after = playing.placeAt(x, y);
+    EXPECT_TRUE(!after || after->handle != square) << "hidden";
+}
+
+}  // namespace
+}  // namespace glint::testing
