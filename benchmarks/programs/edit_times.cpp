@@ -1,5 +1,5 @@
-// glint_edit_times: measures how long the host takes to record edits of a scene whose emissive triangles are
-// lights.
+// glint_edit_times: measures how long the host takes to record edits of a scene, and how many bytes they bring
+// to the device.
 #include "base/clock.h"
 #include "context/commands.h"
 #include "gltf/scene.h"
@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <functional>
 #include <span>
@@ -29,10 +30,11 @@ namespace {
 struct Arguments {
     std::uint32_t lamps = 100;
     std::uint32_t triangles = 100;
+    std::uint32_t objects = 100;  // that are no lamps
+    bool moves = false;
+    bool sorted = false;
     int rounds = 20;
 };
-
-constexpr std::size_t kObjects = 100;  // that are no lamps
 
 // A strip of triangles around a cylinder.
 gltf::Primitive cylinder(std::uint32_t triangles) {
@@ -65,7 +67,7 @@ gltf::Scene makeScene(const Arguments& arguments) {
         mesh.primitives.back().material = i;
         scene.meshes.push_back(std::move(mesh));
     }
-    for (std::size_t i = 0; i < arguments.lamps + kObjects; ++i) {
+    for (std::size_t i = 0; i < arguments.lamps + arguments.objects; ++i) {
         gltf::Node node;
         node.mesh = i < arguments.lamps ? 0 : 1;
         for (const std::size_t one : {0, 5, 10, 15}) {
@@ -75,6 +77,9 @@ gltf::Scene makeScene(const Arguments& arguments) {
         node.world[14] = static_cast<double>(i / 16);
         scene.nodes.push_back(std::move(node));
     }
+    gltf::Light light;
+    light.type = gltf::LightType::Point;
+    scene.lights.push_back(light);
     return scene;
 }
 
@@ -83,26 +88,30 @@ std::array<float, 12> placeOf(int round) {
     return {1, 0, 0, x, 0, 1, 0, 2.0F, 0, 0, 1, 0.5F * x};
 }
 
-// Prints the milliseconds of SceneEditor::record() after an edit: the median, the least and the most.
+// Prints the milliseconds of an edit and of SceneEditor::record() after it, and the bytes of its staging memory
+// and of everything else that it replaces: the medians, and the least and the most time.
 Status measureEdit(Context& context, SceneEditor& editor, const std::string& name, int rounds,
                    std::uint64_t& frame, const std::function<Status(int)>& edit) {
     GLINT_TRY(auto runner, CommandRunner::create(context.state()));
     std::vector<double> times;
+    std::vector<std::uint64_t> bytes;
     for (int round = -1; round < rounds; ++round) {
-        GLINT_TRY_DO(edit(round));
         GLINT_TRY(const auto commands, runner.begin());
         const auto begin = base::Clock::now();
+        GLINT_TRY_DO(edit(round));
         GLINT_TRY_DO(editor.record(commands, ++frame));
         const double ms = base::millisecondsSince(begin);
         if (round >= 0) {
             times.push_back(ms);
+            bytes.push_back(editor.retiredBytes());
         }
         GLINT_TRY_DO(runner.submitAndWait());
         editor.complete(frame);
     }
     std::ranges::sort(times);
-    fmt::print("| {} | {:.3f} | {:.3f} to {:.3f} |\n", name, times[times.size() / 2], times.front(),
-               times.back());
+    std::ranges::sort(bytes);
+    fmt::print("| {} | {:.3f} | {:.3f} to {:.3f} | {} |\n", name, times[times.size() / 2], times.front(),
+               times.back(), bytes[bytes.size() / 2]);
     return okStatus();
 }
 
@@ -112,18 +121,22 @@ Status measureEdits(const Arguments& arguments) {
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     settings.tracers = context->handles().tracers;
-    settings.emissiveLights = compiler::EmissiveLights::On;
-    settings.lightSamples = 4;
+    if (arguments.lamps > 0) {
+        settings.emissiveLights = compiler::EmissiveLights::On;
+        settings.lightSamples = 4;
+    }
     GLINT_TRY(const auto build, compiler::resolve(std::span(&scene, 1), settings));
     GLINT_TRY(const auto package, session::compileAndLoad(build));
     const session::SceneViewData data = session::makeSceneView(scene);
     SceneView view = data.view();
     view.editable = true;
+    view.moves = arguments.moves;
+    view.traversalOrder = arguments.sorted ? TraversalOrder::Halving : TraversalOrder::Input;
     GLINT_TRY(const auto uploaded, GpuScene::upload(*context, *package, view));
     SceneEditor& editor = *uploaded->editor();
-    fmt::print("{}: {} lamps of {} triangles, {} other objects; ms of record()\n\n", context->deviceName(),
-               arguments.lamps, arguments.triangles, kObjects);
-    fmt::print("| edit | median | least to most |\n|---|--:|--:|\n");
+    fmt::print("{}: {} lamps of {} triangles, {} other objects{}\n\n", context->deviceName(), arguments.lamps,
+               arguments.triangles, arguments.objects, arguments.moves ? ", in a scene that moves" : "");
+    fmt::print("| edit | ms of the host | least to most | bytes |\n|---|--:|--:|--:|\n");
     std::uint64_t frame = 0;
     const auto measured = [&](const std::string& name, const std::function<Status(int)>& edit) {
         return measureEdit(*context, editor, name, arguments.rounds, frame, edit);
@@ -134,13 +147,48 @@ Status measureEdits(const Arguments& arguments) {
             return editor.moveInstance(editor.instance(instance), placeOf(round));
         };
     };
-    for (const auto& [name, edit] : std::initializer_list<std::pair<const char*, std::function<Status(int)>>>{
-             {"none", [](int) { return okStatus(); }},
-             {"a lamp moved", move(0)},
-             {"another object moved", move(other)},
-             {"a lamp shown or hidden",
-              [&](int round) { return editor.showInstance(editor.instance(0), round % 2 == 0); }}}) {
-        GLINT_TRY_DO(measured(name, edit));
+    const auto paint = [&](int round) {
+        std::vector<std::uint8_t> record(package->scene(0).materials.bytes.begin(),
+                                         package->scene(0).materials.bytes.end());
+        const std::size_t bytes = package->scene(0).materials.recordBytes;
+        const float color = 0.01F * static_cast<float>(round + 1);
+        std::memcpy(&record[bytes], &color, sizeof color);
+        return editor.setMaterialValues(editor.material(1), std::span(record).subspan(bytes, bytes));
+    };
+    const auto light = [&](int round) {
+        LightView changed = data.lights.front();
+        changed.position[0] = 0.1F * static_cast<float>(round);
+        return editor.setLight(editor.light(0), changed);
+    };
+    TextureHandle texture;
+    const auto addTexture = [&](int /*round*/) -> Status {
+        if (texture.generation != 0) {
+            GLINT_TRY_DO(editor.removeTexture(texture));
+        }
+        constexpr std::array<std::uint8_t, 64> kTexels{};
+        GLINT_TRY(texture, editor.addTexture({4, 4, kTexels}, true));
+        return okStatus();
+    };
+    InstanceHandle added;
+    const auto addInstance = [&](int /*round*/) -> Status {
+        if (added.generation != 0) {
+            GLINT_TRY_DO(editor.removeInstance(added));
+        }
+        GLINT_TRY(const auto made, editor.addInstance({editor.mesh(1), placeOf(3)}));
+        added = made.instance;
+        return okStatus();
+    };
+    GLINT_TRY_DO(measured("none", [](int) { return okStatus(); }));
+    GLINT_TRY_DO(measured("an object moved", move(other)));
+    GLINT_TRY_DO(measured("values of a material", paint));
+    GLINT_TRY_DO(measured("a light changed", light));
+    GLINT_TRY_DO(measured("a texture added, another removed", addTexture));
+    GLINT_TRY_DO(measured("an object added, another removed", addInstance));
+    if (arguments.lamps > 0) {
+        GLINT_TRY_DO(measured("a lamp moved", move(0)));
+        GLINT_TRY_DO(measured("a lamp shown or hidden", [&](int round) {
+            return editor.showInstance(editor.instance(0), round % 2 == 0);
+        }));
     }
     return okStatus();
 }
@@ -151,10 +199,15 @@ Status measureEdits(const Arguments& arguments) {
 
 int main(int count, char** words) {
     glint::Arguments arguments;
-    CLI::App app{"Measures how long the host takes to record edits of a scene with emissive lights."};
+    CLI::App app{"Measures how long the host takes to record edits of a scene."};
     app.add_option("--lamps", arguments.lamps, "instances that shine")
-        ->check(CLI::Range(1, 1'000'000))
+        ->check(CLI::Range(0, 1'000'000))
         ->capture_default_str();
+    app.add_option("--objects", arguments.objects, "other instances")
+        ->check(CLI::Range(1, 10'000'000))
+        ->capture_default_str();
+    app.add_flag("--moves", arguments.moves, "the scene moves, so its TLAS is updated");
+    app.add_flag("--sorted", arguments.sorted, "the TLAS is sorted, as for CPU drivers");
     app.add_option("--triangles", arguments.triangles, "triangles of each")
         ->check(CLI::Range(2, 1'000'000))
         ->capture_default_str();

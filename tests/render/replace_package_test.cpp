@@ -216,7 +216,7 @@ TEST_F(ReplacePackage, FramesInFlightKeepWhatTheyUse) {
     renderer->finished(last);
     EXPECT_TRUE(renderer->state().leftovers.empty());
     for (const std::uint64_t allocated : bytes) {
-        EXPECT_EQ(allocated, bytes.front()) << "memory grows";
+        EXPECT_LE(allocated, bytes.front()) << "memory grows";
     }
     EXPECT_EQ(renderer->output(), output) << "the picture's image stays";
     expectNoValidationMessages();

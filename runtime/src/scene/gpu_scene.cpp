@@ -186,7 +186,7 @@ void addStore(std::vector<MemoryItem>& items, const SceneStore& store) {
                 addTo(items, "deformed vertices", vertices.buffer);
             }
             for (const AccelerationStructure& blas : instance.shape->blases) {
-                addTo(items, "bottom levels of moving shapes", blas.buffer);
+                addTo(items, store.keeps() ? "refitted bottom levels" : "bottom levels", blas.buffer);
             }
         }
     });
