@@ -171,6 +171,50 @@ TEST_F(LiveEditErrors, Geometry) {
     EXPECT_TRUE(editor().removeMesh(mesh->mesh));
 }
 
+// An engine's cloth: the vertices of a mesh change in place, and its normals with them.
+TEST(LiveEditVertices, ChangeInPlace) {
+    EditedSceneOptions options;
+    EditedScene edited(options);
+    ASSERT_TRUE(edited.ok());
+    SceneEditor& editor = edited.editor();
+    const PrimitiveView flat = edited.primitive(1, 0);
+    const EditedPrimitive primitive{flat, edited.materials[1].handle};
+    const Result<AddedMesh> mesh = editor.addMesh(std::span(&primitive, 1), MeshUse::Changing);
+    ASSERT_TRUE(mesh);
+    const std::array<float, 12> rows{1, 0, 0, -0.6F, 0, 1, 0, 0, 0, 0, 1, -2.2F};
+    const Result<AddedInstance> cloth = editor.addInstance({mesh->mesh, rows});
+    ASSERT_TRUE(cloth);
+    const LinearImage before = edited.picture();
+    std::vector<std::array<float, 3>> positions(flat.positions.begin(), flat.positions.end());
+    for (int step = 1; step <= 3; ++step) {
+        for (std::array<float, 3>& position : positions) {
+            position[2] += 0.1F * position[0];
+            position[1] *= 1.1F;
+        }
+        ASSERT_TRUE(editor.setVertices(mesh->mesh, 0, {positions, flat.normals}));
+        edited.frame();
+    }
+    const LinearImage after = edited.picture();
+    EXPECT_NE(before.pixels, after.pixels);
+    // The same vertices in a mesh of their own.
+    PrimitiveView bent = flat;
+    bent.positions = positions;
+    const EditedPrimitive other{bent, edited.materials[1].handle};
+    const Result<AddedMesh> fresh = editor.addMesh(std::span(&other, 1), MeshUse::Changing);
+    ASSERT_TRUE(fresh);
+    ASSERT_TRUE(editor.setInstanceMesh(cloth->instance, fresh->mesh));
+    EXPECT_EQ(edited.picture().pixels, after.pixels);
+    expectError(editor.setVertices(edited.meshes[0].handle, 0, {positions}), "scene-edit-value");
+    positions.pop_back();
+    expectError(editor.setVertices(mesh->mesh, 0, {positions}), "scene-edit-value");
+    positions.push_back({NAN, 0, 0});
+    expectError(editor.setVertices(mesh->mesh, 0, {positions}), "scene-edit-value");
+    EXPECT_TRUE(editor.removeMesh(mesh->mesh));
+    edited.frame();
+    edited.drain();
+    expectNoValidationMessages();
+}
+
 TEST_F(LiveEditErrors, Keys) {
     session::MaterialSourceData source = edited_->source(3);
     source.keys = {source.keys.front()};

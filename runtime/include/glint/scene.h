@@ -99,6 +99,19 @@ struct EditedPrimitive {
     MaterialHandle material;
 };
 
+// New vertices of a primitive: as many as it has. Empty spans leave the normals or tangents as they are.
+struct VertexValues {
+    std::span<const std::array<float, 3>> positions;
+    std::span<const std::array<float, 3>> normals{};
+    std::span<const std::array<float, 4>> tangents{};
+};
+
+// Whether edits give a mesh other vertices.
+enum class MeshUse : std::uint32_t {
+    Fixed,
+    Changing,  // vertices are stored in full, and BLASes are built fast and can be refitted
+};
+
 struct AddedMesh {
     MeshHandle mesh;
     EditReport report;
@@ -173,7 +186,13 @@ public:
 
     // Adds a mesh of at least one primitive with a triangle. Its BLASes are built by the commands of record()
     // and are not compacted. Errors: "scene-attribute", "scene-index".
-    Result<AddedMesh> addMesh(std::span<const EditedPrimitive> primitives);
+    Result<AddedMesh> addMesh(std::span<const EditedPrimitive> primitives, MeshUse use = MeshUse::Fixed);
+    // Gives a primitive of a mesh with MeshUse::Changing other vertices, for all instances, as a program that
+    // simulates cloth does. record() copies them and refits the BLASes, or builds them anew by the rules of
+    // GpuScene::update(). Motion counts such vertices as still. Errors: "scene-edit-value" (the mesh is
+    // fixed, or has joints or morph targets; another number of vertices, or one that is not finite), and
+    // those of memory.
+    Status setVertices(MeshHandle mesh, std::uint32_t primitive, const VertexValues& vertices);
     // Gives a primitive of the mesh another material. Instances that have none of their own follow.
     Result<EditReport> setMeshMaterial(MeshHandle mesh, std::uint32_t primitive, MaterialHandle material);
     Status removeMesh(MeshHandle mesh);

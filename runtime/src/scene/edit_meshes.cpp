@@ -93,7 +93,7 @@ AttributeMask attributesOf(const Package& package, const PrimitiveView& primitiv
     return mask;
 }
 
-Result<AddedMesh> SceneEditor::addMesh(std::span<const EditedPrimitive> primitives) {
+Result<AddedMesh> SceneEditor::addMesh(std::span<const EditedPrimitive> primitives, MeshUse use) {
     if (primitives.empty()) {
         return makeError("scene-edit-value", "", "the mesh has no primitive", "give at least one");
     }
@@ -111,9 +111,12 @@ Result<AddedMesh> SceneEditor::addMesh(std::span<const EditedPrimitive> primitiv
     SceneView shapes;
     shapes.primitives = views;
     GLINT_TRY_DO(checkDeformation(shapes));
-    const std::vector<GridPositions> positions = packPositions(views, store_->vertices);
+    const bool changes = use == MeshUse::Changing;
+    const std::vector<GridPositions> positions =
+        packPositions(views, changes ? VertexForm::Full : store_->vertices);
     const std::vector<PrimitiveView> placed = withPositions(views, positions);
     MeshContent content{placed, positions};
+    content.changes = changes;
     std::vector<std::vector<std::uint32_t>> ordered;
     if (store_->leafOrder != nullptr) {
         ordered = orderedTriangles(placed, store_->capacity, store_->leafOrder);
@@ -126,6 +129,37 @@ Result<AddedMesh> SceneEditor::addMesh(std::span<const EditedPrimitive> primitiv
         countUse(*store_, primitives[i].material, added.mesh.index, true);
     }
     return added;
+}
+
+Status SceneEditor::setVertices(MeshHandle mesh, std::uint32_t primitive, const VertexValues& vertices) {
+    const StoredMesh* const entry = store_->meshes.find(mesh);
+    if (entry == nullptr) {
+        return unknownHandle("mesh");
+    }
+    const std::string where = placeOf("mesh", mesh.index);
+    if (!entry->changes || entry->mayDeform() || primitive >= entry->primitives.size()) {
+        return makeError(
+            "scene-edit-value", where,
+            "the mesh has no such primitive, or was not added with MeshUse::Changing, or follows "
+            "joints or morph targets",
+            "add the mesh with MeshUse::Changing, without joints and targets");
+    }
+    const GpuPrimitive& device = entry->primitives[primitive].device;
+    const auto fits = [&](const auto& values, VkDeviceAddress address) {
+        return values.empty() || (values.size() == device.vertexCount && address != 0);
+    };
+    if (vertices.positions.size() != device.vertexCount || !fits(vertices.normals, device.normals) ||
+        !fits(vertices.tangents, device.tangents)) {
+        return makeError("scene-edit-value", where,
+                         "the vertices are not as many as the primitive's, or it has no such attribute",
+                         "give as many, or exchange the mesh by setInstanceMesh()");
+    }
+    for (const std::array<float, 3>& point : vertices.positions) {
+        if (!std::ranges::all_of(point, [](float value) { return std::isfinite(value); })) {
+            return makeError("scene-edit-value", where, "a position is not finite", "give finite numbers");
+        }
+    }
+    return changeVertices(*store_, mesh, primitive, vertices);
 }
 
 Result<EditReport> SceneEditor::setMeshMaterial(MeshHandle mesh, std::uint32_t primitive,

@@ -61,6 +61,9 @@ struct StoredMaterial {
 // A part and its BLAS, which instances that keep their shape share.
 struct StoredPart : MeshPart {
     AccelerationStructure blas{};  // without a handle if all instances of a sealed mesh change their shape
+    std::optional<BlasBuild> build{};  // of a mesh whose vertices edits change
+    BlasHistory history{};
+    bool isBuilt = false;  // the same
     Box box = Box::nothing();
     std::optional<MotionBounds> bounds{};  // of a mesh that may change its shape
 };
@@ -84,6 +87,7 @@ struct StoredMesh {
     std::uint32_t weightCount = 0;                 // the most morph targets of a primitive
     std::shared_ptr<const MotionBounds> bounds{};  // if the mesh may change its shape
     std::vector<std::uint32_t> instances{};        // their indices, in no order
+    bool changes = false;                          // edits may give it other vertices
 
     bool mayDeform() const {
         return jointCount > 0 || weightCount > 0;
@@ -178,9 +182,10 @@ struct SceneStore {
 
     // Instances that change their shape, and those of them with another pose since the last recording.
     std::optional<DeformPass> deformPass;
-    std::set<std::uint32_t> shaped;    // by index
-    std::set<std::uint32_t> reshaped;  // by index
-    std::uint64_t shapeVersion = 0;    // changes when geometry records do, if some instance has its own shape
+    std::set<std::uint32_t> shaped;          // by index
+    std::set<std::uint32_t> reshaped;        // by index
+    std::set<std::uint32_t> reshapedMeshes;  // by index: those with other vertices
+    std::uint64_t shapeVersion = 0;  // changes when geometry records do, if some instance has its own shape
 
     // Instances with a material that is a light, by generation: in the order in which they were added.
     std::map<std::uint32_t, InstanceHandle> emissiveInstances;
@@ -242,10 +247,14 @@ struct MeshContent {
     std::vector<std::optional<OpacitySplit>> splits{};
     std::vector<const DeviceMicromap*> micromaps{};
     bool isShared = true;  // some instance keeps the mesh's shape
+    bool changes = false;  // edits may give it other vertices
 };
 // Uploads a mesh, whose BLASes the next recording builds. The caller sets the materials, or the entries. With
 // an error nothing changes, unless this is the upload.
 Result<MeshHandle> addMesh(SceneStore& store, const Package& package, const MeshContent& content);
+// Gives a primitive of a mesh that may change other vertices, which have been checked.
+Status changeVertices(SceneStore& store, MeshHandle mesh, std::size_t primitive,
+                      const VertexValues& vertices);
 // Retires a mesh that no instance has.
 void retireMesh(SceneStore& store, MeshHandle mesh);
 

@@ -17,7 +17,7 @@ BlasInput inputOf(const SceneStore& store, const StoredMesh& mesh, const MeshPar
                   const OwnShape* shape) {
     BlasInput input;
     input.dataAccess = store.dataAccess;
-    input.updatable = shape != nullptr && store.keeps();
+    input.updatable = (shape != nullptr && store.keeps()) || mesh.changes;
     for (const TriangleRange& range : part.ranges) {
         const StoredPrimitive& primitive = mesh.primitives[range.primitive];
         BlasGeometry& geometry =
@@ -78,7 +78,8 @@ Status makePrimitive(SceneStore& store, const Package& package, const MeshConten
     MemoryPool& inputs = store.upload != nullptr ? store.upload->pool : scene.pool;
     GLINT_TRY(made.device, uploadPrimitive(scene.context, scene.pool, *store.uploader, view,
                                            {indices, declared, content.positions[index].words},
-                                           {store.vertices, store.capacity.triangles, &inputs}));
+                                           {content.changes ? VertexForm::Full : store.vertices,
+                                            store.capacity.triangles, &inputs}));
     // A scene that has one pose needs them no longer when that is computed.
     MemoryPool& sources = store.keeps() ? scene.pool : inputs;
     GLINT_TRY(made.source, uploadDeformSource(scene.context, sources, *store.uploader, view));
@@ -131,7 +132,12 @@ Status makeParts(SceneStore& store, const MeshContent& content, StoredMesh& mesh
         if (content.isShared) {
             BlasBuild build = describeBuild(store.scene.context, inputOf(store, mesh, made, nullptr));
             GLINT_TRY_DO(makeStructure(store, build, {store.meshes.next(), {}, number}, true, made.blas));
-            store.builds.push_back(std::move(build));
+            if (mesh.changes) {
+                made.build = std::move(build);
+                store.reshapedMeshes.insert(store.meshes.next().index);
+            } else {
+                store.builds.push_back(std::move(build));
+            }
         }
         ++number;
     }
@@ -139,6 +145,7 @@ Status makeParts(SceneStore& store, const MeshContent& content, StoredMesh& mesh
 }
 
 Status fillMesh(SceneStore& store, const Package& package, const MeshContent& content, StoredMesh& mesh) {
+    mesh.changes = content.changes;
     for (std::size_t i = 0; i < content.primitives.size(); ++i) {
         StoredPrimitive& primitive = mesh.primitives.emplace_back();
         GLINT_TRY_DO(makePrimitive(store, package, content, i, primitive));
@@ -184,6 +191,7 @@ Result<MeshHandle> addMesh(SceneStore& store, const Package& package, const Mesh
         if (store.upload == nullptr) {
             store.uploader->forgetAfter(copies);
             store.builds.resize(builds);
+            store.reshapedMeshes.erase(store.meshes.next().index);
             takeMesh(mesh, [&](auto&& resource) {
                 discard(store.scene.pool, std::forward<decltype(resource)>(resource));
             });
@@ -201,7 +209,48 @@ Result<MeshHandle> addMesh(SceneStore& store, const Package& package, const Mesh
     return store.meshes.add(std::move(mesh));
 }
 
+Status changeVertices(SceneStore& store, MeshHandle handle, std::size_t primitive,
+                      const VertexValues& vertices) {
+    StoredMesh& mesh = store.meshes.at(handle.index);
+    StoredPrimitive& changed = mesh.primitives[primitive];
+    const Buffer& buffer = changed.device.buffer;
+    const std::size_t copies = store.uploader->waiting();
+    for (const auto& [bytes, address] : {std::pair(bytesOf(vertices.positions), changed.device.positions),
+                                         std::pair(bytesOf(vertices.normals), changed.device.normals),
+                                         std::pair(bytesOf(vertices.tangents), changed.device.tangents)}) {
+        if (bytes.empty()) {
+            continue;
+        }
+        if (Status status = store.uploader->copyToBuffer(bytes, buffer, address - buffer.address); !status) {
+            store.uploader->forgetAfter(copies);
+            return status;
+        }
+    }
+    Box box = Box::nothing();
+    for (const std::array<float, 3>& point : vertices.positions) {
+        box.extend({{point[0], point[1], point[2]}, {point[0], point[1], point[2]}});
+    }
+    for (StoredPart& part : mesh.parts) {
+        part.box = part.ranges.front().primitive == primitive ? box : part.box;
+    }
+    store.reshapedMeshes.insert(handle.index);
+    if (changed.shape != nullptr) {
+        EmitterShape shape = *changed.shape;
+        shape.positions.assign(vertices.positions.begin(), vertices.positions.end());
+        changed.shape = std::make_shared<EmitterShape>(std::move(shape));
+    }
+    for (const std::uint32_t index : mesh.instances) {
+        // The triangles of a light are others.
+        moveEmitters(store, store.instanceSlots.handleAt(index), true);
+        store.emittersDirty = store.emittersDirty || store.emissiveInstances.contains(
+                                                         store.instanceSlots.handleAt(index).generation);
+        placeParts(store, store.instanceSlots.at(index));
+    }
+    return okStatus();
+}
+
 void retireMesh(SceneStore& store, MeshHandle handle) {
+    store.reshapedMeshes.erase(handle.index);
     StoredMesh mesh = store.meshes.take(handle);
     // A mesh that comes and goes between two recordings is never built.
     std::set<VkAccelerationStructureKHR> gone;

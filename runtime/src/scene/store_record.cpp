@@ -136,6 +136,15 @@ private:
                 works_.push_back({&shape.builds[i], action == BuildAction::Refit});
             }
         }
+        for (const std::uint32_t index : store_.reshapedMeshes) {
+            for (StoredPart& part : store_.meshes.at(index).parts) {
+                const double surface = part.box.surface();
+                const BuildAction action =
+                    part.isBuilt ? part.history.next(true, surface) : BuildAction::Build;
+                parts_.push_back({&part, action, surface});
+                works_.push_back({&*part.build, action == BuildAction::Refit});
+            }
+        }
         for (const BlasBuild& build : store_.builds) {
             works_.push_back({&build});
         }
@@ -416,7 +425,12 @@ private:
         scene_.statistics.instances = static_cast<std::uint32_t>(store_.instanceSlots.count());
         store_.topLevel.apply(tlasAction_);
         takeStatistics();
+        for (const auto& [part, action, surface] : parts_) {
+            part->isBuilt = true;
+            part->history.apply(action, surface);
+        }
         store_.reshaped.clear();
+        store_.reshapedMeshes.clear();
         store_.builds.clear();
         for (bool* const flag :
              {&store_.drawsDirty, &store_.lightsDirty, &store_.lightsMoved, &store_.emittersDirty,
@@ -458,6 +472,12 @@ private:
         double surface = 0.0;
     };
 
+    struct ChangedPart {
+        StoredPart* part = nullptr;
+        BuildAction action = BuildAction::Keep;
+        double surface = 0.0;
+    };
+
     SceneStore& store_;
     GpuScene::State& scene_;
     Context::State& context_;
@@ -466,6 +486,7 @@ private:
     Prepared prepared_;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> deformed_;
     std::vector<ShapePart> shapes_;
+    std::vector<ChangedPart> parts_;
     std::vector<BlasWork> works_;
     BuildAction tlasAction_ = BuildAction::Keep;
     VkDeviceSize scratchBytes_ = 0;
