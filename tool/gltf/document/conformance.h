@@ -2,8 +2,7 @@
 // do without.
 #pragma once
 
-#include "gltf/document/report.h"
-#include "gltf/document/schema.h"
+#include "gltf/document/document.h"
 
 #include <glint/result.h>
 
@@ -13,7 +12,7 @@ namespace glint::gltf {
 
 // Returns an error for extensionsRequired that Glint can't honour. Warns once about each other extension that
 // it doesn't read. One note names all those that change no picture.
-Status checkExtensions(Report& report, const Json& root);
+Status checkExtensions(Document& document, const Json& root);
 
 bool isSupportedExtension(const materials::MaterialModel& model, std::string_view name);
 
@@ -22,6 +21,6 @@ bool changesNoPicture(std::string_view name);
 
 // Warns of rules that a document breaks which checkDocument() has accepted: extensions, the names and forms
 // of attributes, and where the elements of accessors lie. Equal warnings are given once, at the first place.
-void warnOfBrokenRules(Report& report, const Json& root);
+void warnOfBrokenRules(Document& document, const Json& root);
 
 }  // namespace glint::gltf

@@ -6,7 +6,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -33,8 +32,9 @@ inline constexpr const char* kImageExtensions[] = {"EXT_texture_webp", "KHR_text
                                                    "MSFT_texture_dds"};
 
 // Checks types, ranges and references of everything that the importer reads. It checks only the accessors
-// that a mesh, an animation or a skin uses. It ignores `extras` that the model does not declare.
-std::optional<SchemaError> checkDocument(Json& root, const materials::MaterialModel& model);
+// that a mesh, an animation or a skin uses. It ignores `extras` that the model does not declare. The place of
+// an error is a JSON pointer.
+Status checkDocument(Json& root, const materials::MaterialModel& model);
 
 enum class AccessorUse : std::uint8_t {
     Attribute,
