@@ -1,7 +1,7 @@
 // Imports materials: core metallic-roughness, the extensions that Glint shades, and the choice between
 // variants (KHR_materials_variants).
 #include "base/text.h"
-#include "gltf/document/conformance.h"
+#include "gltf/document/validate.h"
 #include "gltf/steps.h"
 #include "gltf/textures.h"
 

@@ -1,6 +1,4 @@
-#include "gltf/document/conformance.h"
-
-#include "gltf/document/model.h"
+#include "gltf/document/document.h"
 #include "gltf/document/validate.h"
 
 #include <fmt/format.h>

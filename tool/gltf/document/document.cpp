@@ -2,7 +2,6 @@
 
 #include "base/json.h"
 #include "gltf/codecs/meshopt.h"
-#include "gltf/document/conformance.h"
 #include "gltf/document/validate.h"
 
 #include <fmt/format.h>
