@@ -6,20 +6,16 @@
 #include "gltf/codecs/codecs.h"
 #include "gltf/texels/fit.h"
 
-#include <optional>
-#include <string>
-
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using glint::fuzz::require;
     const glint::gltf::ByteView bytes(data, size);
     glint::gltf::Image image;
-    std::string problem;
-    const std::optional<glint::gltf::BlockFile> file = glint::gltf::readBlockFile(bytes, problem);
+    const glint::Result<glint::gltf::BlockFile> file = glint::gltf::readBlockFile(bytes);
     if (!file) {
-        require(!problem.empty(), "a header that is refused has a reason");
+        require(!file.error().message.empty(), "a header that is refused has a reason");
         return 0;
     }
-    require(glint::gltf::kBasisu.readHeader(bytes, image, problem), "a file that is read has a header");
+    require(glint::gltf::kBasisu.readHeader(bytes, image).ok(), "a file that is read has a header");
     require(image.width > 0 && image.height > 0 && image.levels > 0, "an image has a size");
     // Large images are slow to decode and show nothing that smaller ones do not.
     constexpr int kLargest = 512;
@@ -40,8 +36,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
                                                    static_cast<std::uint32_t>(fitted->levels)),
             "an image has the levels that it says");
     }
-    if (!glint::gltf::kBasisu.decode(bytes, image, problem)) {
-        require(!problem.empty(), "an image that can't be decoded has a reason");
+    if (const glint::Status status = glint::gltf::kBasisu.decode(bytes, image); !status) {
+        require(!status.error().message.empty(), "an image that can't be decoded has a reason");
         return 0;
     }
     require(image.pixels.size() == glint::gltf::byteCount(image), "an image has the pixels that it says");

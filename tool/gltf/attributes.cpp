@@ -1,9 +1,8 @@
-#include "gltf/attributes.h"
-
+// Reads vertex attributes and the vertex order of one primitive, from accessors or from Draco data.
 #include "gltf/codecs/draco.h"
 #include "gltf/document/accessor.h"
 #include "gltf/document/validate.h"
-#include "gltf/motion/deformation.h"
+#include "gltf/steps.h"
 
 #include <fmt/format.h>
 
@@ -126,17 +125,7 @@ Status readAttribute(const Reader& reader, const char* attribute, std::size_t fe
                               kExportMesh);
     }
     GLINT_TRY(const auto elements, readElements(reader, attribute, accessor, integers));
-    if (elements.components < fewest || elements.components > N) {
-        return document.error("attribute-type", reader.pointer(attribute),
-                              fmt::format("has {} components, not {}", elements.components, N), kExportMesh);
-    }
-    std::array<float, N> filled{};
-    filled.fill(1.0F);
-    values.assign(elements.count, filled);
-    for (std::size_t i = 0; i < elements.count; ++i) {
-        std::copy_n(&elements.values[i * elements.components], elements.components, values[i].begin());
-    }
-    return okStatus();
+    return toVectors(document, elements, fewest, 1.0F, reader.pointer(attribute), kExportMesh, values);
 }
 
 Status readColors(const Reader& reader) {
@@ -309,7 +298,7 @@ Result<std::vector<std::uint32_t>> readVertices(const PrimitiveSource& source, P
     if (const Value* const extension = extensionOf(source.file.extensions, kDracoExtension)) {
         GLINT_TRY(draco, DracoMesh::decode(source.document, *extension, dracoPointer(reader)));
         reader.draco = &*draco;
-        reader.dracoIds = &objectMember(*extension, "attributes");
+        reader.dracoIds = &extension->Get("attributes").Get<Value::Object>();
         findMissing(reader);
     }
     GLINT_TRY_DO(readAttributes(reader));

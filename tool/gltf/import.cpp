@@ -1,14 +1,8 @@
 #include "gltf/import.h"
 
 #include "gltf/document/document.h"
-#include "gltf/materials.h"
-#include "gltf/meshes.h"
-#include "gltf/motion/animations.h"
-#include "gltf/motion/deformation.h"
-#include "gltf/motion/instancing.h"
-#include "gltf/motion/nodes.h"
 #include "gltf/planning_inputs.h"
-#include "gltf/texture_content.h"
+#include "gltf/steps.h"
 #include "gltf/trusted_textures.h"
 
 #include <fmt/format.h>
@@ -78,25 +72,14 @@ std::string whyNothingIsDrawn(const Scene& scene) {
 bool hasMeshes(const Document& document, std::size_t scene) {
     const tinygltf::Model& model = document.model();
     std::vector<bool> known(model.nodes.size());
-    std::vector<std::size_t> open;
-    for (const int node : model.scenes[scene].nodes) {
-        open.push_back(static_cast<std::size_t>(node));
-    }
-    while (!open.empty()) {
-        const std::size_t node = open.back();
-        open.pop_back();
-        if (known[node]) {
-            continue;
-        }
+    bool found = false;
+    visitTrees(document, model.scenes[scene].nodes, [&](std::size_t node) {
+        found = found || model.nodes[node].mesh >= 0;
+        const bool isNew = !known[node] && !found;
         known[node] = true;
-        if (model.nodes[node].mesh >= 0) {
-            return true;
-        }
-        for (const int child : model.nodes[node].children) {
-            open.push_back(static_cast<std::size_t>(child));
-        }
-    }
-    return false;
+        return isNew;
+    });
+    return found;
 }
 
 // One texture or lobe of a material that primitives lack the input of.

@@ -1,7 +1,8 @@
-#include "gltf/materials.h"
-
+// Imports materials: core metallic-roughness, the extensions that Glint shades, and the choice between
+// variants (KHR_materials_variants).
 #include "base/text.h"
-#include "gltf/document/conformance.h"
+#include "gltf/document/validate.h"
+#include "gltf/steps.h"
 #include "gltf/textures.h"
 
 #include <fmt/format.h>
@@ -265,9 +266,9 @@ Status importMaterials(Document& document, Scene& scene) {
         const Json& json = document.json()["materials"][i];
         const std::string pointer = fmt::format("/materials/{}", i);
         materials::Material material(*document.options().materialModel);
-        material.name = textMember(json, "name");
-        material.alphaMode = readAlphaMode(document, textMember(json, "alphaMode"), pointer);
-        material.doubleSided = boolMember(json, "doubleSided", false);
+        material.name = memberOr<std::string>(json, "name", "");
+        material.alphaMode = readAlphaMode(document, memberOr<std::string>(json, "alphaMode", ""), pointer);
+        material.doubleSided = memberOr(json, "doubleSided", false);
         readParameters(document, json, pointer, material);
         GLINT_TRY_DO(readTextures(document, textures, json, pointer, material));
         checkTransfer(document, scene, material, pointer);
@@ -295,45 +296,33 @@ Diagnostic unknownVariant(const Document& document, const Scene& scene) {
         fmt::format("use one of: {}", fmt::join(scene.variants, ", ")));
 }
 
-// Returns the material that a primitive has in a variant.
-std::optional<int> materialIn(const tinygltf::Primitive& primitive, std::size_t variant) {
-    const Value* const extension = extensionOf(primitive.extensions, kName);
-    if (extension == nullptr) {
-        return std::nullopt;
-    }
-    for (const Value& mapping : arrayMember(*extension, "mappings")) {
-        for (const Value& one : arrayMember(mapping, "variants")) {
-            if (one.GetNumberAsInt() == static_cast<int>(variant)) {
-                return indexMember(mapping, "material");
+// Calls visit(variant, material) for each variant that a primitive maps.
+template <typename Visit>
+void visitMappings(const tinygltf::Primitive& primitive, const Visit& visit) {
+    if (const Value* const extension = extensionOf(primitive.extensions, kName)) {
+        for (const Value& mapping : extension->Get("mappings").Get<Value::Array>()) {
+            for (const Value& variant : mapping.Get("variants").Get<Value::Array>()) {
+                visit(variant.GetNumberAsInt(), memberOr(mapping, "material", -1));
             }
         }
     }
-    return std::nullopt;
 }
 
 // Warns of primitives that map one variant to several materials, of which the first holds.
 void checkMappings(Document& document) {
     const std::vector<tinygltf::Mesh>& meshes = document.model().meshes;
     for (std::size_t i = 0; i < meshes.size(); ++i) {
-        const std::vector<tinygltf::Primitive>& primitives = meshes[i].primitives;
-        for (std::size_t k = 0; k < primitives.size(); ++k) {
-            const Value* const extension = extensionOf(primitives[k].extensions, kName);
+        for (std::size_t k = 0; k < meshes[i].primitives.size(); ++k) {
             std::set<int> seen;
-            if (extension == nullptr) {
-                continue;
-            }
-            for (const Value& mapping : arrayMember(*extension, "mappings")) {
-                for (const Value& variant : arrayMember(mapping, "variants")) {
-                    if (!seen.insert(variant.GetNumberAsInt()).second) {
-                        document.warn("variant-repeated",
-                                      fmt::format("/meshes/{}/primitives/{}/extensions/{}", i, k, kName),
-                                      fmt::format("maps variant {} more than once; the first material is "
-                                                  "used",
-                                                  variant.GetNumberAsInt()),
-                                      "give the primitive one material for each variant");
-                    }
+            visitMappings(meshes[i].primitives[k], [&](int variant, int /*material*/) {
+                if (!seen.insert(variant).second) {
+                    document.warn(
+                        "variant-repeated",
+                        fmt::format("/meshes/{}/primitives/{}/extensions/{}", i, k, kName),
+                        fmt::format("maps variant {} more than once; the first material is used", variant),
+                        "give the primitive one material for each variant");
                 }
-            }
+            });
         }
     }
 }
@@ -355,14 +344,18 @@ Status applyVariant(Document& document, Scene& scene) {
     if (found == scene.variants.end()) {
         return unknownVariant(document, scene);
     }
-    const auto index = static_cast<std::size_t>(found - scene.variants.begin());
+    const auto index = static_cast<int>(found - scene.variants.begin());
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
         // The scene's mesh lacks the primitives that have nothing to draw.
         auto primitive = scene.meshes[m].primitives.begin();
         const std::vector<tinygltf::Primitive>& inFile = document.model().meshes[m].primitives;
         for (std::size_t i = 0; i < inFile.size() && primitive != scene.meshes[m].primitives.end(); ++i) {
             if (primitive->pointer == fmt::format("/meshes/{}/primitives/{}", m, i)) {
-                primitive->material = materialIn(inFile[i], index).value_or(primitive->material);
+                std::optional<int> chosen;
+                visitMappings(inFile[i], [&](int variant, int material) {
+                    chosen = variant == index && !chosen ? material : chosen;
+                });
+                primitive->material = chosen.value_or(primitive->material);
                 ++primitive;
             }
         }

@@ -1,8 +1,6 @@
-#include "gltf/meshes.h"
-
+// Imports meshes: modes, and the repair of attributes.
 #include "base/vectors.h"
-#include "gltf/attributes.h"
-#include "gltf/motion/deformation.h"
+#include "gltf/steps.h"
 
 #include <fmt/format.h>
 

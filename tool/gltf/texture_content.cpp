@@ -1,10 +1,9 @@
-#include "gltf/texture_content.h"
-
 #include "base/files.h"
 #include "base/parallel.h"
 #include "gltf/texels/texel_bounds.h"
 #include "gltf/texels/texture_use.h"
 #include "gltf/textures.h"
+#include "gltf/trusted_textures.h"
 
 #include <fmt/format.h>
 
@@ -236,7 +235,7 @@ private:
             // Nothing is known of the texels, but equal files are equal.
             work.whole.texelHash = bytes.empty() ? 0 : hashOf(bytes, 0);
         } else if (!recall(kWholeKind, key, std::span(&work.whole, 1))) {
-            if (!decode(image, work, texels)) {
+            if (!unpack(image, work, texels)) {
                 return;
             }
             work.whole = wholeOf(*texels);
@@ -273,7 +272,7 @@ private:
             return;
         }
         if (!recall(kSeenKind, key, std::span(found))) {
-            if (!texels && !decode(image, work, texels)) {
+            if (!texels && !unpack(image, work, texels)) {
                 return;
             }
             const TexelBounds bounds(std::move(*texels), work.rules);
@@ -324,8 +323,8 @@ private:
         FoundRange& found = whole.found;
         std::size_t offset = 0;
         for (int level = 0; level < texels.levels; ++level) {
-            const int width = std::max(texels.width >> level, 1);
-            const int height = std::max(texels.height >> level, 1);
+            const int width = sizeOfLevel(texels.width, level);
+            const int height = sizeOfLevel(texels.height, level);
             for (int y = 0; y < height; ++y) {
                 for (int x = 0; x < width; ++x) {
                     std::array<Code, 4> texel{};
@@ -351,20 +350,13 @@ private:
                                                     : wholeOfCodes<std::uint8_t>(texels);
     }
 
-    bool decode(const Image& image, ImageWork& work, std::optional<Texels>& texels) const {
-        if (!image.pixels.empty()) {
-            texels = Texels{image.width, image.height, image.format, image.levels, image.pixels};
-            return true;
-        }
-        Image decoded;
-        decoded.pointer = image.pointer;
-        decoded.file = image.file;
-        if (Status status = decodeFile(scene_, decoded); !status) {
-            work.error = status.error();
+    bool unpack(const Image& image, ImageWork& work, std::optional<Texels>& texels) const {
+        Result<Texels> read = texelsOf(scene_, image);
+        if (!read) {
+            work.error = read.error();
             return false;
         }
-        texels =
-            Texels{decoded.width, decoded.height, decoded.format, decoded.levels, std::move(decoded.pixels)};
+        texels = std::move(*read);
         return true;
     }
 

@@ -1,7 +1,6 @@
 #include "gltf/textures.h"
 
 #include "gltf/codecs/basisu.h"
-#include "gltf/codecs/codecs.h"
 #include "gltf/document/validate.h"
 
 #include <fmt/format.h>
@@ -38,8 +37,8 @@ std::string lowerCase(std::string text) {
 
 // Returns the media type that an image names, or that of its data URI: in lower case, without parameters.
 std::string mediaType(const Json& image) {
-    const std::string uri = textMember(image, "uri");
-    std::string type = textMember(image, "mimeType");
+    const std::string uri = memberOr<std::string>(image, "uri", "");
+    std::string type = memberOr<std::string>(image, "mimeType", "");
     if (type.empty() && isDataUri(uri)) {
         type = uri.substr(5);
     }
@@ -47,10 +46,10 @@ std::string mediaType(const Json& image) {
 }
 
 std::string nameOf(const Json& json, int image) {
-    if (std::string name = textMember(json, "name"); !name.empty()) {
+    if (std::string name = memberOr<std::string>(json, "name", ""); !name.empty()) {
         return name;
     }
-    const std::string uri = textMember(json, "uri");
+    const std::string uri = memberOr<std::string>(json, "uri", "");
     if (!uri.empty() && !isDataUri(uri)) {
         if (std::string file = std::filesystem::path(percentDecode(uri)).filename().string(); !file.empty()) {
             return file;
@@ -65,7 +64,7 @@ Result<ByteView> encodedBytes(Document& document, int image, base::Bytes& storag
     if (const Json* view = find(json, "bufferView")) {
         return document.bufferView(view->get<int>());
     }
-    GLINT_TRY(storage, document.readUri(textMember(json, "uri"), imagePointer(image)));
+    GLINT_TRY(storage, document.readUri(memberOr<std::string>(json, "uri", ""), imagePointer(image)));
     return ByteView(storage);
 }
 
@@ -88,8 +87,7 @@ void warnOfDeviations(Document& document, ByteView bytes, const Codec& codec, co
     if (&codec != &kBasisu && &codec != &kDds) {
         return;
     }
-    std::string problem;
-    if (const std::optional<BlockFile> file = readBlockFile(bytes, problem)) {
+    if (const Result<BlockFile> file = readBlockFile(bytes)) {
         for (const std::string& deviation : file->deviations) {
             document.warn("ktx2-metadata", image.pointer, deviation,
                           &codec == &kDds ? "make the DDS file without it"
@@ -98,36 +96,41 @@ void warnOfDeviations(Document& document, ByteView bytes, const Codec& codec, co
     }
 }
 
-// The fault of an image, and its remedy.
-struct Failure {
-    std::string message;
-    const char* hint = kStore;
-};
-
-Failure cantDecode(const Codec& codec, const std::string& problem) {
-    return {fmt::format("is a {} image that can't be decoded: {}", codec.name, problem),
-            &codec == &kBasisu && !hasBasisu() ? kBasisuHint : kStore};
+Diagnostic decodeError(std::string where, std::string message, const char* hint = kStore) {
+    return makeError("image-decode", std::move(where), std::move(message), hint);
 }
 
-std::optional<Failure> readHeader(ByteView bytes, Image& image, const Codec*& codec) {
-    codec = findCodec(bytes);
+Diagnostic refusal(std::string where, const Codec& codec, const Diagnostic& fault) {
+    return decodeError(std::move(where),
+                       fmt::format("is a {} image that can't be decoded: {}", codec.name, fault.message),
+                       &codec == &kBasisu && !hasBasisu() ? kBasisuHint : kStore);
+}
+
+// Reads the header. Returns the codec of the image.
+Result<const Codec*> readHeader(ByteView bytes, const std::string& where, Image& image) {
+    const Codec* const codec = findCodec(bytes);
     if (codec == nullptr) {
         const std::string_view format = foreignFormat(bytes);
-        return Failure{bytes.empty()    ? "is empty"
-                       : format.empty() ? "is neither PNG nor JPEG, WebP, KTX2 or DDS"
-                                        : fmt::format("is a {} image, which Glint does not read", format)};
+        return decodeError(where, bytes.empty() ? "is empty"
+                                  : format.empty()
+                                      ? "is neither PNG nor JPEG, WebP, KTX2 or DDS"
+                                      : fmt::format("is a {} image, which Glint does not read", format));
     }
-    std::string problem;
-    if (!codec->readHeader(bytes, image, problem)) {
-        return cantDecode(*codec, problem);
+    if (const Status status = codec->readHeader(bytes, image); !status) {
+        return refusal(where, *codec, status.error());
     }
-    return std::nullopt;
+    return codec;
+}
+
+Status decode(ByteView bytes, const std::string& where, const Codec& codec, Image& image) {
+    Status status = codec.decode(bytes, image);
+    return status ? status : refusal(where, codec, status.error());
 }
 
 // Warns if the file says that the image is of another type than its bytes are.
 void compareType(Document& document, int index, const Codec& codec) {
     const Json& json = imageJson(document, index);
-    const bool named = find(json, "mimeType") != nullptr || isDataUri(textMember(json, "uri"));
+    const bool named = find(json, "mimeType") != nullptr || isDataUri(memberOr<std::string>(json, "uri", ""));
     const std::string given = mediaType(json);
     if (named && given != codec.type) {
         document.warn(
@@ -139,30 +142,28 @@ void compareType(Document& document, int index, const Codec& codec) {
 
 // Reads the header, and the pixels if something needs them.
 Status read(Document& document, int index, ByteView bytes, Image& image) {
-    const auto fail = [&](Failure failure) {
-        return document.error("image-decode", image.pointer, std::move(failure.message), failure.hint);
-    };
-    const Codec* codec = nullptr;
-    if (std::optional<Failure> failure = readHeader(bytes, image, codec)) {
-        return fail(std::move(*failure));
-    }
+    const std::string where = document.where(image.pointer);
+    GLINT_TRY(const Codec* const codec, readHeader(bytes, where, image));
     GLINT_TRY_DO(checkSize(document, image));
-    const ImportOptions& options = document.options();
-    std::string problem;
-    if (options.decodeImages && !codec->decode(bytes, image, problem)) {
-        return fail(cantDecode(*codec, problem));
+    if (document.options().decodeImages) {
+        GLINT_TRY_DO(decode(bytes, where, *codec, image));
     }
     compareType(document, index, *codec);
     warnOfDeviations(document, bytes, *codec, image);
     return okStatus();
 }
 
-}  // namespace
+enum class Decodable : std::uint8_t {
+    Yes,
+    No,
+    NeedsBasisu,  // a KTX2 image, in a build without hasBasisu()
+};
 
+// Returns whether Glint can decode the image, judging by its type and the name of its file. It opens no file.
 Decodable decodability(const Document& document, int image) {
     const Json& json = imageJson(document, image);
     const std::string type = mediaType(json);
-    const std::string uri = lowerCase(textMember(json, "uri"));
+    const std::string uri = lowerCase(memberOr<std::string>(json, "uri", ""));
     const auto endsWith = [&](std::string_view end) { return !isDataUri(uri) && uri.ends_with(end); };
     if (type == "image/ktx2" || endsWith(".ktx2")) {
         return hasBasisu() ? Decodable::Yes : Decodable::NeedsBasisu;
@@ -171,13 +172,17 @@ Decodable decodability(const Document& document, int image) {
     return isForeign ? Decodable::No : Decodable::Yes;
 }
 
+// Reads the image's name, and its pixels or its file if ImportOptions ask for them. Errors: "image-data" (no
+// source or two), "image-decode", "image-size", and those of reading files. If only
+// ImportOptions::trustTextures asks for the file, an image that can't be read is no error, but a note, and
+// has no file.
 Result<Image> importImage(Document& document, int index) {
     const Json& json = imageJson(document, index);
     Image image;
     image.name = nameOf(json, index);
     image.pointer = imagePointer(index);
     const bool hasView = find(json, "bufferView") != nullptr;
-    const std::string uri = textMember(json, "uri");
+    const std::string uri = memberOr<std::string>(json, "uri", "");
     if (hasView == !uri.empty()) {
         return document.error("image-data", image.pointer,
                               hasView ? "has both a \"uri\" and a \"bufferView\""
@@ -213,21 +218,26 @@ Result<Image> importImage(Document& document, int index) {
     return image;
 }
 
+}  // namespace
+
 Diagnostic unknownTexels(const Diagnostic& error) {
     return {Severity::Note, "texture-unknown", error.where,
             fmt::format("{} ({}), so what it holds is not known", error.message, error.id), error.hint};
 }
 
-Status decodeFile(const Scene& scene, Image& image) {
-    const Codec* codec = nullptr;
-    std::optional<Failure> failure = readHeader(image.file, image, codec);
-    std::string problem;
-    if (!failure && !codec->decode(image.file, image, problem)) {
-        failure = cantDecode(*codec, problem);
+Diagnostic cantDecode(const Scene& scene, const Image& image, const Codec& codec, const Diagnostic& fault) {
+    return refusal(fmt::format("{}#{}", scene.path, image.pointer), codec, fault);
+}
+
+Result<Texels> texelsOf(const Scene& scene, const Image& image) {
+    if (!image.pixels.empty()) {
+        return Texels{image.width, image.height, image.format, image.levels, image.pixels};
     }
-    return failure ? makeError("image-decode", fmt::format("{}#{}", scene.path, image.pointer),
-                               std::move(failure->message), failure->hint)
-                   : okStatus();
+    const std::string where = fmt::format("{}#{}", scene.path, image.pointer);
+    Image decoded;
+    GLINT_TRY(const Codec* const codec, readHeader(image.file, where, decoded));
+    GLINT_TRY_DO(decode(image.file, where, *codec, decoded));
+    return Texels{decoded.width, decoded.height, decoded.format, decoded.levels, std::move(decoded.pixels)};
 }
 
 // ---- Textures and samplers ----
@@ -238,16 +248,19 @@ namespace {
 constexpr int kNearest = 9728;
 constexpr int kLinear = 9729;
 
-std::optional<Wrap> wrapOf(int value) {
+bool setWrap(int value, Wrap& wrap) {
     switch (value) {
         case 10497:
-            return Wrap::Repeat;
+            wrap = Wrap::Repeat;
+            return true;
         case 33071:
-            return Wrap::ClampToEdge;
+            wrap = Wrap::ClampToEdge;
+            return true;
         case 33648:
-            return Wrap::MirroredRepeat;
+            wrap = Wrap::MirroredRepeat;
+            return true;
         default:
-            return std::nullopt;
+            return false;
     }
 }
 
@@ -279,25 +292,18 @@ bool setMagnification(int value, Sampler& sampler) {
 void importSamplers(Document& document, Scene& scene) {
     const std::vector<tinygltf::Sampler>& samplers = document.model().samplers;
     for (std::size_t i = 0; i < samplers.size(); ++i) {
-        // Takes the number of that member by `set`, which returns whether it knows the number.
-        const auto read = [&](const char* member, int value, const auto& set) {
-            if (!set(value)) {
+        const tinygltf::Sampler& file = samplers[i];
+        Sampler sampler;
+        const auto warnUnless = [&](bool isKnown, const char* member, int value) {
+            if (!isKnown) {
                 document.warn("sampler-value", fmt::format("/samplers/{}/{}", i, member),
                               fmt::format("{} is no known value; the default is used", value));
             }
         };
-        const auto wrapInto = [](Wrap& wrap) {
-            return [&wrap](int value) {
-                const std::optional<Wrap> known = wrapOf(value);
-                wrap = known.value_or(Wrap::Repeat);
-                return known.has_value();
-            };
-        };
-        Sampler sampler;
-        read("wrapS", samplers[i].wrapS, wrapInto(sampler.wrapU));
-        read("wrapT", samplers[i].wrapT, wrapInto(sampler.wrapV));
-        read("minFilter", samplers[i].minFilter, [&](int value) { return setMinification(value, sampler); });
-        read("magFilter", samplers[i].magFilter, [&](int value) { return setMagnification(value, sampler); });
+        warnUnless(setWrap(file.wrapS, sampler.wrapU), "wrapS", file.wrapS);
+        warnUnless(setWrap(file.wrapT, sampler.wrapV), "wrapT", file.wrapT);
+        warnUnless(setMinification(file.minFilter, sampler), "minFilter", file.minFilter);
+        warnUnless(setMagnification(file.magFilter, sampler), "magFilter", file.magFilter);
         scene.samplers.push_back(sampler);
     }
 }
@@ -311,11 +317,7 @@ TextureTable::TextureTable(Document& document, Scene& scene)
 Result<int> TextureTable::use(int texture) {
     std::optional<int>& known = textures_[static_cast<std::size_t>(texture)];
     if (!known) {
-        Result<int> index = append(texture);
-        if (!index) {
-            return index;
-        }
-        known = *index;
+        GLINT_TRY(known, append(texture));
     }
     return *known;
 }
@@ -324,7 +326,6 @@ Result<int> TextureTable::use(int texture) {
 // Glint knows. A KTX2 image that this build does not decode is an error, unless there is another image and
 // the file does not require KHR_texture_basisu.
 Result<int> TextureTable::chooseImage(int texture) {
-    constexpr const char* kStore = "store the image as PNG, JPEG or WebP";
     constexpr const char* kEffect = "materials render without it";
     const tinygltf::Texture& file = document_.model().textures[static_cast<std::size_t>(texture)];
     const std::string pointer = fmt::format("/textures/{}", texture);
@@ -335,7 +336,7 @@ Result<int> TextureTable::chooseImage(int texture) {
     std::vector<int> candidates;
     for (const char* const name : kImageExtensions) {
         const Value* const extension = extensionOf(file.extensions, name);
-        candidates.push_back(extension == nullptr ? -1 : indexMember(*extension, "source"));
+        candidates.push_back(extension == nullptr ? -1 : memberOr(*extension, "source", -1));
     }
     candidates.push_back(plain);
     for (const int image : candidates) {
@@ -376,14 +377,11 @@ Result<int> TextureTable::chooseImage(int texture) {
 }
 
 Result<int> TextureTable::append(int texture) {
-    Result<int> chosen = chooseImage(texture);
-    if (!chosen || *chosen < 0) {
-        return chosen;
+    GLINT_TRY(const auto chosen, chooseImage(texture));
+    if (chosen < 0) {
+        return -1;
     }
-    Result<int> image = useImage(*chosen);
-    if (!image) {
-        return image;
-    }
+    GLINT_TRY(const auto image, useImage(chosen));
     int sampler = document_.model().textures[static_cast<std::size_t>(texture)].sampler;
     if (sampler < 0) {
         if (!defaultSampler_) {
@@ -392,7 +390,7 @@ Result<int> TextureTable::append(int texture) {
         }
         sampler = *defaultSampler_;
     }
-    scene_.textures.push_back({*image, sampler});
+    scene_.textures.push_back({image, sampler});
     return static_cast<int>(scene_.textures.size()) - 1;
 }
 

@@ -54,16 +54,23 @@ std::vector<float> makeLinearLevels() {
     return linear;
 }
 
-// Samples of T with four channels; 256 or 65536 levels, so that a table does for the transfer function.
+// Takes over samples of T with four channels; 256 or 65536 levels, so that a table does for the transfer
+// function. Returns false if there are none.
 template <typename T>
-void linearize(const T* samples, LinearImage& image) {
+bool linearize(T* decoded, LinearImage& image) {
+    const StbPixels<T> owner(decoded);
+    const T* samples = decoded;
     static const std::vector<float> linear = makeLinearLevels<T>();
     constexpr auto kLargest = static_cast<float>(std::numeric_limits<T>::max());
+    if (samples == nullptr) {
+        return false;
+    }
     for (std::array<float, 4>& pixel : image.pixels) {
         pixel = {linear[samples[0]], linear[samples[1]], linear[samples[2]],
                  static_cast<float>(samples[3]) / kLargest};
         samples += kChannels;
     }
+    return true;
 }
 
 Diagnostic unreadable(const std::string& where) {
@@ -103,21 +110,15 @@ Result<LinearImage> decodePng(std::span<const std::uint8_t> bytes, const std::st
     }
     LinearImage image{static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), {}};
     image.pixels.resize(std::size_t{image.width} * image.height);
-    if (stbi_is_16_bit_from_memory(bytes.data(), size) != 0) {
-        const StbPixels<stbi_us> pixels(
-            stbi_load_16_from_memory(bytes.data(), size, &width, &height, &channels, kChannels));
-        if (!pixels) {
-            return unreadable(where);
-        }
-        linearize(pixels.get(), image);
-        return image;
-    }
-    const StbPixels<stbi_uc> pixels(
-        stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, kChannels));
-    if (!pixels) {
+    const bool isDecoded =
+        stbi_is_16_bit_from_memory(bytes.data(), size) != 0
+            ? linearize(stbi_load_16_from_memory(bytes.data(), size, &width, &height, &channels, kChannels),
+                        image)
+            : linearize(stbi_load_from_memory(bytes.data(), size, &width, &height, &channels, kChannels),
+                        image);
+    if (!isDecoded) {
         return unreadable(where);
     }
-    linearize(pixels.get(), image);
     return image;
 }
 

@@ -242,29 +242,23 @@ private:
     }
 
     int sum() {
-        int left = product();
-        while (left >= 0) {
-            if (take("+")) {
-                left = combineNumbers(Operation::Add, left, product());
-            } else if (take("-")) {
-                left = combineNumbers(Operation::Subtract, left, product());
-            } else {
-                break;
-            }
-        }
-        return left;
+        return chain(&ExpressionParser::product, "+", Operation::Add, "-", Operation::Subtract);
     }
 
     int product() {
-        int left = factor();
+        return chain(&ExpressionParser::factor, "*", Operation::Multiply, "/", Operation::Divide);
+    }
+
+    // Reads operands that one of two operations joins, from left to right.
+    int chain(int (ExpressionParser::*operand)(), const char* one, Operation first, const char* other,
+              Operation second) {
+        int left = (this->*operand)();
         while (left >= 0) {
-            if (take("*")) {
-                left = combineNumbers(Operation::Multiply, left, factor());
-            } else if (take("/")) {
-                left = combineNumbers(Operation::Divide, left, factor());
-            } else {
+            const bool isFirst = take(one);
+            if (!isFirst && !take(other)) {
                 break;
             }
+            left = combineNumbers(isFirst ? first : second, left, (this->*operand)());
         }
         return left;
     }

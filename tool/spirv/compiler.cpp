@@ -17,7 +17,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <iterator>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -45,18 +44,6 @@ struct Parts {
 // The treatment of a function.
 enum class Fate { Defined, Declared, Removed };
 
-std::size_t lengthAt(std::span<const std::uint32_t> words, std::size_t at) {
-    return words[at] >> spv::WordCountShift;
-}
-
-// Calls visit(at, opcode) for each instruction of a valid module.
-template <typename Visit>
-void visitInstructions(std::span<const std::uint32_t> words, const Visit& visit) {
-    for (std::size_t at = kSpirvHeaderWords; at < words.size(); at += lengthAt(words, at)) {
-        visit(at, static_cast<spv::Op>(words[at] & spv::OpCodeMask));
-    }
-}
-
 std::map<std::uint32_t, Fate> fatesOf(std::span<const std::uint32_t> words,
                                       const std::vector<SpirvFunction>& functions, const LinkNames& names) {
     std::map<std::uint32_t, Fate> fates;
@@ -64,16 +51,16 @@ std::map<std::uint32_t, Fate> fatesOf(std::span<const std::uint32_t> words,
         const bool imported = std::ranges::find(names.imported, function.name) != names.imported.end();
         fates[function.id] = imported ? Fate::Declared : Fate::Defined;
     }
-    visitInstructions(words, [&](std::size_t at, spv::Op opcode) {
-        if (opcode == spv::OpEntryPoint && !names.keepsEntryPoint) {
-            fates[words[at + 2]] = Fate::Removed;
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
+        if (it.opcode == spv::OpEntryPoint && !names.keepsEntryPoint) {
+            fates[it.operands[1]] = Fate::Removed;
         }
-    });
+    }
     return fates;
 }
 
 // Returns whether the instruction of a function with this fate stays.
-bool stays(Fate fate, spv::Op opcode) {
+bool stays(Fate fate, std::uint32_t opcode) {
     return fate == Fate::Defined ||
            (fate == Fate::Declared && (opcode == spv::OpFunction || opcode == spv::OpFunctionParameter ||
                                        opcode == spv::OpFunctionEnd));
@@ -83,17 +70,17 @@ std::set<std::uint32_t> removedResults(std::span<const std::uint32_t> words,
                                        const std::map<std::uint32_t, Fate>& fates) {
     std::set<std::uint32_t> removed;
     Fate fate = Fate::Defined;
-    visitInstructions(words, [&](std::size_t at, spv::Op opcode) {
-        if (opcode == spv::OpFunction) {
-            fate = fates.at(words[at + 2]);
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
+        if (it.opcode == spv::OpFunction) {
+            fate = fates.at(it.operands[1]);
         }
-        if (!stays(fate, opcode)) {
-            removed.insert(resultAt(words, at));
+        if (!stays(fate, it.opcode)) {
+            removed.insert(resultAt(words, it.at));
         }
-        if (opcode == spv::OpFunctionEnd) {
+        if (it.opcode == spv::OpFunctionEnd) {
             fate = Fate::Defined;
         }
-    });
+    }
     removed.erase(0);
     return removed;
 }
@@ -114,12 +101,7 @@ void addLinkage(Words& decorations, std::uint32_t function, const std::string& n
     decorations.push_back(static_cast<std::uint32_t>(type));
 }
 
-bool isDecoration(spv::Op opcode) {
-    return opcode == spv::OpDecorate || opcode == spv::OpMemberDecorate || opcode == spv::OpDecorateId ||
-           opcode == spv::OpDecorateString || opcode == spv::OpMemberDecorateString;
-}
-
-bool isSetting(spv::Op opcode) {
+bool isSetting(std::uint32_t opcode) {
     return opcode == spv::OpExtension || opcode == spv::OpExtInstImport || opcode == spv::OpMemoryModel ||
            opcode == spv::OpString || opcode == spv::OpSource || opcode == spv::OpSourceExtension ||
            opcode == spv::OpSourceContinued || opcode == spv::OpModuleProcessed;
@@ -131,38 +113,38 @@ Parts splitModule(std::span<const std::uint32_t> words, const std::map<std::uint
     Parts parts;
     Fate fate = Fate::Defined;
     bool inFunction = false;
-    visitInstructions(words, [&](std::size_t at, spv::Op opcode) {
-        const std::span<const std::uint32_t> instruction = words.subspan(at, lengthAt(words, at));
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
+        const std::uint32_t opcode = it.opcode;
         if (opcode == spv::OpFunction) {
             inFunction = true;
-            fate = fates.at(words[at + 2]);
+            fate = fates.at(it.operands[1]);
         }
         if (inFunction) {
             if (stays(fate, opcode)) {
-                appendWords(fate == Fate::Declared ? parts.declarations : parts.definitions, instruction);
+                appendWords(fate == Fate::Declared ? parts.declarations : parts.definitions, it.words());
             }
             inFunction = opcode != spv::OpFunctionEnd;
         } else if (opcode == spv::OpCapability) {
-            appendWords(parts.capabilities, instruction);
+            appendWords(parts.capabilities, it.words());
         } else if (opcode == spv::OpName || opcode == spv::OpMemberName) {
-            if (keepNames && !removed.contains(words[at + 1])) {
-                appendWords(parts.names, instruction);
+            if (keepNames && !removed.contains(it.operands[0])) {
+                appendWords(parts.names, it.words());
             }
         } else if (isSetting(opcode)) {
-            appendWords(parts.settings, instruction);
-        } else if (isDecoration(opcode)) {
-            if (!removed.contains(words[at + 1])) {
-                appendWords(parts.decorations, instruction);
+            appendWords(parts.settings, it.words());
+        } else if (isSpirvDecoration(opcode)) {
+            if (!removed.contains(it.operands[0])) {
+                appendWords(parts.decorations, it.words());
             }
         } else if (opcode == spv::OpEntryPoint || opcode == spv::OpExecutionMode ||
                    opcode == spv::OpExecutionModeId) {
             if (keepsEntryPoint) {
-                appendWords(parts.settings, instruction);
+                appendWords(parts.settings, it.words());
             }
         } else {
-            appendWords(parts.globals, instruction);
+            appendWords(parts.globals, it.words());
         }
-    });
+    }
     return parts;
 }
 
@@ -300,63 +282,48 @@ Result<std::vector<std::uint32_t>> translate(const ShaderSource& source) {
     return words;
 }
 
-// Returns the functions that cross the border of the module, which must stay functions.
-std::vector<std::string> linkedFunctions(const LinkNames& names) {
-    std::vector<std::string> linked = names.exported;
-    linked.insert(linked.end(), names.imported.begin(), names.imported.end());
-    return linked;
+// Returns the functions that must stay functions: those of the source, and those that cross the border of the
+// module.
+std::vector<std::string> functionsApart(const ShaderSource& source, const LinkNames& names) {
+    std::vector<std::string> apart = source.functionsApart;
+    apart.insert(apart.end(), names.exported.begin(), names.exported.end());
+    apart.insert(apart.end(), names.imported.begin(), names.imported.end());
+    return apart;
 }
 
 }  // namespace
 
 Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
                                                  const ShaderCompileOptions& options) {
-    Result<std::vector<std::uint32_t>> translated = translate(source);
-    if (!translated) {
-        return translated;
-    }
-    Result<std::vector<std::uint32_t>> optimized =
-        optimizeSpirv(*translated, source.name, source.functionsApart, options.debugInfo, options.halvesAll);
-    if (!optimized) {
-        return optimized;
-    }
-    GLINT_TRY_DO(validateSpirv(*optimized, source.name));
+    GLINT_TRY(auto translated, translate(source));
+    GLINT_TRY(auto optimized, optimizeSpirv(translated, source.name, source.functionsApart, options.debugInfo,
+                                            options.halvesAll));
+    GLINT_TRY_DO(validateSpirv(optimized, source.name));
     return optimized;
 }
 
 Result<std::vector<std::uint32_t>> compileLinkable(const ShaderSource& source, const LinkNames& names,
                                                    const ShaderCompileOptions& options) {
-    Result<std::vector<std::uint32_t>> translated = translate(source);
-    if (!translated) {
-        return translated;
-    }
-    std::vector<std::string> apart = source.functionsApart;
-    std::ranges::copy(linkedFunctions(names), std::back_inserter(apart));
-    GLINT_TRY(const auto optimized, optimizeSpirv(*translated, source.name, apart, true, options.halvesAll));
-    Result<std::vector<std::uint32_t>> linkable =
-        makeLinkable(optimized, names, source.name, options.debugInfo);
-    if (linkable) {
-        GLINT_TRY_DO(validateSpirv(*linkable, source.name, SpirvUse::Link));
-    }
+    GLINT_TRY(auto translated, translate(source));
+    GLINT_TRY(const auto optimized,
+              optimizeSpirv(translated, source.name, functionsApart(source, names), true, options.halvesAll));
+    GLINT_TRY(auto linkable, makeLinkable(optimized, names, source.name, options.debugInfo));
+    GLINT_TRY_DO(validateSpirv(linkable, source.name, SpirvUse::Link));
     return linkable;
 }
 
 Result<std::vector<std::uint32_t>> compilePart(const ShaderSource& source, const LinkNames& names,
                                                const ShaderCompileOptions& options) {
-    Result<std::vector<std::uint32_t>> translated = translate(source);
-    if (!translated) {
-        return translated;
-    }
+    GLINT_TRY(auto translated, translate(source));
     if (!names.exported.empty()) {
-        GLINT_TRY(const auto parsed, parseModule(*translated, source.name));
+        GLINT_TRY(const auto parsed, parseModule(translated, source.name));
         if (sharesVariables(parsed)) {
-            translated->resize(kSpirvHeaderWords);
+            translated.resize(kSpirvHeaderWords);
             return translated;
         }
     }
-    std::vector<std::string> apart = source.functionsApart;
-    std::ranges::copy(linkedFunctions(names), std::back_inserter(apart));
-    GLINT_TRY(const auto optimized, optimizePart(*translated, source.name, apart, options.halvesAll));
+    GLINT_TRY(const auto optimized,
+              optimizePart(translated, source.name, functionsApart(source, names), options.halvesAll));
     return makeLinkable(optimized, names, source.name, true);
 }
 
@@ -367,17 +334,14 @@ bool isJoinable(std::span<const std::uint32_t> part) {
 Result<std::vector<std::uint32_t>> joinParts(std::span<const std::span<const std::uint32_t>> parts,
                                              const std::string& name, const ShaderCompileOptions& options,
                                              int jobs) {
-    Result<std::vector<std::uint32_t>> joined = joinModules(parts, name, options.debugInfo);
-    if (!joined) {
-        return joined;
+    GLINT_TRY(auto joined, joinModules(parts, name, options.debugInfo));
+    GLINT_TRY(const auto parsed, parseModule(joined, name));
+    if (std::optional<std::vector<std::uint32_t>> cleared = clearGlobals(parsed, tracesByPipeline(joined))) {
+        joined = std::move(*cleared);
+    } else {
+        GLINT_TRY_DO(clearJoined(joined, name, options.debugInfo));
     }
-    GLINT_TRY(const auto parsed, parseModule(*joined, name));
-    if (std::optional<std::vector<std::uint32_t>> cleared = clearGlobals(parsed, tracesByPipeline(*joined))) {
-        *joined = std::move(*cleared);
-    } else if (Status slowly = clearJoined(*joined, name, options.debugInfo); !slowly) {
-        return slowly.error();
-    }
-    GLINT_TRY_DO(validateJoined(*joined, name, jobs));
+    GLINT_TRY_DO(validateJoined(joined, name, jobs));
     return joined;
 }
 

@@ -327,13 +327,13 @@ std::set<std::uint32_t> reachableFrom(std::uint32_t root, const std::vector<Spir
 std::map<std::uint32_t, std::vector<std::size_t>> findTraces(std::span<const std::uint32_t> words) {
     std::map<std::uint32_t, std::vector<std::size_t>> traces;
     std::uint32_t function = 0;
-    forEachInstruction(words, [&](const SpirvInstruction& instruction) {
+    for (const SpirvInstruction& instruction : SpirvInstructions(words)) {
         if (instruction.opcode == spv::OpFunction) {
             function = instruction.operands[1];
         } else if (isTraceInstruction(instruction.opcode)) {
-            traces[function].push_back(offsetOf(words, instruction));
+            traces[function].push_back(instruction.at);
         }
-    });
+    }
     return traces;
 }
 
@@ -423,27 +423,27 @@ private:
 void judgePayloads(std::span<const std::uint32_t> words, std::vector<LintFinding>& findings) {
     constexpr std::uint64_t kMaxBytes = 64;
     TypeSizes sizes;
-    forEachInstruction(words, [&](const SpirvInstruction& it) {
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
         sizes.visit(it);
         if (it.opcode != spv::OpVariable) {
-            return;
+            continue;
         }
         const std::uint32_t storage = it.operands[2];
         const bool own = storage == spv::StorageClassRayPayloadKHR;
         if (!own && storage != spv::StorageClassIncomingRayPayloadKHR) {
-            return;
+            continue;
         }
         const std::uint64_t bytes = sizes.pointeeBytes(it.operands[0]);
         // The payload of a hit shader is declared by the shader that traces, and reported there, unless it is
         // large.
         if (own || bytes > kMaxBytes) {
             findings.push_back({bytes > kMaxBytes ? Severity::Warning : Severity::Note, "payload-bytes",
-                                SpirvPlace{{}, {}, it.operands[1], offsetOf(words, it)},
+                                SpirvPlace{{}, {}, it.operands[1], it.at},
                                 fmt::format("the ray payload has {} bytes", bytes),
                                 bytes > kMaxBytes ? fmt::format("pack it into {} bytes or fewer", kMaxBytes)
                                                   : std::string()});
         }
-    });
+    }
 }
 
 }  // namespace

@@ -148,7 +148,9 @@ std::vector<std::uint32_t> branchTargets(const SpirvInstruction& instruction,
 class FlowReader {
 public:
     explicit FlowReader(std::span<const std::uint32_t> words) {
-        forEachInstruction(words, [this](const SpirvInstruction& instruction) { visit(instruction); });
+        for (const SpirvInstruction& instruction : SpirvInstructions(words)) {
+            visit(instruction);
+        }
         std::ranges::sort(module_.constants);
     }
     FlowModule take() {

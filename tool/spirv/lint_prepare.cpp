@@ -7,7 +7,6 @@
 #include <spirv-tools/libspirv.hpp>
 #include <spirv-tools/optimizer.hpp>
 
-#include <cassert>
 #include <set>
 #include <string>
 
@@ -31,22 +30,21 @@ Words markOffsets(std::span<const std::uint32_t> words) {
     Words marked(words.begin(), words.begin() + kSpirvHeaderWords);
     const std::uint32_t file = marked[kSpirvBoundWord]++;
     bool named = false;
-    forEachInstruction(words, [&](const SpirvInstruction& instruction) {
+    for (const SpirvInstruction& instruction : SpirvInstructions(words)) {
         const std::uint32_t opcode = instruction.opcode;
         if (opcode == spv::OpLine || opcode == spv::OpNoLine) {
-            return;
+            continue;
         }
         if (!named && !isSpirvPreamble(opcode)) {
             append(marked, spv::OpString, {file, 0});
             named = true;
         }
-        const std::size_t offset = offsetOf(words, instruction);
         if (isRayQueryInstruction(opcode)) {
-            append(marked, spv::OpLine, {file, static_cast<std::uint32_t>(offset), 0});
+            append(marked, spv::OpLine, {file, static_cast<std::uint32_t>(instruction.at), 0});
         }
-        const auto source = words.subspan(offset, instruction.operands.size() + 1);
+        const auto source = instruction.words();
         marked.insert(marked.end(), source.begin(), source.end());
-    });
+    }
     return marked;
 }
 
@@ -58,14 +56,14 @@ struct FunctionContents {
 std::map<std::uint32_t, FunctionContents> weighFunctions(std::span<const std::uint32_t> words) {
     std::map<std::uint32_t, FunctionContents> functions;
     std::uint32_t current = 0;
-    forEachInstruction(words, [&](const SpirvInstruction& instruction) {
+    for (const SpirvInstruction& instruction : SpirvInstructions(words)) {
         if (instruction.opcode == spv::OpFunction) {
             current = instruction.operands[1];
         }
         FunctionContents& function = functions[current];
-        function.words += instruction.operands.size() + 1;
+        function.words += instruction.words().size();
         function.hasRayQueries = function.hasRayQueries || isRayQueryInstruction(instruction.opcode);
-    });
+    }
     return functions;
 }
 
@@ -252,13 +250,6 @@ bool hasResult(std::uint32_t opcode) {
 
 }  // namespace
 
-void forEachInstruction(std::span<const std::uint32_t> words,
-                        const std::function<void(const SpirvInstruction&)>& visit) {
-    const Status visited = visitSpirv(words, visit);
-    assert(visited.ok());
-    static_cast<void>(visited);
-}
-
 bool isRayQueryInstruction(std::uint32_t opcode) {
     switch (opcode) {
         case spv::OpRayQueryInitializeKHR:
@@ -281,12 +272,12 @@ bool isTraceInstruction(std::uint32_t opcode) {
 
 std::vector<SpirvEntryPoint> findEntryPoints(std::span<const std::uint32_t> words) {
     std::vector<SpirvEntryPoint> entries;
-    forEachInstruction(words, [&](const SpirvInstruction& instruction) {
+    for (const SpirvInstruction& instruction : SpirvInstructions(words)) {
         if (instruction.opcode == spv::OpEntryPoint) {
             entries.push_back({instruction.operands[0], instruction.operands[1],
                                spirvString(instruction.operands.subspan(2))});
         }
-    });
+    }
     return entries;
 }
 
@@ -295,19 +286,18 @@ std::map<std::size_t, SpirvPlace> findPlaces(std::span<const std::uint32_t> word
     std::map<std::size_t, SpirvPlace> places;
     LineTracker lines;
     std::string function;
-    forEachInstruction(words, [&](const SpirvInstruction& instruction) {
+    for (const SpirvInstruction& instruction : SpirvInstructions(words)) {
         const std::uint32_t opcode = instruction.opcode;
         lines.visit(instruction);
         if (opcode == spv::OpFunction) {
             function = names[instruction.operands[1]];
         }
         if (isRayQueryInstruction(opcode) || isTraceInstruction(opcode)) {
-            const std::size_t offset = offsetOf(words, instruction);
-            places[offset] = {function, lines.source(), hasResult(opcode) ? instruction.operands[1] : 0,
-                              offset};
+            places[instruction.at] = {function, lines.source(),
+                                      hasResult(opcode) ? instruction.operands[1] : 0, instruction.at};
         }
         lines.leave(opcode);
-    });
+    }
     return places;
 }
 

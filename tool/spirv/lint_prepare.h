@@ -9,7 +9,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <span>
 #include <vector>
@@ -24,15 +23,6 @@ Status checkSpirv(std::span<const std::uint32_t> words);
 // ray queries, and small ones. Before each ray query instruction stands an OpLine whose line is the offset of
 // the original instruction in `words`. Requires a valid module.
 std::vector<std::uint32_t> prepareForLint(std::span<const std::uint32_t> words);
-
-// Returns the offset of the first word of `instruction`, which visitSpirv() gave for `words`.
-inline std::size_t offsetOf(std::span<const std::uint32_t> words, const SpirvInstruction& instruction) {
-    return static_cast<std::size_t>(instruction.operands.data() - words.data()) - 1;
-}
-
-// Requires a module that visitSpirv() walks to its end.
-void forEachInstruction(std::span<const std::uint32_t> words,
-                        const std::function<void(const SpirvInstruction&)>& visit);
 
 bool isRayQueryInstruction(std::uint32_t opcode);
 bool isTraceInstruction(std::uint32_t opcode);

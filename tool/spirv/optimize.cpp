@@ -24,25 +24,12 @@ namespace {
 
 // --- Arithmetic with relaxed precision in 16 bits ---
 
-constexpr std::size_t kBound = 3;  // index of the word that holds the first free ID
-constexpr std::uint32_t kOpcodeMask = 0xFFFF;
-constexpr std::uint32_t kLengthShift = 16;
 // A hidden extraction has the layout of an extraction by one index: type, result, structure, one literal.
 constexpr spv::Op kHidden = spv::OpArrayLength;
 constexpr std::size_t kHiddenWords = 5;
 
 std::uint32_t head(spv::Op opcode, std::size_t length) {
-    return static_cast<std::uint32_t>(opcode) | static_cast<std::uint32_t>(length << kLengthShift);
-}
-
-// Calls visit(instruction) for each instruction until it returns false. Requires a valid module.
-template <typename Visit>
-void forEachInstruction(std::span<const std::uint32_t> words, const Visit& visit) {
-    for (std::size_t i = kSpirvHeaderWords; i < words.size(); i += words[i] >> kLengthShift) {
-        if (!visit(words.subspan(i, words[i] >> kLengthShift))) {
-            break;
-        }
-    }
+    return static_cast<std::uint32_t>(opcode) | static_cast<std::uint32_t>(length << spv::WordCountShift);
 }
 
 // The member types of structures and arrays, and the type of each result.
@@ -59,22 +46,20 @@ struct Types {
 
 Types readTypes(std::span<const std::uint32_t> words) {
     Types types;
-    forEachInstruction(words, [&](std::span<const std::uint32_t> instruction) {
-        const std::uint32_t opcode = instruction[0] & kOpcodeMask;
-        if (opcode == spv::OpTypeStruct) {
-            types.members[instruction[1]].assign(instruction.begin() + 2, instruction.end());
-        } else if (opcode == spv::OpTypeArray) {
-            types.members[instruction[1]] = {instruction[2]};
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
+        if (it.opcode == spv::OpTypeStruct) {
+            types.members[it.operands[0]].assign(it.operands.begin() + 1, it.operands.end());
+        } else if (it.opcode == spv::OpTypeArray) {
+            types.members[it.operands[0]] = {it.operands[1]};
         } else {
             bool hasResult = false;
             bool hasType = false;
-            spv::HasResultAndType(static_cast<spv::Op>(opcode), &hasResult, &hasType);
+            spv::HasResultAndType(static_cast<spv::Op>(it.opcode), &hasResult, &hasType);
             if (hasResult && hasType) {
-                types.ofResult[instruction[2]] = instruction[1];
+                types.ofResult[it.operands[1]] = it.operands[0];
             }
         }
-        return true;
-    });
+    }
     return types;
 }
 
@@ -102,15 +87,17 @@ void appendHidden(std::span<const std::uint32_t> extract, const Types& types, st
 
 // Returns whether anything in the module may have fewer than 32 bits, as GLSL's mediump allows.
 bool relaxesPrecision(const std::vector<std::uint32_t>& words) {
-    bool relaxes = false;
-    forEachInstruction(words, [&](std::span<const std::uint32_t> instruction) {
-        const std::uint32_t opcode = instruction[0] & kOpcodeMask;
-        relaxes = (opcode == spv::OpDecorate && instruction[2] == spv::DecorationRelaxedPrecision) ||
-                  (opcode == spv::OpMemberDecorate && instruction[3] == spv::DecorationRelaxedPrecision);
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
+        if ((it.opcode == spv::OpDecorate && it.operands[1] == spv::DecorationRelaxedPrecision) ||
+            (it.opcode == spv::OpMemberDecorate && it.operands[2] == spv::DecorationRelaxedPrecision)) {
+            return true;
+        }
         // Decorations come before functions (SPIR-V 2.4).
-        return !relaxes && opcode != spv::OpFunction;
-    });
-    return relaxes;
+        if (it.opcode == spv::OpFunction) {
+            break;
+        }
+    }
+    return false;
 }
 
 // SPIRV-Tools 2023.1 treats every float that OpCompositeExtract takes out of a structure or an array as
@@ -121,21 +108,21 @@ bool relaxesPrecision(const std::vector<std::uint32_t>& words) {
 void hideExtractions(std::vector<std::uint32_t>& words) {
     const Types types = readTypes(words);
     std::vector<std::uint32_t> hidden(words.begin(), words.begin() + kSpirvHeaderWords);
-    forEachInstruction(words, [&](std::span<const std::uint32_t> instruction) {
-        if ((instruction[0] & kOpcodeMask) == spv::OpCompositeExtract) {
-            appendHidden(instruction, types, hidden[kBound], hidden);
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
+        const std::span<const std::uint32_t> instruction = it.words();
+        if (it.opcode == spv::OpCompositeExtract) {
+            appendHidden(instruction, types, hidden[kSpirvBoundWord], hidden);
         } else {
             hidden.insert(hidden.end(), instruction.begin(), instruction.end());
         }
-        return true;
-    });
+    }
     words = std::move(hidden);
 }
 
 void showExtractions(std::vector<std::uint32_t>& words) {
-    for (std::size_t i = kSpirvHeaderWords; i < words.size(); i += words[i] >> kLengthShift) {
-        if ((words[i] & kOpcodeMask) == kHidden) {
-            words[i] = head(spv::OpCompositeExtract, kHiddenWords);
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
+        if (it.opcode == kHidden) {
+            words[it.at] = head(spv::OpCompositeExtract, kHiddenWords);
         }
     }
 }
@@ -297,9 +284,9 @@ Status makeHalves(std::vector<std::uint32_t>& words, const std::string& name, bo
     };
     GLINT_TRY_DO(runPasses(words, name, fold));
     hideExtractions(words);
-    Status status = runPasses(words, name, convert);
+    GLINT_TRY_DO(runPasses(words, name, convert));
     showExtractions(words);
-    return status ? runPasses(words, name, share) : status;
+    return runPasses(words, name, share);
 }
 
 // Inlines all permitted calls, and removes unneeded code.
@@ -310,29 +297,25 @@ Status inlineAndClear(std::vector<std::uint32_t>& words, const std::string& name
     const bool keepMembers = keepNames || tracesByPipeline(words);
     const auto inlineAll = [&](spvtools::Optimizer& optimizer) { registerInlining(optimizer, keepNames); };
     const auto clearUp = [&](spvtools::Optimizer& optimizer) { registerClearing(optimizer, keepMembers); };
-    Status status = runPasses(words, name, inlineAll);
-    if (status && (halvesAll || relaxesPrecision(words))) {
-        status = makeHalves(words, name, halvesAll);
+    GLINT_TRY_DO(runPasses(words, name, inlineAll));
+    if (halvesAll || relaxesPrecision(words)) {
+        GLINT_TRY_DO(makeHalves(words, name, halvesAll));
     }
-    if (status) {
-        status = runPasses(words, name, clearUp);
-    }
-    if (status) {
-        // Drivers may inline as they like, so the marks are removed.
-        keepApart(words, findFunctions(words), {});
-        status = finishSpirv(words, name);
-    }
-    return status;
+    GLINT_TRY_DO(runPasses(words, name, clearUp));
+    // Drivers may inline as they like, so the marks are removed.
+    keepApart(words, findFunctions(words), {});
+    return finishSpirv(words, name);
 }
 
 }  // namespace
 
 // Capabilities come first in a module (SPIR-V 2.4).
 bool tracesByPipeline(std::span<const std::uint32_t> words) {
-    constexpr std::size_t kHeaderWords = 5;
-    for (std::size_t i = kHeaderWords; i + 1 < words.size() && (words[i] & kOpcodeMask) == spv::OpCapability;
-         i += words[i] >> kLengthShift) {
-        if (words[i + 1] == spv::CapabilityRayTracingKHR) {
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
+        if (it.opcode != spv::OpCapability) {
+            break;
+        }
+        if (it.operands[0] == spv::CapabilityRayTracingKHR) {
             return true;
         }
     }

@@ -3,6 +3,7 @@
 
 #include "spirv/reader.h"
 
+#include <fmt/format.h>
 #include <glslang/SPIRV/spirv.hpp>
 
 #include <cstddef>
@@ -24,21 +25,26 @@ Diagnostic formatError(std::string message) {
 Status visitSpirv(std::span<const std::uint32_t> words,
                   const std::function<void(const SpirvInstruction&)>& visit) {
     if (words.size() < kSpirvHeaderWords) {
-        return formatError("has " + std::to_string(words.size()) + " words; a module's header alone has 5");
+        return formatError(fmt::format("has {} words; a module's header alone has 5", words.size()));
     }
     if (words[0] != kSpirvMagic) {
         return formatError("does not begin with the magic number of SPIR-V");
     }
-    for (std::size_t at = kSpirvHeaderWords; at < words.size();) {
-        const std::size_t length = words[at] >> 16U;
-        if (length == 0 || length > words.size() - at) {
-            return formatError("the instruction at word " + std::to_string(at) + " claims " +
-                               std::to_string(length) + " words of " + std::to_string(words.size() - at));
-        }
-        visit({words[at] & 0xFFFFU, words.subspan(at + 1, length - 1)});
-        at += length;
+    std::size_t at = kSpirvHeaderWords;
+    for (const SpirvInstruction& instruction : SpirvInstructions(words)) {
+        visit(instruction);
+        at += instruction.words().size();
+    }
+    if (at < words.size()) {
+        return formatError(fmt::format("the instruction at word {} claims {} words of {}", at,
+                                       words[at] >> 16U, words.size() - at));
     }
     return okStatus();
+}
+
+bool isSpirvDecoration(std::uint32_t opcode) {
+    return opcode == spv::OpDecorate || opcode == spv::OpMemberDecorate || opcode == spv::OpDecorateId ||
+           opcode == spv::OpDecorateString || opcode == spv::OpMemberDecorateString;
 }
 
 bool isSpirvPreamble(std::uint32_t opcode) {
@@ -89,26 +95,14 @@ std::string withoutParameters(const std::string& name) {
 std::vector<SpirvFunction> findFunctions(std::span<const std::uint32_t> words) {
     std::vector<SpirvFunction> functions;
     std::map<std::uint32_t, std::string> names;
-    for (std::size_t at = kSpirvHeaderWords; at < words.size() && words[at] >> spv::WordCountShift != 0;
-         at += words[at] >> spv::WordCountShift) {
-        switch (words[at] & spv::OpCodeMask) {
-            case spv::OpName:
-                names[words[at + 1]] =
-                    spirvString(words.subspan(at + 2, (words[at] >> spv::WordCountShift) - 2));
-                break;
-            case spv::OpFunction: {
-                SpirvFunction function;
-                function.id = words[at + 2];
-                function.name = withoutParameters(names[function.id]);
-                function.controlWord = at + 3;
-                functions.push_back(std::move(function));
-                break;
-            }
-            case spv::OpFunctionCall:
-                functions.back().calls.push_back(words[at + 3]);
-                break;
-            default:
-                break;
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
+        if (it.opcode == spv::OpName) {
+            names[it.operands[0]] = spirvString(it.operands.subspan(1));
+        } else if (it.opcode == spv::OpFunction) {
+            const std::uint32_t id = it.operands[1];
+            functions.push_back({id, withoutParameters(names[id]), it.at + 3, {}});
+        } else if (it.opcode == spv::OpFunctionCall) {
+            functions.back().calls.push_back(it.operands[2]);
         }
     }
     return functions;

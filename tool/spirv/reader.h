@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <set>
 #include <span>
 #include <string>
@@ -19,8 +20,52 @@ inline constexpr std::size_t kSpirvHeaderWords = 5;
 inline constexpr std::size_t kSpirvBoundWord = 3;
 
 struct SpirvInstruction {
+    std::size_t at = 0;  // index of its first word in the module
     std::uint32_t opcode = 0;
     std::span<const std::uint32_t> operands;  // every word after the first
+
+    std::span<const std::uint32_t> words() const {
+        return {operands.data() - 1, operands.size() + 1};
+    }
+};
+
+// The instructions of a module, for loops. They end before one that runs past the end of the module.
+class SpirvInstructions {
+public:
+    explicit SpirvInstructions(std::span<const std::uint32_t> words) : words_(words) {}
+
+    class Iterator {
+    public:
+        explicit Iterator(std::span<const std::uint32_t> words) : words_(words) {}
+
+        SpirvInstruction operator*() const {
+            return {at_, words_[at_] & 0xFFFFU, words_.subspan(at_ + 1, length() - 1)};
+        }
+        Iterator& operator++() {
+            at_ += length();
+            return *this;
+        }
+        bool operator==(std::default_sentinel_t /*end*/) const {
+            return at_ >= words_.size() || length() == 0 || length() > words_.size() - at_;
+        }
+
+    private:
+        std::size_t length() const {
+            return words_[at_] >> 16U;
+        }
+
+        std::span<const std::uint32_t> words_;
+        std::size_t at_ = kSpirvHeaderWords;
+    };
+    Iterator begin() const {
+        return Iterator(words_);
+    }
+    static std::default_sentinel_t end() {
+        return {};
+    }
+
+private:
+    std::span<const std::uint32_t> words_;
 };
 
 // Calls `visit` for each instruction in order. Error "spirv-format" if `words` is no SPIR-V module or an
@@ -28,6 +73,7 @@ struct SpirvInstruction {
 Status visitSpirv(std::span<const std::uint32_t> words,
                   const std::function<void(const SpirvInstruction&)>& visit);
 
+bool isSpirvDecoration(std::uint32_t opcode);
 // Returns whether an instruction belongs before the debug instructions, and so before the decorations
 // (section 2.4).
 bool isSpirvPreamble(std::uint32_t opcode);

@@ -37,7 +37,7 @@ Result<SpirvStatistics> measureSpirv(std::span<const std::uint32_t> words) {
     SpirvStatistics statistics;
     statistics.bytes = words.size_bytes();
     bool inFunction = false;
-    const Status status = visitSpirv(words, [&](const SpirvInstruction& instruction) {
+    GLINT_TRY_DO(visitSpirv(words, [&](const SpirvInstruction& instruction) {
         const std::uint32_t opcode = instruction.opcode;
         inFunction = inFunction || opcode == spv::OpFunction;
         if (inFunction && !isBookkeeping(opcode)) {
@@ -49,10 +49,7 @@ Result<SpirvStatistics> measureSpirv(std::span<const std::uint32_t> words) {
             statistics.functions += opcode == spv::OpFunction ? 1 : 0;
         }
         inFunction = inFunction && opcode != spv::OpFunctionEnd;
-    });
-    if (!status) {
-        return status.error();
-    }
+    }));
     return statistics;
 }
 

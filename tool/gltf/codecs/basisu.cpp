@@ -1,7 +1,7 @@
 // Basis Universal: its transcoder, and the packers and unpackers of blocks that it has for itself.
 #include "gltf/codecs/basisu.h"
 
-#include "gltf/codecs/ktx2.h"
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <basisu_transcoder.h>
@@ -29,7 +29,7 @@ void makeTables() {
 // without checking for overflow.
 class Transcoder {
 public:
-    bool open(ByteView bytes, std::string& problem) {
+    Status open(ByteView bytes) {
         makeTables();
         // Blocks lie at multiples of 16 bytes in the file, but a buffer view may start anywhere.
         constexpr std::uintptr_t kAlignment = 16;
@@ -39,20 +39,17 @@ public:
         }
         if (!transcoder_.init(bytes.data(), static_cast<std::uint32_t>(bytes.size())) ||
             !transcoder_.start_transcoding()) {
-            problem = "the transcoder of Basis Universal does not take its header or its code books";
-            return false;
+            return imageFault("the transcoder of Basis Universal does not take its header or its code books");
         }
-        return true;
+        return okStatus();
     }
 
     // `units` are blocks or pixels.
-    bool level(std::uint32_t level, std::uint8_t* target, std::uint32_t units,
-               basist::transcoder_texture_format format, std::uint32_t flags, std::string& problem) {
-        if (!transcoder_.transcode_image_level(level, 0, 0, target, units, format, flags)) {
-            problem = "the data of level " + std::to_string(level) + " are damaged";
-            return false;
-        }
-        return true;
+    Status level(std::uint32_t level, std::uint8_t* target, std::uint32_t units,
+                 basist::transcoder_texture_format format, std::uint32_t flags) {
+        return transcoder_.transcode_image_level(level, 0, 0, target, units, format, flags)
+                   ? okStatus()
+                   : imageFault(fmt::format("the data of level {} are damaged", level));
     }
 
 private:
@@ -82,47 +79,37 @@ bool hasBasisu() {
     return true;
 }
 
-bool decodeBasis(ByteView bytes, Image& image, std::string& problem) {
+Status decodeBasis(ByteView bytes, Image& image) {
     Transcoder transcoder;
-    if (!transcoder.open(bytes, problem)) {
-        return false;
-    }
-    image.pixels.resize(byteCount(image));
-    std::uint8_t* target = image.pixels.data();
+    GLINT_TRY_DO(transcoder.open(bytes));
+    base::Bytes texels(byteCount(image));
+    std::uint8_t* target = texels.data();
     for (int level = 0; level < image.levels; ++level) {
         const auto pixels = static_cast<std::uint32_t>(pixelCount(image, level));
-        if (!transcoder.level(static_cast<std::uint32_t>(level), target, pixels,
-                              basist::transcoder_texture_format::cTFRGBA32, 0, problem)) {
-            image.pixels.clear();
-            return false;
-        }
+        GLINT_TRY_DO(transcoder.level(static_cast<std::uint32_t>(level), target, pixels,
+                                      basist::transcoder_texture_format::cTFRGBA32, 0));
         target += std::size_t{4} * pixels;
     }
-    return true;
+    image.pixels = std::move(texels);
+    return okStatus();
 }
 
-std::optional<std::vector<std::uint8_t>> transcodeBasis(const BlockFile& file, ByteView bytes,
-                                                        TexelFormat format, std::string& problem) {
+Result<base::Bytes> transcodeBasis(const BlockFile& file, ByteView bytes, TexelFormat format) {
     const auto target = transcoderFormat(format);
     if (!target) {
-        problem = std::string("it can't be transcoded to ") + infoOf(format).name;
-        return std::nullopt;
+        return imageFault(fmt::format("it can't be transcoded to {}", infoOf(format).name));
     }
     Transcoder transcoder;
-    if (!transcoder.open(bytes, problem)) {
-        return std::nullopt;
-    }
+    GLINT_TRY_DO(transcoder.open(bytes));
     const auto width = static_cast<std::uint32_t>(file.width);
     const auto height = static_cast<std::uint32_t>(file.height);
     const auto levels = static_cast<std::uint32_t>(file.levels);
-    std::vector<std::uint8_t> blocks(static_cast<std::size_t>(bytesOfLevels(format, width, height, levels)));
+    base::Bytes blocks(static_cast<std::size_t>(bytesOfLevels(format, width, height, levels)));
     std::uint8_t* place = blocks.data();
     for (std::uint32_t level = 0; level < levels; ++level) {
         const std::uint64_t size = bytesOfLevel(format, width, height, level);
         const auto units = static_cast<std::uint32_t>(size / infoOf(format).blockBytes);
-        if (!transcoder.level(level, place, units, *target, basist::cDecodeFlagsHighQuality, problem)) {
-            return std::nullopt;
-        }
+        GLINT_TRY_DO(transcoder.level(level, place, units, *target, basist::cDecodeFlagsHighQuality));
         place += size;
     }
     return blocks;

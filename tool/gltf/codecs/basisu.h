@@ -6,10 +6,7 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <string>
-#include <vector>
 
 namespace glint::gltf {
 
@@ -22,12 +19,10 @@ inline constexpr const char* kBasisuHint =
     "the image as PNG, JPEG or WebP";
 
 // Fills the pixels of an image whose header was read from a KTX2 file without a block format of its own.
-bool decodeBasis(ByteView bytes, Image& image, std::string& problem);
+Status decodeBasis(ByteView bytes, Image& image);
 
-// Returns all levels of such a file in BC1, BC3, BC7 or ASTC 4x4. Returns nothing if data are damaged, or for
-// other formats, and `problem` says so.
-std::optional<std::vector<std::uint8_t>> transcodeBasis(const BlockFile& file, ByteView bytes,
-                                                        TexelFormat format, std::string& problem);
+// Returns all levels of such a file in BC1, BC3, BC7 or ASTC 4x4. Other formats are errors.
+Result<base::Bytes> transcodeBasis(const BlockFile& file, ByteView bytes, TexelFormat format);
 
 // A block of 4 x 4 texels in RGBA of 8 bits, row by row.
 using BlockTexels = std::array<std::array<std::uint8_t, 4>, 16>;

@@ -3,25 +3,20 @@
 
 namespace glint::gltf {
 
-namespace {
-
-constexpr const char* kMissing = "this Glint was built without the transcoder of Basis Universal";
-
-}  // namespace
+static Diagnostic missing() {
+    return imageFault("this Glint was built without the transcoder of Basis Universal");
+}
 
 bool hasBasisu() {
     return false;
 }
 
-bool decodeBasis(ByteView /*bytes*/, Image& /*image*/, std::string& problem) {
-    problem = kMissing;
-    return false;
+Status decodeBasis(ByteView /*bytes*/, Image& /*image*/) {
+    return missing();
 }
 
-std::optional<std::vector<std::uint8_t>> transcodeBasis(const BlockFile& /*file*/, ByteView /*bytes*/,
-                                                        TexelFormat /*format*/, std::string& problem) {
-    problem = kMissing;
-    return std::nullopt;
+Result<base::Bytes> transcodeBasis(const BlockFile& /*file*/, ByteView /*bytes*/, TexelFormat /*format*/) {
+    return missing();
 }
 
 bool unpackBc7(const std::uint8_t* /*block*/, BlockTexels& /*texels*/) {

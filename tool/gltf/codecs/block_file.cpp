@@ -75,106 +75,101 @@ constexpr auto kDxgiFormats = std::to_array<DxgiRow>({
     {99, TexelFormat::Bc7, Transfer::Srgb},
 });
 
-// Each of these functions returns what is wrong, or an empty text.
-
-std::string readDx10(const FileReader& reader, BlockFile& file) {
+Status readDx10(const FileReader& reader, BlockFile& file) {
     if (!reader.has(kHeaderEnd, kDx10End - kHeaderEnd)) {
-        return "it ends within its header";
+        return imageFault("it ends within its header");
     }
     const std::uint32_t code = reader.word(kHeaderEnd);
     const auto* const row = std::ranges::find(kDxgiFormats, code, &DxgiRow::code);
     if (row == kDxgiFormats.end()) {
-        return fmt::format("it holds data of DXGI_FORMAT {}; Glint reads BC1 to BC5 and BC7, unsigned", code);
+        return imageFault(
+            fmt::format("it holds data of DXGI_FORMAT {}; Glint reads BC1 to BC5 and BC7, unsigned", code));
     }
     if (reader.word(kHeaderEnd + 4) != kTexture2d || (reader.word(kHeaderEnd + 8) & kMiscCube) != 0 ||
         reader.word(kHeaderEnd + 12) > 1) {
-        return "it is no single two-dimensional image, but has a depth, layers or faces";
+        return imageFault("it is no single two-dimensional image, but has a depth, layers or faces");
     }
     if ((reader.word(kHeaderEnd + 16) & kAlphaModeBits) == kAlphaPremultiplied) {
         file.deviations.emplace_back(kPremultipliedText);
     }
     file.format = row->format;
     file.transfer = row->transfer;
-    return "";
+    return okStatus();
 }
 
-std::string readFourCc(const FileReader& reader, BlockFile& file) {
+Status readFourCc(const FileReader& reader, BlockFile& file) {
     const std::uint32_t code = reader.word(84);
     const bool hasCode = (reader.word(80) & kHasFourCc) != 0;
     const auto* const row = std::ranges::find(kFourCcs, code, &FourCcRow::code);
     if (!hasCode || row == kFourCcs.end()) {
-        return hasCode
-                   ? fmt::format("it holds data of the FourCC 0x{:08x}; Glint reads BC1 to BC5 and BC7", code)
-                   : "it holds texels without block compression; Glint reads BC1 to BC5 and BC7";
+        return imageFault(
+            hasCode
+                ? fmt::format("it holds data of the FourCC 0x{:08x}; Glint reads BC1 to BC5 and BC7", code)
+                : "it holds texels without block compression; Glint reads BC1 to BC5 and BC7");
     }
     if (row->isPremultiplied) {
         file.deviations.emplace_back(kPremultipliedText);
     }
     file.format = row->format;
-    return "";
+    return okStatus();
 }
 
-std::string readHeader(const FileReader& reader, BlockFile& file, std::uint64_t& data) {
+Result<std::uint64_t> readHeader(const FileReader& reader, BlockFile& file) {
     if (!reader.has(0, kHeaderEnd)) {
-        return "it ends within its header";
+        return imageFault("it ends within its header");
     }
     if (reader.word(4) != kHeaderSize || reader.word(76) != kPixelFormatSize) {
-        return "its header is damaged";
+        return imageFault("its header is damaged");
     }
     if ((reader.word(112) & (kCubeMap | kVolume)) != 0) {
-        return "it is no single two-dimensional image, but has a depth, layers or faces";
+        return imageFault("it is no single two-dimensional image, but has a depth, layers or faces");
     }
     const bool isDx10 = (reader.word(80) & kHasFourCc) != 0 && reader.word(84) == kDx10;
-    data = isDx10 ? kDx10End : kHeaderEnd;
-    return isDx10 ? readDx10(reader, file) : readFourCc(reader, file);
+    GLINT_TRY_DO(isDx10 ? readDx10(reader, file) : readFourCc(reader, file));
+    return isDx10 ? kDx10End : kHeaderEnd;
 }
 
-// Levels follow each other, the largest first.
-std::string placeLevels(const FileReader& reader, std::uint64_t data, BlockFile& file) {
+// `data` is where they begin. Levels follow each other, the largest first.
+Status placeLevels(const FileReader& reader, std::uint64_t data, BlockFile& file) {
     const std::uint32_t height = reader.word(12);
     const std::uint32_t width = reader.word(16);
     // Files without mips may say 0.
     const std::uint32_t levels = std::max(reader.word(28), 1U);
-    if (std::string problem = checkImageShape(width, height, levels); !problem.empty()) {
-        return problem;
-    }
+    GLINT_TRY_DO(checkImageShape(width, height, levels));
     file.width = static_cast<int>(width);
     file.height = static_cast<int>(height);
     file.levels = static_cast<int>(levels);
     for (std::uint32_t level = 0; level < levels; ++level) {
         const std::uint64_t bytes = bytesOfLevel(*file.format, width, height, level);
         if (!reader.has(data, bytes)) {
-            return fmt::format("it ends within its level {}", level);
+            return imageFault(fmt::format("it ends within its level {}", level));
         }
         file.places.push_back({data, bytes});
         data += bytes;
     }
-    return "";
+    return okStatus();
 }
 
 }  // namespace
 
-std::optional<BlockFile> readDds(ByteView bytes, std::string& problem) {
+Result<BlockFile> readDds(ByteView bytes) {
     BlockFile file;
     const FileReader reader(bytes);
-    std::uint64_t data = 0;
-    problem = readHeader(reader, file, data);
-    if (problem.empty()) {
-        problem = placeLevels(reader, data, file);
-    }
-    return problem.empty() ? std::optional(std::move(file)) : std::nullopt;
+    GLINT_TRY(const auto data, readHeader(reader, file));
+    GLINT_TRY_DO(placeLevels(reader, data, file));
+    return file;
 }
 
-std::string checkImageShape(std::uint64_t width, std::uint64_t height, std::uint64_t levels) {
+Status checkImageShape(std::uint64_t width, std::uint64_t height, std::uint64_t levels) {
     constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<int>::max());
     if (width == 0 || height == 0 || width > kLargest || height > kLargest) {
-        return fmt::format("its size is {} x {} pixels", width, height);
+        return imageFault(fmt::format("its size is {} x {} pixels", width, height));
     }
     const auto most = static_cast<std::uint64_t>(std::bit_width(std::max(width, height)));
     if (levels == 0 || levels > most) {
-        return fmt::format("it has {} levels; 1 to {} are possible", levels, most);
+        return imageFault(fmt::format("it has {} levels; 1 to {} are possible", levels, most));
     }
-    return "";
+    return okStatus();
 }
 
 }  // namespace glint::gltf

@@ -4,12 +4,14 @@
 #include "gltf/document/files.h"
 #include "gltf/scene.h"
 
+#include <glint/result.h>
 #include <glint/scene_view.h>
 
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace glint::gltf {
@@ -59,11 +61,22 @@ struct BlockFile {
     std::vector<std::string> deviations;
 };
 
-// The size and the number of levels of an image, checked. Returns what is wrong, or an empty text.
-std::string checkImageShape(std::uint64_t width, std::uint64_t height, std::uint64_t levels);
+// Returns the fault of a file. Its place and a hint are added where the image is known.
+inline Diagnostic imageFault(std::string message) {
+    return makeError("image-decode", "", std::move(message));
+}
+
+// Checks the size and the number of levels of an image.
+Status checkImageShape(std::uint64_t width, std::uint64_t height, std::uint64_t levels);
 
 // Accepts one two-dimensional image in BC1 to BC5 or BC7 with unsigned values: by the header's FourCC (DXT1
 // to DXT5, ATI1, ATI2, BC4U, BC5U) or by a DX10 header. Source: Microsoft, "Programming Guide for DDS".
-std::optional<BlockFile> readDds(ByteView bytes, std::string& problem);
+Result<BlockFile> readDds(ByteView bytes);
+
+// Accepts one two-dimensional image: in ETC1S (with BasisLZ) or UASTC, as KHR_texture_basisu wants it, or in
+// BC1 to BC5, BC7, ETC2, EAC or ASTC, which is a deviation. Data other than ETC1S may be compressed by
+// Zstandard. It allocates nothing that depends on the file. Sources: KTX File Format Specification 2.0,
+// sections 3 and 4; Khronos Data Format 1.3, section 5.
+Result<BlockFile> readKtx2(ByteView bytes);
 
 }  // namespace glint::gltf

@@ -1,7 +1,6 @@
 #include "gltf/codecs/codecs.h"
 
 #include "gltf/codecs/basisu.h"
-#include "gltf/codecs/ktx2.h"
 #include "gltf/texels/block_decode.h"
 
 #include <fmt/format.h>
@@ -31,33 +30,30 @@ const char* describe(VP8StatusCode code) {
     }
 }
 
-bool readWebpHeader(ByteView bytes, Image& image, std::string& problem) {
+Status readWebpHeader(ByteView bytes, Image& image) {
     WebPBitstreamFeatures features;
     if (const VP8StatusCode code = WebPGetFeatures(bytes.data(), bytes.size(), &features);
         code != VP8_STATUS_OK) {
-        problem = describe(code);
-        return false;
+        return imageFault(describe(code));
     }
     if (features.has_animation != 0) {
-        problem = "an animation, which EXT_texture_webp forbids";
-        return false;
+        return imageFault("an animation, which EXT_texture_webp forbids");
     }
     image.width = features.width;
     image.height = features.height;
     image.format = PixelFormat::Rgba8;
-    return true;
+    return okStatus();
 }
 
-bool decodeWebp(ByteView bytes, Image& image, std::string& problem) {
+Status decodeWebp(ByteView bytes, Image& image) {
     const int stride = 4 * image.width;
     image.pixels.resize(static_cast<std::size_t>(stride) * static_cast<std::size_t>(image.height));
     if (WebPDecodeRGBAInto(bytes.data(), bytes.size(), image.pixels.data(), image.pixels.size(), stride) ==
         nullptr) {
-        problem = "the data is damaged or ends early";
         image.pixels.clear();
-        return false;
+        return imageFault("the data is damaged or ends early");
     }
-    return true;
+    return okStatus();
 }
 
 }  // namespace
@@ -105,15 +101,14 @@ const char* foreignFormat(ByteView bytes) {
 
 // ---- KTX2 and DDS ----
 
-std::optional<BlockFile> readBlockFile(ByteView bytes, std::string& problem) {
-    return findCodec(bytes) == &kDds ? readDds(bytes, problem) : readKtx2(bytes, problem);
+Result<BlockFile> readBlockFile(ByteView bytes) {
+    return findCodec(bytes) == &kDds ? readDds(bytes) : readKtx2(bytes);
 }
 
-std::optional<std::vector<std::uint8_t>> blocksOf(const BlockFile& file, ByteView bytes,
-                                                  std::string& problem) {
+Result<base::Bytes> blocksOf(const BlockFile& file, ByteView bytes) {
     const auto width = static_cast<std::uint32_t>(file.width);
     const auto height = static_cast<std::uint32_t>(file.height);
-    std::vector<std::uint8_t> blocks(static_cast<std::size_t>(
+    base::Bytes blocks(static_cast<std::size_t>(
         bytesOfLevels(*file.format, width, height, static_cast<std::uint32_t>(file.levels))));
     std::span<std::uint8_t> rest(blocks);
     for (std::uint32_t level = 0; level < file.places.size(); ++level) {
@@ -125,8 +120,7 @@ std::optional<std::vector<std::uint8_t>> blocksOf(const BlockFile& file, ByteVie
         if (!file.isZstandard) {
             std::ranges::copy(from, to.begin());
         } else if (!unpackZstandard(from, to)) {
-            problem = fmt::format("the data of level {} are damaged", level);
-            return std::nullopt;
+            return imageFault(fmt::format("the data of level {} are damaged", level));
         }
         rest = rest.subspan(to.size());
     }
@@ -135,53 +129,40 @@ std::optional<std::vector<std::uint8_t>> blocksOf(const BlockFile& file, ByteVie
 
 namespace {
 
-bool readBlockHeader(ByteView bytes, Image& image, std::string& problem) {
-    const std::optional<BlockFile> file = readBlockFile(bytes, problem);
-    if (!file) {
-        return false;
-    }
-    image.width = file->width;
-    image.height = file->height;
-    image.levels = file->levels;
-    image.transfer = file->transfer;
-    image.storage = file->format ? Storage::Blocks : Storage::Transcoded;
+Status readBlockHeader(ByteView bytes, Image& image) {
+    GLINT_TRY(const auto file, readBlockFile(bytes));
+    image.width = file.width;
+    image.height = file.height;
+    image.levels = file.levels;
+    image.transfer = file.transfer;
+    image.storage = file.format ? Storage::Blocks : Storage::Transcoded;
     image.format = PixelFormat::Rgba8;
-    return true;
+    return okStatus();
 }
 
-bool decodeBlockFile(ByteView bytes, Image& image, std::string& problem) {
-    const std::optional<BlockFile> file = readBlockFile(bytes, problem);
-    if (!file) {
-        return false;
+Status decodeBlockFile(ByteView bytes, Image& image) {
+    GLINT_TRY(const auto file, readBlockFile(bytes));
+    if (!file.format) {
+        return decodeBasis(bytes, image);
     }
-    if (!file->format) {
-        return decodeBasis(bytes, image, problem);
-    }
-    std::optional<std::vector<std::uint8_t>> blocks = blocksOf(*file, bytes, problem);
-    if (!blocks) {
-        return false;
-    }
-    image.pixels.clear();
-    std::span<const std::uint8_t> rest(*blocks);
-    for (int level = 0; level < file->levels; ++level) {
-        const auto width =
-            sizeAtLevel(static_cast<std::uint32_t>(file->width), static_cast<std::uint32_t>(level));
-        const auto height =
-            sizeAtLevel(static_cast<std::uint32_t>(file->height), static_cast<std::uint32_t>(level));
-        const auto bytesHere = static_cast<std::size_t>(bytesOfLevel(*file->format, width, height, 0));
-        std::optional<std::vector<std::uint8_t>> pixels = decodeBlocks(
-            *file->format, file->transfer == Transfer::Srgb, width, height, rest.first(bytesHere), problem);
-        if (!pixels) {
-            image.pixels.clear();
-            return false;
+    GLINT_TRY(const auto blocks, blocksOf(file, bytes));
+    base::Bytes pixels;
+    ByteView rest(blocks);
+    for (int i = 0; i < file.levels; ++i) {
+        const auto level = static_cast<std::uint32_t>(i);
+        const std::uint32_t width = sizeAtLevel(static_cast<std::uint32_t>(file.width), level);
+        const std::uint32_t height = sizeAtLevel(static_cast<std::uint32_t>(file.height), level);
+        const auto bytesHere = static_cast<std::size_t>(bytesOfLevel(*file.format, width, height, 0));
+        GLINT_TRY(auto here, decodeBlocks(*file.format, file.transfer == Transfer::Srgb, width, height,
+                                          rest.first(bytesHere)));
+        for (std::size_t k = 3; !file.hasAlpha && k < here.size(); k += 4) {
+            here[k] = 255;
         }
-        for (std::size_t i = 3; !file->hasAlpha && i < pixels->size(); i += 4) {
-            (*pixels)[i] = 255;
-        }
-        image.pixels.insert(image.pixels.end(), pixels->begin(), pixels->end());
+        pixels.insert(pixels.end(), here.begin(), here.end());
         rest = rest.subspan(bytesHere);
     }
-    return true;
+    image.pixels = std::move(pixels);
+    return okStatus();
 }
 
 }  // namespace

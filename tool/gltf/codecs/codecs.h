@@ -5,21 +5,18 @@
 #include "gltf/scene.h"
 
 #include <cstdint>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace glint::gltf {
 
-// Describes one format. Both functions return false on failure, and `problem` then has the decoder's message.
+// Describes one format. The errors of both functions have the decoder's message (imageFault()).
 struct Codec {
     const char* name;
     const char* type;  // the media type
     // Sets the image's size and format. It allocates nothing that depends on them.
-    bool (*readHeader)(ByteView bytes, Image& image, std::string& problem);
+    Status (*readHeader)(ByteView bytes, Image& image);
     // Fills the pixels of an image. Its header must have been read from the same bytes, and its size must
     // have been accepted.
-    bool (*decode)(ByteView bytes, Image& image, std::string& problem);
+    Status (*decode)(ByteView bytes, Image& image);
 };
 
 extern const Codec kPng;
@@ -29,14 +26,12 @@ extern const Codec kWebp;
 extern const Codec kBasisu;
 extern const Codec kDds;
 
-// Reads a file of the two by its first bytes. Returns nothing for a damaged file or one whose data Glint does
-// not read, and `problem` says why. Allocates nothing that depends on the file's sizes.
-std::optional<BlockFile> readBlockFile(ByteView bytes, std::string& problem);
+// Reads a file of the two by its first bytes. Allocates nothing that depends on the file's sizes.
+Result<BlockFile> readBlockFile(ByteView bytes);
 
 // Returns all levels in their block format, one after the other. `file` must have been read from `bytes` and
-// have a format. Returns nothing if Zstandard data are damaged, and `problem` says so.
-std::optional<std::vector<std::uint8_t>> blocksOf(const BlockFile& file, ByteView bytes,
-                                                  std::string& problem);
+// have a format.
+Result<base::Bytes> blocksOf(const BlockFile& file, ByteView bytes);
 
 // Returns the codec that matches the first bytes, or null if there is none.
 const Codec* findCodec(ByteView bytes);

@@ -79,7 +79,7 @@ Status chargeAttributes(Document& document, std::uint64_t needed, std::size_t pa
             fmt::format("its {} bytes say they hold {} bytes of attributes", packed, needed),
             kExportWithoutDraco);
     }
-    if (!document.chargeUnpackedBytes(needed)) {
+    if (!document.unpackedBytes().take(needed)) {
         return document.error("draco-size", pointer, "the scene's compressed meshes unpack to too much",
                               "split the scene, or raise ImportOptions::maxFileBytes");
     }
@@ -173,22 +173,6 @@ bool appendValues(const draco::Mesh& mesh, const draco::PointAttribute& attribut
     return true;
 }
 
-bool appendValuesAs(int componentType, const draco::Mesh& mesh, const draco::PointAttribute& attribute,
-                    std::size_t components, base::Bytes& bytes) {
-    switch (componentType) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE:
-            return appendValues<std::int8_t>(mesh, attribute, components, bytes);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-            return appendValues<std::uint8_t>(mesh, attribute, components, bytes);
-        case TINYGLTF_COMPONENT_TYPE_SHORT:
-            return appendValues<std::int16_t>(mesh, attribute, components, bytes);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-            return appendValues<std::uint16_t>(mesh, attribute, components, bytes);
-        default:
-            return appendValues<float>(mesh, attribute, components, bytes);
-    }
-}
-
 }  // namespace
 
 DracoMesh::DracoMesh(std::unique_ptr<draco::Mesh> mesh) : mesh_(std::move(mesh)) {}
@@ -197,7 +181,7 @@ DracoMesh& DracoMesh::operator=(DracoMesh&& other) noexcept = default;
 DracoMesh::~DracoMesh() = default;
 
 Result<DracoMesh> DracoMesh::decode(Document& document, const Value& extension, const std::string& pointer) {
-    const int view = indexMember(extension, "bufferView");
+    const int view = memberOr(extension, "bufferView", -1);
     GLINT_TRY(const auto bytes, document.bufferView(view));
     const std::optional<HeaderClaim> claim = readClaim(bytes);
     if (!claim) {
@@ -257,8 +241,9 @@ Result<base::Bytes> DracoMesh::attribute(const Document& document, std::uint32_t
                               kExportWithoutDraco);
     }
     base::Bytes bytes;
-    if (!isVertexType(attribute->data_type()) ||
-        !appendValuesAs(format.componentType, *mesh_, *attribute, format.components, bytes)) {
+    if (!isVertexType(attribute->data_type()) || !withComponentType(format.componentType, [&](auto zero) {
+            return appendValues<decltype(zero)>(*mesh_, *attribute, format.components, bytes);
+        })) {
         return document.error("draco-attribute", pointer,
                               "has values in the Draco data that the accessor's component type does not hold",
                               kExportWithoutDraco);

@@ -1,4 +1,5 @@
-#include "gltf/codecs/ktx2.h"
+// Checks the statements of a KTX2 file about itself before a decoder sees any of it.
+#include "gltf/codecs/block_file.h"
 
 #include <fmt/format.h>
 
@@ -69,9 +70,7 @@ struct Header {
     bool twoSamples = false;
 };
 
-// Each of these functions returns what is wrong, or an empty text.
-
-std::string checkShape(const FileReader& file, Header& header, BlockFile& image) {
+Status checkShape(const FileReader& file, Header& header, BlockFile& image) {
     const std::uint32_t format = file.word(12);
     if (format != 0) {
         const auto* const row = std::ranges::find_if(kBlockFormats, [format](const FormatRow& one) {
@@ -79,10 +78,10 @@ std::string checkShape(const FileReader& file, Header& header, BlockFile& image)
         });
         // Formats of one pair follow each other: linear, then sRGB or signed values.
         if (row == kBlockFormats.end() || (format != row->linear && !infoOf(row->format).hasSrgb)) {
-            return fmt::format(
+            return imageFault(fmt::format(
                 "it holds data of VkFormat {}; Glint reads ETC1S, UASTC, and BC1 to BC5, BC7, ETC2, EAC and "
                 "ASTC with unsigned values",
-                format);
+                format));
         }
         constexpr std::uint32_t kBc1Opaque = 131;  // VK_FORMAT_BC1_RGB_UNORM_BLOCK
         image.format = row->format;
@@ -95,14 +94,13 @@ std::string checkShape(const FileReader& file, Header& header, BlockFile& image)
     header.width = file.word(20);
     header.height = file.word(24);
     if (file.word(28) != 0 || file.word(32) != 0 || file.word(36) != 1) {
-        return "it is no single two-dimensional image, but has a depth, layers or faces";
+        return imageFault("it is no single two-dimensional image, but has a depth, layers or faces");
     }
     header.levels = file.word(40);
-    if (std::string problem = checkImageShape(header.width, header.height, header.levels); !problem.empty()) {
-        return problem;
-    }
+    GLINT_TRY_DO(checkImageShape(header.width, header.height, header.levels));
     header.scheme = static_cast<Scheme>(file.word(44));
-    return file.has(kHeaderBytes, kLevelBytes * header.levels) ? "" : "it ends within its header";
+    return file.has(kHeaderBytes, kLevelBytes * header.levels) ? okStatus()
+                                                               : imageFault("it ends within its header");
 }
 
 std::string nameOf(Model model) {
@@ -130,43 +128,43 @@ void tellDeviations(const FileReader& file, std::uint64_t descriptor, BlockFile&
 }
 
 // Checks the data format descriptor of a block format, which VkFormat has decided.
-std::string checkBlockFormat(const FileReader& file, const Header& header, BlockFile& image) {
+Status checkBlockFormat(const FileReader& file, const Header& header, BlockFile& image) {
     const std::uint64_t start = file.word(48);
     const std::uint32_t length = file.word(52);
     if (start < kHeaderBytes || !file.has(start, length) || length < kOneSample ||
         file.word(start) != length) {
-        return "its data format descriptor is damaged";
+        return imageFault("its data format descriptor is damaged");
     }
     if (header.scheme != Scheme::None && header.scheme != Scheme::Zstandard) {
-        return fmt::format("its supercompression scheme is {}, which Glint does not read for {}",
-                           static_cast<std::uint32_t>(header.scheme), infoOf(*image.format).name);
+        return imageFault(fmt::format("its supercompression scheme is {}, which Glint does not read for {}",
+                                      static_cast<std::uint32_t>(header.scheme), infoOf(*image.format).name));
     }
     tellDeviations(file, start, image);
-    return "";
+    return okStatus();
 }
 
 // Checks the data format descriptor of data of Basis Universal.
-std::string checkFormat(const FileReader& file, Header& header, BlockFile& image) {
+Status checkFormat(const FileReader& file, Header& header, BlockFile& image) {
     const std::uint64_t start = file.word(48);
     const std::uint32_t length = file.word(52);
     if (start < kHeaderBytes || !file.has(start, length) || (length != kOneSample && length != kTwoSamples) ||
         file.word(start) != length) {
-        return "its data format descriptor is damaged";
+        return imageFault("its data format descriptor is damaged");
     }
     header.model = static_cast<Model>(file.byte(start + 12));
     header.twoSamples = length == kTwoSamples;
     const bool isEtc1s = header.model == Model::Etc1s;
     if (!isEtc1s && header.model != Model::Uastc) {
-        return fmt::format(
-            "it holds {}, which Glint does not read; KHR_texture_basisu allows ETC1S and UASTC",
-            nameOf(header.model));
+        return imageFault(
+            fmt::format("it holds {}, which Glint does not read; KHR_texture_basisu allows ETC1S and UASTC",
+                        nameOf(header.model)));
     }
     const bool schemeFits = isEtc1s ? header.scheme == Scheme::BasisLz
                                     : header.scheme == Scheme::None || header.scheme == Scheme::Zstandard;
     if (!schemeFits) {
-        return fmt::format(
-            "its supercompression scheme is {}, which KHR_texture_basisu does not allow for {}",
-            static_cast<std::uint32_t>(header.scheme), isEtc1s ? "ETC1S" : "UASTC");
+        return imageFault(
+            fmt::format("its supercompression scheme is {}, which KHR_texture_basisu does not allow for {}",
+                        static_cast<std::uint32_t>(header.scheme), isEtc1s ? "ETC1S" : "UASTC"));
     }
     const auto channelOf = [&](std::uint64_t sample) {
         return static_cast<std::uint8_t>(file.byte(start + 28 + 16 * sample + 3) & 15U);
@@ -179,49 +177,50 @@ std::string checkFormat(const FileReader& file, Header& header, BlockFile& image
     if (isGray) {
         image.deviations.emplace_back("its channels are RRR, not RGB or RGBA; it is read as gray");
     } else if (!isColor) {
-        return "its channels are neither RGB nor RGBA, which is all that KHR_texture_basisu allows";
+        return imageFault(
+            "its channels are neither RGB nor RGBA, which is all that KHR_texture_basisu allows");
     }
     const std::uint8_t transfer = file.byte(start + 14);
     if (transfer != kTransferLinear && transfer != kTransferSrgb) {
-        return fmt::format("its transfer function has the number {}, which is neither linear nor sRGB",
-                           transfer);
+        return imageFault(fmt::format(
+            "its transfer function has the number {}, which is neither linear nor sRGB", transfer));
     }
     image.transfer = transfer == kTransferSrgb ? Transfer::Srgb : Transfer::Linear;
     tellDeviations(file, start, image);
     image.isEtc1s = isEtc1s;
     image.hasAlpha = isEtc1s ? header.twoSamples : channel == kChannelUastcRgba;
-    return "";
+    return okStatus();
 }
 
 // Checks the key and value data. They are pairs of text, each with its length before it, at multiples of 4
 // bytes.
-std::string checkMetadata(const FileReader& file, BlockFile& image) {
+Status checkMetadata(const FileReader& file, BlockFile& image) {
     std::uint64_t place = file.word(56);
     const std::uint64_t length = file.word(60);
     if (length == 0) {
-        return "";
+        return okStatus();
     }
     constexpr const char* kDamaged = "its metadata are damaged";
     if (place < kHeaderBytes || !file.has(place, length)) {
-        return kDamaged;
+        return imageFault(kDamaged);
     }
     const std::uint64_t end = place + length;
     while (end - place > 4) {
         const std::uint64_t bytes = file.word(place);
         place += 4;
         if (bytes < 2 || bytes > end - place) {
-            return kDamaged;
+            return imageFault(kDamaged);
         }
         const std::string_view pair = file.text(place, bytes);
         const std::size_t split = pair.find('\0');
         if (split == std::string_view::npos) {
-            return kDamaged;
+            return imageFault(kDamaged);
         }
         const std::string_view key = pair.substr(0, split);
         std::string_view value = pair.substr(split + 1);
         value = value.substr(0, value.find('\0'));
         if (key == "KTXanimData") {
-            return "it is a video";
+            return imageFault("it is a video");
         }
         if (key == "KTXorientation" && value != "rd") {
             image.deviations.emplace_back(
@@ -233,22 +232,22 @@ std::string checkMetadata(const FileReader& file, BlockFile& image) {
         }
         place = std::min(end, (place + bytes + 3) / 4 * 4);
     }
-    return "";
+    return okStatus();
 }
 
 // Checks the code books of ETC1S data, and where the data of each level lie in it.
-std::string checkGlobalData(const FileReader& file, const Header& header) {
+Status checkGlobalData(const FileReader& file, const Header& header) {
     const std::uint64_t start = file.longWord(64);
     const std::uint64_t length = file.longWord(72);
     std::uint64_t needed = kEtc1sHeaderBytes + kEtc1sImageBytes * header.levels;
     if (start < kHeaderBytes || !file.has(start, length) || length < needed) {
-        return "its global data are damaged";
+        return imageFault("its global data are damaged");
     }
     for (std::uint64_t part = 0; part < 4; ++part) {
         needed += file.word(start + 4 + 4 * part);
     }
     if (length < needed) {
-        return "its global data are damaged";
+        return imageFault("its global data are damaged");
     }
     for (std::uint32_t level = 0; level < header.levels; ++level) {
         const std::uint64_t levelBytes = file.longWord(kHeaderBytes + kLevelBytes * level + 8);
@@ -259,14 +258,14 @@ std::string checkGlobalData(const FileReader& file, const Header& header) {
             const std::uint64_t bytes = file.word(place + 8 + 8 * slice);
             const bool isNeeded = slice == 0 || header.twoSamples;
             if (offset + bytes > levelBytes || (isNeeded && bytes == 0)) {
-                return fmt::format("its level {} is damaged", level);
+                return imageFault(fmt::format("its level {} is damaged", level));
             }
         }
     }
-    return "";
+    return okStatus();
 }
 
-std::string checkLevels(const FileReader& file, const Header& header, BlockFile& image) {
+Status checkLevels(const FileReader& file, const Header& header, BlockFile& image) {
     // A block of UASTC is as large as one of BC7.
     const TexelFormat format = image.format.value_or(TexelFormat::Bc7);
     for (std::uint32_t level = 0; level < header.levels; ++level) {
@@ -278,43 +277,34 @@ std::string checkLevels(const FileReader& file, const Header& header, BlockFile&
             header.scheme == Scheme::BasisLz ? 0 : bytesOfLevel(format, header.width, header.height, level);
         if (start < kHeaderBytes + kLevelBytes * header.levels || !file.has(start, length) || length == 0 ||
             unpacked != wanted || (header.scheme == Scheme::None && length != wanted)) {
-            return fmt::format("its level {} is damaged", level);
+            return imageFault(fmt::format("its level {} is damaged", level));
         }
         // Section 3.9.7, "mipPadding", requires this. The transcoder reads blocks as structures.
         if (header.scheme == Scheme::None && !image.format && start % kBlockBytes != 0) {
-            return fmt::format("its level {} does not start at a multiple of {} bytes", level, kBlockBytes);
+            return imageFault(
+                fmt::format("its level {} does not start at a multiple of {} bytes", level, kBlockBytes));
         }
         image.places.push_back({start, length});
     }
-    return header.scheme == Scheme::BasisLz ? checkGlobalData(file, header) : "";
+    return header.scheme == Scheme::BasisLz ? checkGlobalData(file, header) : okStatus();
 }
 
 }  // namespace
 
-std::optional<BlockFile> readKtx2(ByteView bytes, std::string& problem) {
+Result<BlockFile> readKtx2(ByteView bytes) {
     const FileReader file(bytes);
     // Every file has at least one level in its index.
     if (!file.has(0, kHeaderBytes + kLevelBytes) ||
         bytes.size() > std::numeric_limits<std::uint32_t>::max()) {
-        problem =
-            bytes.size() < kHeaderBytes + kLevelBytes ? "it ends within its header" : "larger than 4 GiB";
-        return std::nullopt;
+        return imageFault(bytes.size() < kHeaderBytes + kLevelBytes ? "it ends within its header"
+                                                                    : "larger than 4 GiB");
     }
     Header header;
     BlockFile image;
-    problem = checkShape(file, header, image);
-    if (problem.empty()) {
-        problem = image.format ? checkBlockFormat(file, header, image) : checkFormat(file, header, image);
-    }
-    if (problem.empty()) {
-        problem = checkMetadata(file, image);
-    }
-    if (problem.empty()) {
-        problem = checkLevels(file, header, image);
-    }
-    if (!problem.empty()) {
-        return std::nullopt;
-    }
+    GLINT_TRY_DO(checkShape(file, header, image));
+    GLINT_TRY_DO(image.format ? checkBlockFormat(file, header, image) : checkFormat(file, header, image));
+    GLINT_TRY_DO(checkMetadata(file, image));
+    GLINT_TRY_DO(checkLevels(file, header, image));
     image.width = static_cast<int>(header.width);
     image.height = static_cast<int>(header.height);
     image.levels = static_cast<int>(header.levels);

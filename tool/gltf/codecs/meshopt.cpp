@@ -27,7 +27,21 @@ constexpr const char* kExportWithoutMeshopt = "export the scene again, or withou
 constexpr std::uint64_t kMaxRatio = 1024;
 
 enum class Mode : std::uint8_t { Attributes, Triangles, Indices };
+constexpr Named<Mode> kModes[] = {
+    {Mode::Attributes, "ATTRIBUTES"}, {Mode::Triangles, "TRIANGLES"}, {Mode::Indices, "INDICES"}};
+constexpr std::span<const Named<Mode>> namesOf(Mode /*of*/) {
+    return kModes;
+}
+
 enum class FilterKind : std::uint8_t { None, Octahedral, Quaternion, Exponential, Color };
+constexpr Named<FilterKind> kFilters[] = {{FilterKind::None, "NONE"},
+                                          {FilterKind::Octahedral, "OCTAHEDRAL"},
+                                          {FilterKind::Quaternion, "QUATERNION"},
+                                          {FilterKind::Exponential, "EXPONENTIAL"},
+                                          {FilterKind::Color, "COLOR"}};
+constexpr std::span<const Named<FilterKind>> namesOf(FilterKind /*of*/) {
+    return kFilters;
+}
 
 struct Layout {
     Mode mode = Mode::Attributes;
@@ -35,32 +49,6 @@ struct Layout {
     std::size_t count = 0;
     std::size_t stride = 0;
 };
-
-std::optional<Mode> modeOf(const std::string& name) {
-    if (name == "ATTRIBUTES") {
-        return Mode::Attributes;
-    }
-    if (name == "TRIANGLES") {
-        return Mode::Triangles;
-    }
-    return name == "INDICES" ? std::optional(Mode::Indices) : std::nullopt;
-}
-
-std::optional<FilterKind> filterOf(const std::string& name) {
-    if (name == "NONE") {
-        return FilterKind::None;
-    }
-    if (name == "OCTAHEDRAL") {
-        return FilterKind::Octahedral;
-    }
-    if (name == "QUATERNION") {
-        return FilterKind::Quaternion;
-    }
-    if (name == "EXPONENTIAL") {
-        return FilterKind::Exponential;
-    }
-    return name == "COLOR" ? std::optional(FilterKind::Color) : std::nullopt;
-}
 
 // Returns which demand of the extension's text on modes, filters, counts and strides is not met. The text is
 // empty if all are met. The library asserts the same.
@@ -72,8 +60,8 @@ std::string contradiction(const Layout& layout) {
         const bool isColor = layout.filter == FilterKind::Color;
         if ((layout.filter == FilterKind::Octahedral || isColor) && layout.stride != 4 &&
             layout.stride != 8) {
-            return fmt::format("the filter {} takes a byteStride of 4 or 8, not {}",
-                               isColor ? "COLOR" : "OCTAHEDRAL", layout.stride);
+            return fmt::format("the filter {} takes a byteStride of 4 or 8, not {}", nameOf(layout.filter),
+                               layout.stride);
         }
         if (layout.filter == FilterKind::Quaternion && layout.stride != 8) {
             return fmt::format("the filter QUATERNION takes a byteStride of 8, not {}", layout.stride);
@@ -92,23 +80,23 @@ std::string contradiction(const Layout& layout) {
     return {};
 }
 
-Result<Layout> readLayout(const Report& report, const Value& extension, const std::string& pointer) {
-    const std::string mode = textMember(extension, "mode");
-    const Value* const filterName = find(extension, "filter");
-    const std::string filter = filterName == nullptr ? "NONE" : filterName->Get<std::string>();
+Result<Layout> readLayout(const Document& document, const Value& extension, const std::string& pointer) {
+    const std::string mode = memberOr<std::string>(extension, "mode", "");
+    const auto filter = memberOr<std::string>(extension, "filter", "NONE");
     const auto fail = [&](std::string message) {
-        return report.error("meshopt-layout", pointer, std::move(message), kExportWithoutMeshopt);
+        return document.error("meshopt-layout", pointer, std::move(message), kExportWithoutMeshopt);
     };
-    const std::optional<Mode> knownMode = modeOf(mode);
+    const std::optional<Mode> knownMode = valueNamed<Mode>(mode);
     if (!knownMode) {
         return fail(fmt::format("\"{}\" is no mode of meshopt compression that Glint reads", mode));
     }
-    const std::optional<FilterKind> knownFilter = filterOf(filter);
+    const std::optional<FilterKind> knownFilter = valueNamed<FilterKind>(filter);
     if (!knownFilter) {
         return fail(fmt::format("\"{}\" is no filter of meshopt compression that Glint reads", filter));
     }
-    const Layout layout{*knownMode, *knownFilter, static_cast<std::size_t>(sizeMember(extension, "count")),
-                        static_cast<std::size_t>(sizeMember(extension, "byteStride"))};
+    const Layout layout{*knownMode, *knownFilter,
+                        static_cast<std::size_t>(memberOr<std::uint64_t>(extension, "count", 0)),
+                        static_cast<std::size_t>(memberOr<std::uint64_t>(extension, "byteStride", 0))};
     if (std::string problem = contradiction(layout); !problem.empty()) {
         return fail(std::move(problem));
     }
@@ -376,34 +364,35 @@ std::string explain(int code) {
 
 }  // namespace
 
-Result<base::Bytes> unpackMeshopt(Report& report, const Value& extension, const std::string& pointer,
+Result<base::Bytes> unpackMeshopt(Document& document, const Value& extension, const std::string& pointer,
                                   ByteView packed, std::uint64_t byteLength) {
-    GLINT_TRY(const auto layout, readLayout(report, extension, pointer));
+    GLINT_TRY(const auto layout, readLayout(document, extension, pointer));
     // This can't overflow, because the factors are within the limits of the table, 2^53 and 2^8.
     if (std::uint64_t{layout.count} * layout.stride != byteLength) {
-        return report.error("meshopt-layout", pointer,
-                            fmt::format("{} elements of {} bytes are not its {} bytes", layout.count,
-                                        layout.stride, byteLength),
-                            kExportWithoutMeshopt);
+        return document.error("meshopt-layout", pointer,
+                              fmt::format("{} elements of {} bytes are not its {} bytes", layout.count,
+                                          layout.stride, byteLength),
+                              kExportWithoutMeshopt);
     }
     if (byteLength / kMaxRatio > packed.size()) {
-        return report.error(
+        return document.error(
             "meshopt-size", pointer,
             fmt::format("says it unpacks {} bytes to {}, which no data can", packed.size(), byteLength),
             kExportWithoutMeshopt);
     }
-    if (!report.chargeUnpackedBytes(byteLength)) {
-        return report.error("meshopt-size", pointer, "the scene's compressed buffer views unpack to too much",
-                            "split the scene, or raise ImportOptions::maxFileBytes");
+    if (!document.unpackedBytes().take(byteLength)) {
+        return document.error("meshopt-size", pointer,
+                              "the scene's compressed buffer views unpack to too much",
+                              "split the scene, or raise ImportOptions::maxFileBytes");
     }
     base::Bytes bytes(static_cast<std::size_t>(byteLength));
     if (bytes.empty()) {
         return bytes;
     }
     if (const int code = decode(layout, packed, bytes); code != kDecoded) {
-        return report.error("meshopt-decode", pointer,
-                            fmt::format("can't be unpacked: {} (code {})", explain(code), code),
-                            kExportWithoutMeshopt);
+        return document.error("meshopt-decode", pointer,
+                              fmt::format("can't be unpacked: {} (code {})", explain(code), code),
+                              kExportWithoutMeshopt);
     }
     applyFilter(layout, bytes);
     return bytes;

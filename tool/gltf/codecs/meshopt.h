@@ -2,8 +2,8 @@
 #pragma once
 
 #include "base/files.h"
+#include "gltf/document/document.h"
 #include "gltf/document/model.h"
-#include "gltf/document/report.h"
 #include "gltf/scene.h"
 
 #include <glint/result.h>
@@ -14,7 +14,7 @@ namespace glint::gltf {
 // `byteLength` and `pointer` are those of the buffer view. Errors: "meshopt-layout" (members that contradict
 // each other), "meshopt-decode", "meshopt-size" (more than the packed bytes can hold, or than the budget of
 // ImportOptions::maxFileBytes).
-Result<base::Bytes> unpackMeshopt(Report& report, const Value& extension, const std::string& pointer,
+Result<base::Bytes> unpackMeshopt(Document& document, const Value& extension, const std::string& pointer,
                                   ByteView packed, std::uint64_t byteLength);
 
 }  // namespace glint::gltf

@@ -61,10 +61,9 @@ bool isSoundSegment(std::span<const std::uint8_t> rest) {
     return true;
 }
 
-// Returns why the file must not be decoded. The text is empty if there are at most 256 scans, and if every
-// table that a decoder can reach has at most 256 codes and lies in its segment. The layout is that of ITU-T
-// T.81, B.2.4.2.
-std::string findJpegExcess(std::span<const std::uint8_t> bytes) {
+// Accepts at most 256 scans, and tables of at most 256 codes that lie in their segments, as far as a decoder
+// can reach them. The layout is that of ITU-T T.81, B.2.4.2.
+Status checkJpeg(std::span<const std::uint8_t> bytes) {
     constexpr std::size_t kStartBytes = 2;
     // After the first scan every marker counts, because only a decoder knows where a scan ends.
     int scans = 0;
@@ -79,15 +78,15 @@ std::string findJpegExcess(std::span<const std::uint8_t> bytes) {
             break;
         }
         if (marker == kTables && !isSoundSegment(bytes.subspan(at))) {
-            return "a Huffman table is damaged";
+            return imageFault("a Huffman table is damaged");
         }
         scans += marker == kScan ? 1 : 0;
         if (scans > kMaxScans) {
-            return "it has more than " + std::to_string(kMaxScans) + " scans";
+            return imageFault(fmt::format("it has more than {} scans", kMaxScans));
         }
         at += scans > 0 ? 0 : segmentLength(bytes.subspan(at));
     }
-    return {};
+    return okStatus();
 }
 
 // A block of 8 x 8 values takes at least one bit of its scan. Several pixels may share a block. With three
@@ -101,49 +100,39 @@ struct StbFree {
     }
 };
 
-bool readStbHeader(ByteView bytes, Image& image, std::string& problem) {
+Status readStbHeader(ByteView bytes, Image& image) {
     if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
-        problem = "larger than 2 GiB";
-        return false;
+        return imageFault("larger than 2 GiB");
     }
     const int size = static_cast<int>(bytes.size());
     int components = 0;
     if (stbi_info_from_memory(bytes.data(), size, &image.width, &image.height, &components) == 0) {
-        problem = stbi_failure_reason();
-        return false;
+        return imageFault(stbi_failure_reason());
     }
     image.format =
         stbi_is_16_bit_from_memory(bytes.data(), size) != 0 ? PixelFormat::Rgba16 : PixelFormat::Rgba8;
-    return true;
+    return okStatus();
 }
 
-bool readPngHeader(ByteView bytes, Image& image, std::string& problem) {
-    if (!readStbHeader(bytes, image, problem)) {
-        return false;
-    }
-    problem = base::findPngExcess(bytes, image.width, image.height);
-    return problem.empty();
+Status readPngHeader(ByteView bytes, Image& image) {
+    GLINT_TRY_DO(readStbHeader(bytes, image));
+    std::string excess = base::findPngExcess(bytes, image.width, image.height);
+    return excess.empty() ? okStatus() : imageFault(std::move(excess));
 }
 
-bool readJpegHeader(ByteView bytes, Image& image, std::string& problem) {
+Status readJpegHeader(ByteView bytes, Image& image) {
     // The header comes after tables, so these are checked first.
-    problem = findJpegExcess(bytes);
-    if (!problem.empty()) {
-        return false;
-    }
-    if (!readStbHeader(bytes, image, problem)) {
-        return false;
-    }
+    GLINT_TRY_DO(checkJpeg(bytes));
+    GLINT_TRY_DO(readStbHeader(bytes, image));
     const auto pixels = static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
     if (pixels / kMaxPixelsPerJpegByte > bytes.size()) {
-        problem = fmt::format("it says it has {} x {} pixels, but has only {} bytes", image.width,
-                              image.height, bytes.size());
-        return false;
+        return imageFault(fmt::format("it says it has {} x {} pixels, but has only {} bytes", image.width,
+                                      image.height, bytes.size()));
     }
-    return true;
+    return okStatus();
 }
 
-bool decodeStb(ByteView bytes, Image& image, std::string& problem) {
+Status decodeStb(ByteView bytes, Image& image) {
     const int size = static_cast<int>(bytes.size());
     const bool isDeep = image.format == PixelFormat::Rgba16;
     int width = 0;
@@ -154,13 +143,12 @@ bool decodeStb(ByteView bytes, Image& image, std::string& problem) {
                                                              STBI_rgb_alpha))
                : stbi_load_from_memory(bytes.data(), size, &width, &height, &components, STBI_rgb_alpha));
     if (!pixels || width != image.width || height != image.height) {
-        problem = pixels ? "its size changes on the way" : stbi_failure_reason();
-        return false;
+        return imageFault(pixels ? "its size changes on the way" : stbi_failure_reason());
     }
     const auto* first = static_cast<const std::uint8_t*>(pixels.get());
     image.pixels.assign(first, first + bytesPerPixel(image.format) * static_cast<std::size_t>(width) *
                                            static_cast<std::size_t>(height));
-    return true;
+    return okStatus();
 }
 
 }  // namespace

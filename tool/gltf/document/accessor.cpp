@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <type_traits>
 
 namespace glint::gltf {
 
@@ -52,36 +53,30 @@ T load(const std::uint8_t* bytes) {
     return value;
 }
 
-std::uint32_t loadUnsigned(const std::uint8_t* bytes, int componentType) {
-    switch (componentType) {
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-            return load<std::uint8_t>(bytes);
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-            return load<std::uint16_t>(bytes);
-        default:
-            return load<std::uint32_t>(bytes);
-    }
-}
-
 // Returns the largest value of an unsigned component type, or 0 for other types.
 std::uint32_t largestUnsigned(int componentType) {
-    switch (componentType) {
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-            return std::numeric_limits<std::uint8_t>::max();
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-            return std::numeric_limits<std::uint16_t>::max();
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-            return std::numeric_limits<std::uint32_t>::max();
-        default:
-            return 0;
-    }
+    return withComponentType(componentType, [](auto zero) -> std::uint32_t {
+        using T = decltype(zero);
+        return std::is_unsigned_v<T> ? static_cast<std::uint32_t>(std::numeric_limits<T>::max()) : 0;
+    });
+}
+
+// Returns elements of an unsigned component type that are packed tightly.
+std::vector<std::uint32_t> unsignedElements(int componentType, const std::uint8_t* bytes, std::size_t count) {
+    std::vector<std::uint32_t> elements(count);
+    withComponentType(componentType, [&](auto zero) {
+        for (std::size_t i = 0; i < count; ++i) {
+            elements[i] = static_cast<std::uint32_t>(load<decltype(zero)>(bytes + i * sizeof zero));
+        }
+    });
+    return elements;
 }
 
 // Copies the accessor's own elements, without substitutions, tightly packed.
 Status gatherBase(Document& document, int index, std::size_t elementSize, base::Bytes& elements) {
     const tinygltf::Accessor& accessor = document.accessor(index);
     if (accessor.bufferView < 0) {
-        if (!document.chargeZeroElements(accessor.count)) {
+        if (!document.zeroElements().take(accessor.count)) {
             return document.error(
                 "accessor-count", accessorPointer(index),
                 fmt::format(
@@ -147,11 +142,12 @@ Status substituteSparse(Document& document, int index, std::size_t elementSize, 
     GLINT_TRY(const auto values,
               sparseLayout(document, pointer + "/values", sparse.values.bufferView,
                            static_cast<std::size_t>(sparse.values.byteOffset), elementSize, count));
+    const std::vector<std::uint32_t> targets =
+        unsignedElements(sparse.indices.componentType, indices.bytes.data() + indices.offset, count);
     std::int64_t before = -1;
     bool increases = true;
     for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t target =
-            loadUnsigned(&indices.bytes[indices.offset + i * indexSize], sparse.indices.componentType);
+        const std::uint32_t target = targets[i];
         if (target >= accessor.count) {
             return document.error(
                 "sparse-index", pointer + "/indices",
@@ -182,19 +178,6 @@ Result<base::Bytes> gather(Document& document, int index, std::size_t elementSiz
     return elements;
 }
 
-// Appends the integers of `bytes` as floats.
-template <typename T>
-void appendIntegers(const base::Bytes& bytes, bool normalized, std::vector<float>& values) {
-    const float largest = std::numeric_limits<T>::max();
-    values.reserve(bytes.size() / sizeof(T));
-    for (std::size_t i = 0; i + sizeof(T) <= bytes.size(); i += sizeof(T)) {
-        const float value = load<T>(&bytes[i]);
-        // This divides instead of multiplying by the reciprocal, because the largest integer must give
-        // exactly 1.
-        values.push_back(normalized ? std::max(value / largest, -1.0F) : value);
-    }
-}
-
 }  // namespace
 
 Result<ElementFormat> floatFormat(const Document& document, int index) {
@@ -216,25 +199,19 @@ FloatElements toFloats(const Document& document, int index, Integers integers, c
     FloatElements result;
     result.components = componentsOf(accessor);
     const bool normalized = accessor.normalized || integers == Integers::Normalized;
-    switch (accessor.componentType) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE:
-            appendIntegers<std::int8_t>(bytes, normalized, result.values);
-            break;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-            appendIntegers<std::uint8_t>(bytes, normalized, result.values);
-            break;
-        case TINYGLTF_COMPONENT_TYPE_SHORT:
-            appendIntegers<std::int16_t>(bytes, normalized, result.values);
-            break;
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-            appendIntegers<std::uint16_t>(bytes, normalized, result.values);
-            break;
-        default:
-            result.values.resize(bytes.size() / sizeof(float));
-            if (!result.values.empty()) {
-                std::memcpy(result.values.data(), bytes.data(), result.values.size() * sizeof(float));
-            }
-    }
+    withComponentType(accessor.componentType, [&](auto zero) {
+        using T = decltype(zero);
+        result.values.resize(bytes.size() / sizeof(T));
+        for (std::size_t i = 0; i < result.values.size(); ++i) {
+            const auto value = static_cast<float>(load<T>(&bytes[i * sizeof(T)]));
+            // This divides instead of multiplying by the reciprocal, because the largest integer must give
+            // exactly 1.
+            result.values[i] =
+                normalized && std::is_integral_v<T>
+                    ? std::max(value / static_cast<float>(std::numeric_limits<T>::max()), -1.0F)
+                    : value;
+        }
+    });
     result.count = result.values.size() / result.components;
     return result;
 }
@@ -270,13 +247,7 @@ Result<IndexElements> readIndices(Document& document, int index) {
     }
     const std::size_t size = componentSizeOf(accessor.componentType);
     GLINT_TRY(const auto bytes, gather(document, index, size));
-    IndexElements result;
-    result.restart = restart;
-    result.values.reserve(accessor.count);
-    for (std::size_t i = 0; i < accessor.count; ++i) {
-        result.values.push_back(loadUnsigned(&bytes[i * size], accessor.componentType));
-    }
-    return result;
+    return IndexElements{unsignedElements(accessor.componentType, bytes.data(), accessor.count), restart};
 }
 
 }  // namespace glint::gltf

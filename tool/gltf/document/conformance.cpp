@@ -1,6 +1,4 @@
-#include "gltf/document/conformance.h"
-
-#include "gltf/document/model.h"
+#include "gltf/document/document.h"
 #include "gltf/document/validate.h"
 
 #include <fmt/format.h>
@@ -26,19 +24,6 @@ constexpr auto kNoPicture = std::to_array<std::string_view>(
      "EXT_mesh_opacity_micromap", "EXT_structural_metadata", "FB_geometry_metadata", "GODOT_single_root",
      "KHR_node_hoverability", "KHR_node_selectability", "KHR_xmp", "KHR_xmp_json_ld"});
 
-// Returns the extensions in either list of a document that change no picture, in alphabetical order.
-std::set<std::string> unreadOf(const Json& root) {
-    std::set<std::string> names;
-    for (const char* list : {"extensionsRequired", "extensionsUsed"}) {
-        for (const Json& name : arrayMember(root, list)) {
-            if (changesNoPicture(name.get_ref<const std::string&>())) {
-                names.insert(name.get<std::string>());
-            }
-        }
-    }
-    return names;
-}
-
 std::string extensionHint(std::string_view name) {
     if (name == "EXT_texture_avif") {
         return "store the textures as PNG, JPEG or WebP";
@@ -49,31 +34,11 @@ std::string extensionHint(std::string_view name) {
     return "export the scene without this extension";
 }
 
-// Returns the error "extension-unsupported" at `pointer`.
-Diagnostic unsupportedExtension(const Report& report, std::string_view name, std::string_view pointer) {
-    return report.error("extension-unsupported", pointer,
-                        fmt::format("needs the extension {}, which Glint does not support", name),
-                        extensionHint(name));
-}
-
 constexpr const char* kExport = "export the scene again";
 
-std::string_view nameOf(int componentType) {
-    switch (componentType) {
-        case TINYGLTF_COMPONENT_TYPE_BYTE:
-            return "bytes";
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
-            return "unsigned bytes";
-        case TINYGLTF_COMPONENT_TYPE_SHORT:
-            return "shorts";
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
-            return "unsigned shorts";
-        case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-            return "unsigned integers";
-        default:
-            return "floats";
-    }
-}
+// By component type, from TINYGLTF_COMPONENT_TYPE_BYTE on. glTF has no signed integers of 32 bits.
+constexpr std::string_view kComponentNames[] = {"bytes", "unsigned bytes",    "shorts", "unsigned shorts",
+                                                "",      "unsigned integers", "floats"};
 
 // Returns how many numbers an element of a checked accessor has: "SCALAR", "VEC3", "MAT4".
 std::size_t componentsOf(const Json& accessor) {
@@ -109,23 +74,23 @@ void visitExtensions(const Json& json, std::string& pointer, const Visit& visit)
     }
 }
 
-void checkLists(Report& report, const Json& document) {
-    const Json& used = arrayMember(document, "extensionsUsed");
-    const Json& required = arrayMember(document, "extensionsRequired");
+void checkLists(Document& document, const Json& json) {
+    const Json& used = arrayMember(json, "extensionsUsed");
+    const Json& required = arrayMember(json, "extensionsRequired");
     for (std::size_t i = 0; i < required.size(); ++i) {
         if (!isIn(used, required[i].get_ref<const std::string&>())) {
-            report.warn("extension-unlisted", fmt::format("/extensionsRequired/{}", i),
-                        fmt::format("{} is missing in extensionsUsed", required[i].get<std::string>()),
-                        kExport);
+            document.warn("extension-unlisted", fmt::format("/extensionsRequired/{}", i),
+                          fmt::format("{} is missing in extensionsUsed", required[i].get<std::string>()),
+                          kExport);
         }
     }
     std::set<std::string> known;
     std::string root;
-    visitExtensions(document, root, [&](const std::string& name, const std::string& pointer) {
+    visitExtensions(json, root, [&](const std::string& name, const std::string& pointer) {
         if (!isIn(used, name) && !isIn(required, name) && known.insert(name).second) {
-            report.warn("extension-unlisted", pointer,
-                        fmt::format("{} is missing in extensionsUsed; it is read all the same", name),
-                        kExport);
+            document.warn("extension-unlisted", pointer,
+                          fmt::format("{} is missing in extensionsUsed; it is read all the same", name),
+                          kExport);
         }
     });
 }
@@ -133,39 +98,31 @@ void checkLists(Report& report, const Json& document) {
 // Warns of objects that a reader without the extension can't read in a file that does not require it.
 class RequiredExtensions {
 public:
-    RequiredExtensions(Report& report, const Json& root) : report_(report), root_(root) {}
+    RequiredExtensions(Document& document, const Json& root) : document_(document), root_(root) {}
 
     void check() {
         if (isIn(arrayMember(root_, "extensionsUsed"), kQuantization)) {
             demand(kQuantization, "/extensionsUsed");
         }
-        const Json& textures = arrayMember(root_, "textures");
-        for (std::size_t i = 0; i < textures.size(); ++i) {
-            for (const char* const name : kImageExtensions) {
-                if (findExtension(textures[i], name) != nullptr && find(textures[i], "source") == nullptr) {
-                    demand(name, fmt::format("/textures/{}", i));
-                }
+        demandOf("textures", "source", kImageExtensions);
+        demandOf("buffers", "uri", kMeshoptExtensions);
+        visitElements(root_, "bufferViews", "", [&](const Json& view, const std::string& pointer) {
+            if (std::ranges::all_of(kMeshoptExtensions,
+                                    [&](const char* name) { return findExtension(view, name); })) {
+                document_.warn("meshopt-layout", pointer,
+                               "has both EXT_meshopt_compression and KHR_meshopt_compression; the former is "
+                               "read",
+                               kExport);
             }
-        }
-        const Json& buffers = arrayMember(root_, "buffers");
-        for (std::size_t i = 0; i < buffers.size(); ++i) {
-            for (const char* const name : kMeshoptExtensions) {
-                if (findExtension(buffers[i], name) != nullptr && find(buffers[i], "uri") == nullptr) {
-                    demand(name, fmt::format("/buffers/{}", i));
-                }
+        });
+        const Json& accessors = arrayMember(root_, "accessors");
+        visitPrimitives(root_, [&](const Json& primitive, const std::string& pointer) {
+            const Json* const position = find(primitive["attributes"], "POSITION");
+            if (findExtension(primitive, kDracoExtension) != nullptr && position != nullptr &&
+                find(accessors[position->get<std::size_t>()], "bufferView") == nullptr) {
+                demand(kDracoExtension, pointer);
             }
-        }
-        const Json& views = arrayMember(root_, "bufferViews");
-        for (std::size_t i = 0; i < views.size(); ++i) {
-            if (findExtension(views[i], "EXT_meshopt_compression") != nullptr &&
-                findExtension(views[i], "KHR_meshopt_compression") != nullptr) {
-                report_.warn("meshopt-layout", fmt::format("/bufferViews/{}", i),
-                             "has both EXT_meshopt_compression and KHR_meshopt_compression; the former is "
-                             "read",
-                             kExport);
-            }
-        }
-        checkDraco();
+        });
     }
 
     static constexpr const char* kQuantization = "KHR_mesh_quantization";
@@ -173,27 +130,24 @@ public:
 private:
     void demand(const char* name, const std::string& pointer) {
         if (!isIn(arrayMember(root_, "extensionsRequired"), name) && given_.insert(name).second) {
-            report_.warn("extension-unlisted", pointer,
-                         fmt::format("needs {}, which is missing in extensionsRequired", name), kExport);
+            document_.warn("extension-unlisted", pointer,
+                           fmt::format("needs {}, which is missing in extensionsRequired", name), kExport);
         }
     }
 
-    void checkDraco() {
-        const Json& accessors = arrayMember(root_, "accessors");
-        const Json& meshes = arrayMember(root_, "meshes");
-        for (std::size_t i = 0; i < meshes.size(); ++i) {
-            const Json& primitives = arrayMember(meshes[i], "primitives");
-            for (std::size_t k = 0; k < primitives.size(); ++k) {
-                const Json* const position = find(primitives[k]["attributes"], "POSITION");
-                if (findExtension(primitives[k], kDracoExtension) != nullptr && position != nullptr &&
-                    find(accessors[position->get<std::size_t>()], "bufferView") == nullptr) {
-                    demand(kDracoExtension, fmt::format("/meshes/{}/primitives/{}", i, k));
+    // Demands the extensions through which elements have what they lack themselves.
+    template <std::size_t N>
+    void demandOf(const char* array, const char* member, const char* const (&names)[N]) {
+        visitElements(root_, array, "", [&](const Json& element, const std::string& pointer) {
+            for (const char* const name : names) {
+                if (findExtension(element, name) != nullptr && find(element, member) == nullptr) {
+                    demand(name, pointer);
                 }
             }
-        }
+        });
     }
 
-    Report& report_;
+    Document& document_;
     const Json& root_;
     std::set<std::string> given_;
 };
@@ -218,50 +172,36 @@ constexpr Forms kUnsigned =
     form(TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE, false) | form(TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT, false);
 
 struct AttributeForms {
+    AccessorUse use;
     std::string_view prefix;
     Forms core = 0;
     Forms quantized = 0;  // further ones with KHR_mesh_quantization
 };
-constexpr std::array kAttributeForms{
-    AttributeForms{"POSITION", kFloat, kIntegers | kFractions | kUnsigned | kUnsignedFractions},
-    AttributeForms{"NORMAL", kFloat, kFractions},
-    AttributeForms{"TANGENT", kFloat, kFractions},
-    AttributeForms{"TEXCOORD_", kFloat | kUnsignedFractions, kIntegers | kFractions | kUnsigned},
-    AttributeForms{"WEIGHTS_", kFloat | kUnsignedFractions, 0},
-};
-constexpr std::array kTargetForms{
-    AttributeForms{"POSITION", kFloat, kIntegers | kFractions},
-    AttributeForms{"NORMAL", kFloat, kFractions},
-    AttributeForms{"TANGENT", kFloat, kFractions},
-};
-constexpr std::array kInstanceForms{
-    AttributeForms{"TRANSLATION", kFloat, 0},
-    AttributeForms{"ROTATION", kFloat | kFractions, 0},
-    AttributeForms{"SCALE", kFloat, 0},
+constexpr AttributeForms kForms[] = {
+    {AccessorUse::Attribute, "POSITION", kFloat, kIntegers | kFractions | kUnsigned | kUnsignedFractions},
+    {AccessorUse::Attribute, "NORMAL", kFloat, kFractions},
+    {AccessorUse::Attribute, "TANGENT", kFloat, kFractions},
+    {AccessorUse::Attribute, "TEXCOORD_", kFloat | kUnsignedFractions, kIntegers | kFractions | kUnsigned},
+    {AccessorUse::Attribute, "WEIGHTS_", kFloat | kUnsignedFractions},
+    {AccessorUse::Target, "POSITION", kFloat, kIntegers | kFractions},
+    {AccessorUse::Target, "NORMAL", kFloat, kFractions},
+    {AccessorUse::Target, "TANGENT", kFloat, kFractions},
+    {AccessorUse::Instances, "TRANSLATION", kFloat},
+    {AccessorUse::Instances, "ROTATION", kFloat | kFractions},
+    {AccessorUse::Instances, "SCALE", kFloat},
 };
 
 // Returns the row for the attribute, or null if any form is allowed or other messages tell of it.
 const AttributeForms* formsOf(const UsedAccessor& used) {
-    const auto find = [&](const auto& rows) -> const AttributeForms* {
-        const auto row = std::ranges::find_if(
-            rows, [&](const AttributeForms& one) { return used.name.starts_with(one.prefix); });
-        return row == rows.end() ? nullptr : &*row;
-    };
-    switch (used.use) {
-        case AccessorUse::Attribute:
-            return find(kAttributeForms);
-        case AccessorUse::Target:
-            return find(kTargetForms);
-        case AccessorUse::Instances:
-            return find(kInstanceForms);
-        default:
-            return nullptr;
-    }
+    const auto* const row = std::ranges::find_if(kForms, [&](const AttributeForms& one) {
+        return one.use == used.use && used.name.starts_with(one.prefix);
+    });
+    return row == std::end(kForms) ? nullptr : row;
 }
 
 class AccessorRules {
 public:
-    AccessorRules(Report& report, const Json& root) : report_(report), root_(root) {
+    AccessorRules(Document& document, const Json& root) : document_(document), root_(root) {
         constexpr const char* kName = RequiredExtensions::kQuantization;
         quantized_ = isIn(arrayMember(root, "extensionsRequired"), kName) ||
                      isIn(arrayMember(root, "extensionsUsed"), kName);
@@ -304,7 +244,7 @@ private:
         return root_["bufferViews"][index];
     }
     std::size_t strideOf(std::size_t view) const {
-        return sizeMember(this->view(view), "byteStride");
+        return memberOr<std::uint64_t>(this->view(view), "byteStride", 0);
     }
 
     enum Kind : std::uint8_t { kVertices, kIndices, kInverseBinds, kOther };
@@ -315,13 +255,13 @@ private:
 
     void warn(std::string id, const std::string& pointer, std::string message) {
         if (given_.insert(id + message).second) {
-            report_.warn(std::move(id), pointer, std::move(message), kExport);
+            document_.warn(std::move(id), pointer, std::move(message), kExport);
         }
     }
 
     void checkForm(const UsedAccessor& used) {
         const int type = accessor(used)["componentType"].get<int>();
-        const bool normalized = boolMember(accessor(used), "normalized", false);
+        const bool normalized = memberOr(accessor(used), "normalized", false);
         const Forms own = form(type, normalized);
         const AttributeForms* const row = formsOf(used);
         const bool isTime = used.use == AccessorUse::Times;
@@ -335,7 +275,8 @@ private:
                                           ? "normalised floats"
                                       : normalized ? "normalised"
                                                    : "plain";
-        const std::string what = fmt::format("{} has {} {}", used.name, mark, nameOf(type));
+        const std::string what = fmt::format("{} has {} {}", used.name, mark,
+                                             kComponentNames[type - TINYGLTF_COMPONENT_TYPE_BYTE]);
         warn(
             "accessor-form", used.pointer,
             (own & row->quantized) != 0
@@ -375,20 +316,21 @@ private:
                           : used.use == AccessorUse::InverseBinds ? kInverseBinds
                                                                   : kOther);
         uses.accessors.insert(used.accessor);
-        const std::uint64_t offset = sizeMember(json, "byteOffset");
-        const std::uint64_t inBuffer = offset + sizeMember(view(viewIndex), "byteOffset");
+        const std::uint64_t offset = memberOr<std::uint64_t>(json, "byteOffset", 0);
+        const std::uint64_t inBuffer = offset + memberOr<std::uint64_t>(view(viewIndex), "byteOffset", 0);
         if (offset % size != 0 || inBuffer % size != 0 || stride % size != 0) {
             warn("accessor-layout", fmt::format("/accessors/{}", used.accessor),
                  "its elements are not at multiples of the size of a component; they are read all the same");
         }
         const std::size_t step = stride > 0 ? stride : componentsOf(json) * size;
-        if (isVertex && (offset % 4 != 0 || (step % 4 != 0 && sizeMember(json, "count") > 1))) {
+        if (isVertex &&
+            (offset % 4 != 0 || (step % 4 != 0 && memberOr<std::uint64_t>(json, "count", 0) > 1))) {
             warn("accessor-layout", fmt::format("/accessors/{}", used.accessor),
                  "elements of vertices must be at multiples of 4 bytes; they are read all the same");
         }
     }
 
-    Report& report_;
+    Document& document_;
     const Json& root_;
     bool quantized_ = false;
     std::map<std::size_t, ViewUse> views_;
@@ -405,7 +347,7 @@ std::optional<int> setOf(std::string_view digits) {
     return isWhole && set >= 0 && std::to_string(set) == digits ? std::optional(set) : std::nullopt;
 }
 
-void checkNames(Report& report, const Json& attributes, const std::string& pointer) {
+void checkNames(Document& document, const Json& attributes, const std::string& pointer) {
     constexpr std::array<std::string_view, 3> kSingle{"POSITION", "NORMAL", "TANGENT"};
     constexpr std::array<std::string_view, 4> kSets{"TEXCOORD_", "COLOR_", "JOINTS_", "WEIGHTS_"};
     for (const auto& [text, accessor] : attributes.items()) {
@@ -418,36 +360,13 @@ void checkNames(Report& report, const Json& attributes, const std::string& point
         const std::optional<int> set =
             prefix == kSets.end() ? std::nullopt : setOf(name.substr(prefix->size()));
         if (!set) {
-            report.warn("attribute-name", fmt::format("{}/{}", pointer, name),
-                        "is no name of an attribute and does not start with an underscore; it is not read",
-                        "give attributes of an application names such as _TEMPERATURE");
+            document.warn("attribute-name", fmt::format("{}/{}", pointer, name),
+                          "is no name of an attribute and does not start with an underscore; it is not read",
+                          "give attributes of an application names such as _TEMPERATURE");
         } else if (*set > 0 && find(attributes, fmt::format("{}{}", *prefix, *set - 1)) == nullptr) {
-            report.warn("attribute-name", fmt::format("{}/{}", pointer, name),
-                        fmt::format("there is no {}{}, and sets must count from 0", *prefix, *set - 1),
-                        kExport);
-        }
-    }
-}
-
-// tinygltf does not read other transforms beside a matrix.
-void checkTransforms(Report& report, const Json& root) {
-    const Json& nodes = arrayMember(root, "nodes");
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-        if (nodes[i].contains("matrix") && (nodes[i].contains("translation") ||
-                                            nodes[i].contains("rotation") || nodes[i].contains("scale"))) {
-            report.warn("node-matrix", fmt::format("/nodes/{}", i),
-                        "has a matrix and another transform; the matrix is used", kExport);
-        }
-    }
-}
-
-void checkPrimitives(Report& report, const Json& root) {
-    const Json& meshes = arrayMember(root, "meshes");
-    for (std::size_t i = 0; i < meshes.size(); ++i) {
-        const Json& primitives = arrayMember(meshes[i], "primitives");
-        for (std::size_t k = 0; k < primitives.size(); ++k) {
-            checkNames(report, primitives[k]["attributes"],
-                       fmt::format("/meshes/{}/primitives/{}/attributes", i, k));
+            document.warn("attribute-name", fmt::format("{}/{}", pointer, name),
+                          fmt::format("there is no {}{}, and sets must count from 0", *prefix, *set - 1),
+                          kExport);
         }
     }
 }
@@ -464,50 +383,65 @@ bool changesNoPicture(std::string_view name) {
     return std::find(kNoPicture.begin(), kNoPicture.end(), name) != kNoPicture.end();
 }
 
-Status checkExtensions(Report& report, const Json& root) {
+Status checkExtensions(Document& document, const Json& root) {
     for (const char* list : {"extensionsRequired", "extensionsUsed"}) {
         const Json* names = find(root, list);
         if (names != nullptr &&
             (!names->is_array() ||
              !std::all_of(names->begin(), names->end(), [](auto& name) { return name.is_string(); }))) {
-            return report.error("json-type", fmt::format("/{}", list), "must be an array of strings",
-                                "export the scene again");
+            return document.error("json-type", fmt::format("/{}", list), "must be an array of strings",
+                                  "export the scene again");
         }
     }
-    const Json& required = arrayMember(root, "extensionsRequired");
-    for (std::size_t i = 0; i < required.size(); ++i) {
-        const std::string& name = required[i].get_ref<const std::string&>();
-        if (!isSupportedExtension(*report.options().materialModel, name) && !changesNoPicture(name)) {
-            return unsupportedExtension(report, name, fmt::format("/extensionsRequired/{}", i));
+    std::set<std::string> known;
+    std::set<std::string> unread;
+    for (const std::string_view list : {"extensionsRequired", "extensionsUsed"}) {
+        const Json& names = arrayMember(root, list);
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            const std::string& name = names[i].get_ref<const std::string&>();
+            const std::string pointer = fmt::format("/{}/{}", list, i);
+            if (changesNoPicture(name)) {
+                unread.insert(name);
+            } else if (isSupportedExtension(*document.options().materialModel, name)) {
+                continue;
+            } else if (list == "extensionsRequired") {
+                return document.error(
+                    "extension-unsupported", pointer,
+                    fmt::format("needs the extension {}, which Glint does not support", name),
+                    extensionHint(name));
+            } else if (known.insert(name).second) {
+                document.warn(
+                    "extension-ignored", pointer,
+                    fmt::format("the extension {} is not supported; what it adds is left out", name));
+            }
         }
     }
-    std::set<std::string> warned;
-    const Json& used = arrayMember(root, "extensionsUsed");
-    for (std::size_t i = 0; i < used.size(); ++i) {
-        const std::string& name = used[i].get_ref<const std::string&>();
-        if (!isSupportedExtension(*report.options().materialModel, name) && !changesNoPicture(name) &&
-            warned.insert(name).second) {
-            report.warn("extension-ignored", fmt::format("/extensionsUsed/{}", i),
-                        fmt::format("the extension {} is not supported; what it adds is left out", name));
-        }
-    }
-    if (const std::set<std::string> unread = unreadOf(root); !unread.empty()) {
-        report.note("extension-no-picture", "/extensionsUsed",
-                    fmt::format("{} change{} no picture and {} not read", fmt::join(unread, ", "),
-                                unread.size() == 1 ? "s" : "", unread.size() == 1 ? "is" : "are"));
+    if (!unread.empty()) {
+        document.note("extension-no-picture", "/extensionsUsed",
+                      fmt::format("{} change{} no picture and {} not read", fmt::join(unread, ", "),
+                                  unread.size() == 1 ? "s" : "", unread.size() == 1 ? "is" : "are"));
     }
     return okStatus();
 }
 
-void warnOfBrokenRules(Report& report, const Json& root) {
-    checkLists(report, root);
-    RequiredExtensions(report, root).check();
-    checkPrimitives(report, root);
-    AccessorRules rules(report, root);
-    visitAccessors(root, *report.options().materialModel,
+void warnOfBrokenRules(Document& document, const Json& root) {
+    checkLists(document, root);
+    RequiredExtensions(document, root).check();
+    visitPrimitives(root, [&](const Json& primitive, const std::string& pointer) {
+        checkNames(document, primitive["attributes"], pointer + "/attributes");
+    });
+    AccessorRules rules(document, root);
+    visitAccessors(root, *document.options().materialModel,
                    [&](const UsedAccessor& used) { rules.check(used); });
     rules.checkViews();
-    checkTransforms(report, root);
+    // tinygltf does not read other transforms beside a matrix.
+    visitElements(root, "nodes", "", [&](const Json& node, const std::string& pointer) {
+        if (node.contains("matrix") &&
+            (node.contains("translation") || node.contains("rotation") || node.contains("scale"))) {
+            document.warn("node-matrix", pointer, "has a matrix and another transform; the matrix is used",
+                          kExport);
+        }
+    });
 }
 
 }  // namespace glint::gltf

@@ -1,9 +1,10 @@
-// An opened and checked glTF document. Every part of the importer reads from it.
+// An opened and checked glTF document, with the messages of its import. Every part of the importer reads from
+// it.
 #pragma once
 
 #include "gltf/document/files.h"
 #include "gltf/document/model.h"
-#include "gltf/document/report.h"
+#include "gltf/import_options.h"
 
 #include <glint/result.h>
 
@@ -17,12 +18,31 @@
 
 namespace glint::gltf {
 
-class Document : public Report {
+// An amount that keeps hostile files from using up the machine's memory.
+class Budget {
+public:
+    explicit Budget(std::uint64_t left) : left_(left) {}
+
+    // Returns false if less than the amount is left.
+    bool take(std::uint64_t amount) {
+        const bool isEnough = amount <= left_;
+        left_ -= isEnough ? amount : 0;
+        return isEnough;
+    }
+
+private:
+    std::uint64_t left_;
+};
+
+class Document {
 public:
     // Reads, parses and checks the file. It opens no other file.
     static Result<std::unique_ptr<Document>> open(const std::filesystem::path& path,
                                                   const ImportOptions& options);
 
+    const ImportOptions& options() const {
+        return options_;
+    }
     // The document as tinygltf reads it. All types, ranges and references that the importer reads have been
     // checked.
     const tinygltf::Model& model() const {
@@ -49,23 +69,55 @@ public:
     // Reads the data URI, or the file that a relative URI names. `pointer` is that of its owner. Errors:
     // "data-uri", and those of FileSource.
     Result<base::Bytes> readUri(const std::string& uri, const std::string& pointer);
-    // Takes bytes from the budget of decoded images. Returns false if it is exhausted.
-    bool chargeImage(std::uint64_t bytes);
-
     const std::vector<SourceFile>& files() const {
         return source_.files();
+    }
+
+    // "scene.gltf#/materials/3"
+    std::string where(std::string_view pointer) const;
+    Diagnostic error(std::string id, std::string_view pointer, std::string message,
+                     std::string hint = {}) const;
+    void warn(std::string id, std::string_view pointer, std::string message, std::string hint = {});
+    void note(std::string id, std::string_view pointer, std::string message, std::string hint = {});
+    // These include notes.
+    std::vector<Diagnostic>& warnings() {
+        return warnings_;
+    }
+
+    // Takes `count` elements from the budget of ImportOptions::maxVertices. The error is "vertex-limit" at
+    // `pointer` if the budget is exhausted.
+    Status chargeVertices(std::uint64_t count, std::string_view pointer);
+    // Takes bytes from the budget of decoded images, which grows with the size of the files that were read.
+    // Returns false if it is exhausted.
+    bool chargeImage(std::uint64_t bytes);
+    // Bytes of unpacked buffer views and meshes: ImportOptions::maxFileBytes.
+    Budget& unpackedBytes() {
+        return unpackedBytes_;
+    }
+    // Elements of accessors without a buffer view take no bytes of the file, so the file's size doesn't bound
+    // them. They count each time that a primitive reads such an accessor.
+    static constexpr std::uint64_t kMaxZeroElements = 1ULL << 22;
+    Budget& zeroElements() {
+        return zeroElements_;
     }
 
 private:
     Document(const std::filesystem::path& path, const ImportOptions& options);
 
-    Status parse(const std::string& name);
+    Status parse();
     Result<ByteView> buffer(int index);
     Result<ByteView> bufferRange(int buffer, std::uint64_t offset, std::uint64_t length,
                                  const std::string& pointer);
     Result<ByteView> unpackedView(int index, const Value& extension, const std::string& pointer);
     Result<base::Bytes> loadBuffer(const Json& buffer, const std::string& pointer);
 
+    std::string name_;
+    ImportOptions options_;
+    std::vector<Diagnostic> warnings_;
+    Budget vertices_;
+    Budget unpackedBytes_;
+    Budget zeroElements_{kMaxZeroElements};
+    std::uint64_t imageBytes_ = 0;
     FileSource source_;
     base::Bytes file_;
     std::optional<ByteView> binary_;  // views file_

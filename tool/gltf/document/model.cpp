@@ -235,42 +235,6 @@ const Value* extensionOf(const tinygltf::ExtensionMap& extensions, const std::st
     return extension == extensions.end() ? nullptr : &extension->second;
 }
 
-const Value* find(const Value& object, const std::string& name) {
-    return object.Has(name) ? &object.Get(name) : nullptr;
-}
-
-int indexMember(const Value& object, const std::string& name) {
-    const Value* const member = find(object, name);
-    return member == nullptr ? -1 : member->GetNumberAsInt();
-}
-
-std::uint64_t sizeMember(const Value& object, const std::string& name) {
-    const Value* const member = find(object, name);
-    return member == nullptr ? 0 : static_cast<std::uint64_t>(member->GetNumberAsDouble());
-}
-
-std::string textMember(const Value& object, const std::string& name) {
-    const Value* const member = find(object, name);
-    return member == nullptr ? std::string() : member->Get<std::string>();
-}
-
-bool boolMember(const Value& object, const std::string& name, bool fallback) {
-    const Value* const member = find(object, name);
-    return member == nullptr ? fallback : member->Get<bool>();
-}
-
-const Value::Array& arrayMember(const Value& object, const std::string& name) {
-    static const Value::Array kNone;
-    const Value* const member = find(object, name);
-    return member == nullptr ? kNone : member->Get<Value::Array>();
-}
-
-const Value::Object& objectMember(const Value& object, const std::string& name) {
-    static const Value::Object kNone;
-    const Value* const member = find(object, name);
-    return member == nullptr ? kNone : member->Get<Value::Object>();
-}
-
 std::optional<double> farPlane(const tinygltf::Camera& camera) {
     const double zfar = camera.type == "orthographic" ? camera.orthographic.zfar : camera.perspective.zfar;
     return zfar == 0.0 && !std::signbit(zfar) ? std::nullopt : std::optional(zfar + 0.0);

@@ -18,6 +18,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace glint::gltf {
@@ -36,17 +37,20 @@ std::size_t componentsOf(const tinygltf::Accessor& accessor);
 std::size_t componentSizeOf(int componentType);
 bool isMatrix(const tinygltf::Accessor& accessor);
 
-// Return the extension of that name, or a member of a value, or null.
+// Returns the extension of that name, or null.
 const Value* extensionOf(const tinygltf::ExtensionMap& extensions, const std::string& name);
-const Value* find(const Value& object, const std::string& name);
-// Return the member of a value whose types have been checked, or what counts where it is absent: -1 for an
-// index, 0 for a size, an empty text or array, the fallback.
-int indexMember(const Value& object, const std::string& name);
-std::uint64_t sizeMember(const Value& object, const std::string& name);
-std::string textMember(const Value& object, const std::string& name);
-bool boolMember(const Value& object, const std::string& name, bool fallback);
-const Value::Array& arrayMember(const Value& object, const std::string& name);
-const Value::Object& objectMember(const Value& object, const std::string& name);
+// Returns the member of a value whose types have been checked, or `fallback` where it is absent.
+template <typename T>
+T memberOr(const Value& object, const std::string& name, T fallback) {
+    if (!object.Has(name)) {
+        return fallback;
+    }
+    if constexpr (std::is_same_v<T, bool> || std::is_same_v<T, std::string>) {
+        return object.Get(name).Get<T>();
+    } else {
+        return static_cast<T>(object.Get(name).GetNumberAsDouble());
+    }
+}
 // Returns the distance of a camera's far plane if the file gives one.
 std::optional<double> farPlane(const tinygltf::Camera& camera);
 // Returns the number of an attribute's accessor, or -1 if it has none.

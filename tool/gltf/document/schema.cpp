@@ -1,7 +1,5 @@
 #include "gltf/document/schema.h"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <utility>
 
@@ -9,47 +7,33 @@ namespace glint::gltf {
 
 namespace {
 
-std::string_view describe(Kind kind) {
-    switch (kind) {
-        case Kind::Integer:
-        case Kind::Index:
-            return "an integer";
-        case Kind::Number:
-            return "a number";
-        case Kind::Numbers:
-            return "an array of numbers";
-        case Kind::Bool:
-            return "true or false";
-        case Kind::Text:
-            return "a string";
-        case Kind::Indices:
-            return "an array of integers";
-        case Kind::Integers:
-        case Kind::Object:
-            return "an object";
-        case Kind::Objects:
-            return "an array of objects";
-    }
-    return "another type";
+// By Kind.
+constexpr std::string_view kExpected[] = {
+    "an integer",           "a number",  "an array of numbers",
+    "true or false",        "a string",  "an integer",
+    "an array of integers", "an object", "an object",
+    "an array of objects",
+};
+
+std::string_view expectedOf(Kind kind) {
+    return kExpected[static_cast<std::size_t>(kind)];
 }
 
-// Returns what is wrong with a value of another type than the expected one.
-SchemaError typeError(const Json& value, const std::string& pointer, std::string_view expected) {
-    if (isHugeNumber(value)) {
-        return {"json-range", pointer,
-                fmt::format("is {}, which is too large for a number of 64 bits",
-                            value.get_ref<const std::string&>().substr(kHugeNumberMark.size()))};
-    }
-    return {"json-type", pointer, fmt::format("must be {}", expected)};
+// Returns the error of a value of another type than the expected one.
+Diagnostic typeError(const Json& value, std::string_view expected) {
+    return isHugeNumber(value)
+               ? schemaError("json-range", "",
+                             fmt::format("is {}, which is too large for a number of 64 bits",
+                                         value.get_ref<const std::string&>().substr(kHugeNumberMark.size())))
+               : schemaError("json-type", "", fmt::format("must be {}", expected));
 }
 
-std::optional<SchemaError> checkRange(const Json& value, const Rule& rule, const std::string& pointer) {
+Status checkRange(const Json& value, const Rule& rule) {
     const double number = value.get<double>();
-    if (!std::isfinite(number) || number < rule.min || number > rule.max) {
-        return SchemaError{"json-range", pointer,
-                           fmt::format("is {}, outside of {} to {}", number, rule.min, rule.max)};
-    }
-    return std::nullopt;
+    const bool isInside = std::isfinite(number) && number >= rule.min && number <= rule.max;
+    return isInside ? okStatus()
+                    : schemaError("json-range", "",
+                                  fmt::format("is {}, outside of {} to {}", number, rule.min, rule.max));
 }
 
 // Turns 3.0 into 3. JSON has one type of number, but tinygltf distinguishes three.
@@ -68,127 +52,130 @@ bool makeInteger(Json& value) {
     return value.is_number_integer();
 }
 
-std::optional<SchemaError> checkIndex(const Json& root, Json& value, const Rule& rule,
-                                      const std::string& pointer) {
+Status checkIndex(const Json& root, Json& value, const Rule& rule) {
     if (!makeInteger(value)) {
-        return typeError(value, pointer, describe(Kind::Index));
+        return typeError(value, expectedOf(Kind::Index));
     }
     const std::size_t size = arraySize(root, rule.target);
-    const bool inside = value.is_number_unsigned()
-                            ? value.get<std::uint64_t>() < size
-                            : value.get<std::int64_t>() >= 0 && value.get<std::uint64_t>() < size;
-    if (!inside) {
-        return SchemaError{
-            "index-range", pointer,
-            fmt::format("refers to {}/{}, but that array has {} elements", rule.target, value.dump(), size)};
+    if (value.is_number_unsigned() && value.get<std::uint64_t>() < size) {
+        return okStatus();
     }
-    return std::nullopt;
+    Diagnostic error = schemaError(
+        "index-range", "",
+        fmt::format("refers to {}/{}, but that array has {} elements", rule.target, value.dump(), size));
+    error.hint = "the file refers to something it does not hold: export it again";
+    return error;
 }
 
-std::optional<SchemaError> checkNumbers(Json& value, const Rule& rule, const std::string& pointer) {
-    if (!value.is_array() || (rule.length != 0 && value.size() != rule.length)) {
-        return typeError(value, pointer,
-                         rule.length == 0 ? std::string(describe(Kind::Numbers))
-                                          : fmt::format("an array of {} numbers", rule.length));
+Status checkNumber(const Json& value, const Rule& rule) {
+    return value.is_number() ? checkRange(value, rule) : typeError(value, expectedOf(Kind::Number));
+}
+
+Status checkInteger(Json& value, const Rule& rule) {
+    return makeInteger(value) ? checkRange(value, rule) : typeError(value, expectedOf(Kind::Integer));
+}
+
+// Checks every element of an array by `check(element)`.
+template <typename Check>
+Status checkElements(Json& value, std::string_view expected, const Check& check) {
+    if (!value.is_array()) {
+        return typeError(value, expected);
     }
     for (std::size_t i = 0; i < value.size(); ++i) {
-        const std::string element = fmt::format("{}/{}", pointer, i);
-        if (!value[i].is_number()) {
-            return typeError(value[i], element, describe(Kind::Number));
-        }
-        if (auto error = checkRange(value[i], rule, element)) {
-            return error;
+        if (const Status status = check(value[i]); !status) {
+            return within(fmt::format("/{}", i), status);
         }
     }
-    return std::nullopt;
+    return okStatus();
 }
 
-std::optional<SchemaError> checkIntegers(Json& value, const Rule& rule, const std::string& pointer) {
+Status checkNumbers(Json& value, const Rule& rule) {
+    const std::string expected = rule.length == 0 ? std::string(expectedOf(Kind::Numbers))
+                                                  : fmt::format("an array of {} numbers", rule.length);
+    return value.is_array() && rule.length != 0 && value.size() != rule.length
+               ? typeError(value, expected)
+               : checkElements(value, expected,
+                               [&](const Json& element) { return checkNumber(element, rule); });
+}
+
+Status checkIntegers(Json& value, const Rule& rule) {
     if (!value.is_object()) {
-        return typeError(value, pointer, describe(rule.kind));
+        return typeError(value, expectedOf(rule.kind));
     }
     for (auto member = value.begin(); member != value.end(); ++member) {
-        const std::string place = fmt::format("{}/{}", pointer, member.key());
-        if (!makeInteger(*member)) {
-            return typeError(*member, place, describe(Kind::Integer));
-        }
-        if (auto error = checkRange(*member, rule, place)) {
-            return error;
+        if (const Status status = checkInteger(*member, rule); !status) {
+            return within("/" + member.key(), status);
         }
     }
-    return std::nullopt;
+    return okStatus();
 }
 
-// Checks every element of an array by `check(element, pointer)`.
-template <typename Check>
-std::optional<SchemaError> checkElements(Json& value, Kind kind, const std::string& pointer,
-                                         const Check& check) {
-    if (!value.is_array()) {
-        return typeError(value, pointer, describe(kind));
-    }
-    for (std::size_t i = 0; i < value.size(); ++i) {
-        if (auto error = check(value[i], fmt::format("{}/{}", pointer, i))) {
-            return error;
-        }
-    }
-    return std::nullopt;
-}
-
-std::optional<SchemaError> checkValue(const Json& root, Json& value, const Rule& rule,
-                                      const std::string& pointer) {
-    const auto expect = [&](bool holds) -> std::optional<SchemaError> {
-        return holds ? std::nullopt : std::optional(typeError(value, pointer, describe(rule.kind)));
+Status checkValue(const Json& root, Json& value, const Rule& rule) {
+    const auto expect = [&](bool holds) {
+        return holds ? okStatus() : typeError(value, expectedOf(rule.kind));
     };
     switch (rule.kind) {
         case Kind::Integer:
-            return makeInteger(value) ? checkRange(value, rule, pointer) : expect(false);
+            return checkInteger(value, rule);
         case Kind::Number:
-            return value.is_number() ? checkRange(value, rule, pointer) : expect(false);
+            return checkNumber(value, rule);
         case Kind::Numbers:
-            return checkNumbers(value, rule, pointer);
+            return checkNumbers(value, rule);
         case Kind::Bool:
             return expect(value.is_boolean());
         case Kind::Text:
             return expect(value.is_string() && !isHugeNumber(value));
         case Kind::Index:
-            return checkIndex(root, value, rule, pointer);
+            return checkIndex(root, value, rule);
         case Kind::Indices:
-            return checkElements(value, rule.kind, pointer, [&](Json& element, const std::string& where) {
-                return checkIndex(root, element, rule, where);
-            });
+            return checkElements(value, expectedOf(rule.kind),
+                                 [&](Json& element) { return checkIndex(root, element, rule); });
         case Kind::Integers:
-            return checkIntegers(value, rule, pointer);
+            return checkIntegers(value, rule);
         case Kind::Object:
-            return checkObject(root, value, rule.rules, pointer);
+            return checkObject(root, value, rule.rules);
         case Kind::Objects:
-            return checkElements(value, rule.kind, pointer, [&](Json& element, const std::string& where) {
-                return checkObject(root, element, rule.rules, where);
-            });
+            return checkElements(value, expectedOf(rule.kind),
+                                 [&](Json& element) { return checkObject(root, element, rule.rules); });
     }
-    return std::nullopt;
+    return okStatus();
 }
 
 }  // namespace
 
 // The depth of the recursion is that of the tables, whatever the file contains.
-std::optional<SchemaError> checkObject(const Json& root, Json& object, std::span<const Rule> rules,
-                                       const std::string& pointer) {
+Status checkObject(const Json& root, Json& object, std::span<const Rule> rules) {
     if (!object.is_object()) {
-        return typeError(object, pointer, describe(Kind::Object));
+        return typeError(object, expectedOf(Kind::Object));
     }
     for (const Rule& rule : rules) {
         const auto member = object.find(rule.name);
+        if (member == object.end() && rule.required) {
+            return schemaError("json-missing", "", fmt::format("has no \"{}\"", rule.name));
+        }
         if (member == object.end()) {
-            if (rule.required) {
-                return SchemaError{"json-missing", pointer, fmt::format("has no \"{}\"", rule.name)};
-            }
             continue;
         }
-        if (auto error = checkValue(root, *member, rule, fmt::format("{}/{}", pointer, rule.name))) {
-            return error;
+        if (const Status status = checkValue(root, *member, rule); !status) {
+            return within(fmt::format("/{}", rule.name), status);
         }
     }
-    return std::nullopt;
+    return okStatus();
+}
+
+Diagnostic schemaError(std::string id, std::string pointer, std::string message) {
+    return makeError(
+        std::move(id), std::move(pointer), std::move(message),
+        "correct the value, or export the file again; the Khronos glTF validator explains the rules");
+}
+
+Status within(std::string_view pointer, const Status& status) {
+    if (status) {
+        return status;
+    }
+    Diagnostic error = status.error();
+    error.where.insert(0, pointer);
+    return error;
 }
 
 bool isHugeNumber(const Json& value) {
@@ -213,28 +200,6 @@ const Json& arrayMember(const Json& object, std::string_view name) {
     static const Json kNone = Json::array();
     const Json* member = find(object, name);
     return member != nullptr && member->is_array() ? *member : kNone;
-}
-
-namespace {
-
-template <typename T>
-T memberOr(const Json& object, std::string_view name, T fallback) {
-    const Json* const member = find(object, name);
-    return member == nullptr ? std::move(fallback) : member->get<T>();
-}
-
-}  // namespace
-
-std::uint64_t sizeMember(const Json& object, std::string_view name) {
-    return memberOr<std::uint64_t>(object, name, 0);
-}
-
-std::string textMember(const Json& object, std::string_view name) {
-    return memberOr<std::string>(object, name, {});
-}
-
-bool boolMember(const Json& object, std::string_view name, bool fallback) {
-    return memberOr(object, name, fallback);
 }
 
 std::size_t arraySize(const Json& root, std::string_view pointer) {

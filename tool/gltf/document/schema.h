@@ -2,15 +2,18 @@
 // pointer.
 #pragma once
 
+#include <glint/result.h>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace glint::gltf {
@@ -42,12 +45,6 @@ struct Rule {
     std::size_t length = 0;
     std::string_view target{};      // JSON pointer of the array into which an index points
     std::span<const Rule> rules{};  // for Object and Objects
-};
-
-struct SchemaError {
-    std::string id;
-    std::string pointer;
-    std::string message;
 };
 
 // Short forms for the tables of rules.
@@ -96,9 +93,14 @@ constexpr Rule objects(std::string_view name, std::span<const Rule> rules, bool 
 
 // Checks `object` and everything that its rules reach. A number such as 3.0 becomes an integer if the rule
 // asks for one, and an integer that is not negative an unsigned one, because tinygltf tells them apart.
-// Rule::target is looked up in `root`, which may contain `object`.
-std::optional<SchemaError> checkObject(const Json& root, Json& object, std::span<const Rule> rules,
-                                       const std::string& pointer);
+// Rule::target is looked up in `root`, which may contain `object`. The place of an error is a JSON pointer
+// that starts at `object`.
+Status checkObject(const Json& root, Json& object, std::span<const Rule> rules);
+
+// Returns the error of a document that breaks a rule.
+Diagnostic schemaError(std::string id, std::string pointer, std::string message);
+// Puts the place of an object before the place in it that an error names.
+Status within(std::string_view pointer, const Status& status);
 
 // Begins the text that stands for a number which a double can't hold. The rest of the text is the number.
 inline constexpr std::string_view kHugeNumberMark("\0number ", 8);
@@ -110,11 +112,27 @@ const Json* find(const Json& object, std::string_view name);
 const Json* findExtension(const Json& object, std::string_view name);
 // Returns the array of that name, or an empty one if there is none.
 const Json& arrayMember(const Json& object, std::string_view name);
-// Return the member of a checked object, or what counts where it is absent: 0 for a size, an empty text, the
-// fallback.
-std::uint64_t sizeMember(const Json& object, std::string_view name);
-std::string textMember(const Json& object, std::string_view name);
-bool boolMember(const Json& object, std::string_view name, bool fallback);
+// Returns the member of a checked object, or `fallback` where it is absent.
+template <typename T>
+T memberOr(const Json& object, std::string_view name, T fallback) {
+    const Json* const member = find(object, name);
+    return member == nullptr ? std::move(fallback) : member->get<T>();
+}
+// Calls visit(element, pointer) for each element of the array of that name. `pointer` is that of the object.
+template <typename Visit>
+void visitElements(const Json& object, std::string_view name, std::string_view pointer, const Visit& visit) {
+    std::size_t index = 0;
+    for (const Json& element : arrayMember(object, name)) {
+        visit(element, fmt::format("{}/{}/{}", pointer, name, index++));
+    }
+}
+// Calls visit(primitive, pointer) for each primitive of the document's meshes.
+template <typename Visit>
+void visitPrimitives(const Json& root, const Visit& visit) {
+    visitElements(root, "meshes", "", [&](const Json& mesh, const std::string& pointer) {
+        visitElements(mesh, "primitives", pointer, visit);
+    });
+}
 // Returns how many elements the array at that JSON pointer has, or 0 if there is no array.
 std::size_t arraySize(const Json& root, std::string_view pointer);
 

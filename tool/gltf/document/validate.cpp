@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <deque>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace glint::gltf {
@@ -15,14 +17,22 @@ namespace {
 
 using namespace rules;
 
-// Makes a rule of each name for an object with those members.
-template <std::size_t N>
-constexpr std::array<Rule, N> objectsOf(const char* const (&names)[N], std::span<const Rule> members) {
+// Makes a rule of each name, as `make` makes one.
+template <std::size_t N, typename Make>
+constexpr std::array<Rule, N> rulesOf(const char* const (&names)[N], const Make& make) {
     std::array<Rule, N> rules{};
     for (std::size_t i = 0; i < N; ++i) {
-        rules[i] = object(names[i], members);
+        rules[i] = make(names[i]);
     }
     return rules;
+}
+template <std::size_t N>
+constexpr std::array<Rule, N> objectsOf(const char* const (&names)[N], std::span<const Rule> members) {
+    return rulesOf(names, [&](const char* name) { return object(name, members); });
+}
+template <std::size_t N>
+constexpr std::array<Rule, N> accessorIndices(const char* const (&names)[N]) {
+    return rulesOf(names, [](const char* name) { return index(name, "/accessors"); });
 }
 
 // These are the rules of buffers, views and accessors.
@@ -55,14 +65,6 @@ constexpr std::array kAccessor{index("bufferView", "/bufferViews"),
                                object("sparse", kSparse)};
 
 // These are the rules of meshes.
-template <std::size_t N>
-constexpr std::array<Rule, N> accessorIndices(const char* const (&names)[N]) {
-    std::array<Rule, N> rules{};
-    for (std::size_t i = 0; i < N; ++i) {
-        rules[i] = index(names[i], "/accessors");
-    }
-    return rules;
-}
 constexpr std::array kAttributeRules = accessorIndices(kAttributes);
 constexpr std::array kTargetRules = accessorIndices(kTargetAttributes);
 constexpr std::array kVariantMapping{indices("variants", "/extensions/KHR_materials_variants/variants", true),
@@ -155,179 +157,139 @@ Rule parameterRule(const materials::Parameter& parameter, std::string_view name)
     return rule;
 }
 
-// Rules for the JSON of a material, as the declarations give them. They check only types, because values out
-// of range are clamped while reading. The model must outlive the rules.
-class MaterialRules {
-public:
-    explicit MaterialRules(const materials::MaterialModel& model);
-    MaterialRules(const MaterialRules&) = delete;
-    MaterialRules& operator=(const MaterialRules&) = delete;
-
-    std::span<const Rule> rules() const {
-        return material_;
-    }
-
-private:
-    std::vector<Rule> rulesOf(const materials::MaterialModel& model, int object);
-
-    std::deque<std::vector<Rule>> nested_;  // Rule::rules point into it.
-    std::vector<Rule> material_;
-};
-
-MaterialRules::MaterialRules(const materials::MaterialModel& model) {
-    std::vector<Rule> extensions;
-    material_ = rulesOf(model, 0);
-    for (std::size_t i = 1; i < model.objects.size(); ++i) {
-        const materials::MaterialObject& object = model.objects[i];
-        nested_.push_back(rulesOf(model, static_cast<int>(i)));
-        (object.isExtension ? extensions : material_).push_back(rules::object(object.name, nested_.back()));
-    }
-    nested_.push_back(std::move(extensions));
-    for (const Rule& rule :
-         {text("name"), text("alphaMode"), boolean("doubleSided"), object("extensions", nested_.back())}) {
-        material_.push_back(rule);
-    }
-}
-
-std::vector<Rule> MaterialRules::rulesOf(const materials::MaterialModel& model, int object) {
-    std::vector<Rule> found;
-    for (const materials::Parameter& parameter : model.parameters) {
-        if (parameter.object == object && parameter.place.find('/') == std::string::npos) {
-            found.push_back(parameterRule(parameter, parameter.place));
-        }
-    }
-    for (const materials::MaterialTexture& texture : model.textures) {
-        for (const materials::MaterialTexture::Place& place : texture.places) {
-            if (place.object != object) {
-                continue;
-            }
-            std::vector<Rule>& info = nested_.emplace_back();
-            info = {index("index", "/textures", true), integer("texCoord", 0.0, kMaxInt),
-                    rules::object("extensions", kTextureInfoExtensions)};
-            for (const materials::Parameter& parameter : model.parameters) {
-                // A parameter beside a texture: "normalTexture/scale".
-                const std::string_view where = parameter.place;
-                if (parameter.object == object && where.starts_with(place.member + "/")) {
-                    info.push_back(parameterRule(parameter, where.substr(place.member.size() + 1)));
-                }
-            }
-            found.push_back(rules::object(place.member, info));
-        }
-    }
-    return found;
-}
-
-// The rules of a whole document whose materials are made as `model` says.
+// The rules of a whole document whose materials and attributes are those of a model, which must outlive them.
 class RootRules {
 public:
-    explicit RootRules(const materials::MaterialModel& model)
-        : material_(model),
-          attributes_(attributeRules(model)),
-          primitive_(with(kPrimitive, object("attributes", attributes_, true))),
-          mesh_(with(kMesh, objects("primitives", primitive_))),
-          root_{
-              object("extensions", kRootExtensions),
-              objects("buffers", kBuffer),
-              objects("bufferViews", kBufferView),
-              objects("accessors", {}),
-              objects("meshes", mesh_),
-              objects("materials", material_.rules()),
-              objects("textures", kTexture),
-              objects("samplers", kSampler),
-              objects("images", kImage),
-              objects("nodes", kNode),
-              objects("scenes", kScene),
-              objects("cameras", kCamera),
-              objects("animations", kAnimation),
-              objects("skins", kSkin),
-              index("scene", "/scenes"),
-          } {}
+    explicit RootRules(const materials::MaterialModel& model) : model_(model) {
+        std::vector<Rule> attributes(kAttributeRules.begin(), kAttributeRules.end());
+        for (const materials::VertexAttribute& attribute : model.attributes) {
+            attributes.push_back(index(attribute.gltf, "/accessors"));
+        }
+        std::vector<Rule> primitive(kPrimitive.begin(), kPrimitive.end());
+        primitive.push_back(object("attributes", keep(std::move(attributes)), true));
+        std::vector<Rule> mesh(kMesh.begin(), kMesh.end());
+        mesh.push_back(objects("primitives", keep(std::move(primitive))));
+        root_ = keep({
+            object("extensions", kRootExtensions),
+            objects("buffers", kBuffer),
+            objects("bufferViews", kBufferView),
+            objects("accessors", {}),
+            objects("meshes", keep(std::move(mesh))),
+            objects("materials", keep(materialRules())),
+            objects("textures", kTexture),
+            objects("samplers", kSampler),
+            objects("images", kImage),
+            objects("nodes", kNode),
+            objects("scenes", kScene),
+            objects("cameras", kCamera),
+            objects("animations", kAnimation),
+            objects("skins", kSkin),
+            index("scene", "/scenes"),
+        });
+    }
+    RootRules(const RootRules&) = delete;
+    RootRules& operator=(const RootRules&) = delete;
 
     std::span<const Rule> rules() const {
         return root_;
     }
 
 private:
-    static std::vector<Rule> with(std::span<const Rule> rules, Rule further) {
-        std::vector<Rule> all(rules.begin(), rules.end());
-        all.push_back(further);
-        return all;
-    }
-    static std::vector<Rule> attributeRules(const materials::MaterialModel& model) {
-        std::vector<Rule> rules(kAttributeRules.begin(), kAttributeRules.end());
-        for (const materials::VertexAttribute& attribute : model.attributes) {
-            rules.push_back(index(attribute.gltf, "/accessors"));
-        }
-        return rules;
+    std::span<const Rule> keep(std::vector<Rule> rules) {
+        return kept_.emplace_back(std::move(rules));
     }
 
-    MaterialRules material_;
-    // Rule::rules point into these.
-    std::vector<Rule> attributes_;
-    std::vector<Rule> primitive_;
-    std::vector<Rule> mesh_;
-    std::vector<Rule> root_;
+    // The rules for the JSON of a material, as the declarations give them. They check only types, because
+    // values out of range are clamped while reading.
+    std::vector<Rule> materialRules() {
+        std::vector<Rule> extensions;
+        std::vector<Rule> material = rulesOfObject(0);
+        for (std::size_t i = 1; i < model_.objects.size(); ++i) {
+            const materials::MaterialObject& object = model_.objects[i];
+            (object.isExtension ? extensions : material)
+                .push_back(rules::object(object.name, keep(rulesOfObject(static_cast<int>(i)))));
+        }
+        material.insert(material.end(), {text("name"), text("alphaMode"), boolean("doubleSided"),
+                                         object("extensions", keep(std::move(extensions)))});
+        return material;
+    }
+
+    std::vector<Rule> rulesOfObject(int object) {
+        std::vector<Rule> found;
+        for (const materials::Parameter& parameter : model_.parameters) {
+            if (parameter.object == object && parameter.place.find('/') == std::string::npos) {
+                found.push_back(parameterRule(parameter, parameter.place));
+            }
+        }
+        for (const materials::MaterialTexture& texture : model_.textures) {
+            for (const materials::MaterialTexture::Place& place : texture.places) {
+                if (place.object == object) {
+                    found.push_back(rules::object(place.member, keep(infoRules(place))));
+                }
+            }
+        }
+        return found;
+    }
+
+    std::vector<Rule> infoRules(const materials::MaterialTexture::Place& place) const {
+        std::vector<Rule> info{index("index", "/textures", true), integer("texCoord", 0.0, kMaxInt),
+                               object("extensions", kTextureInfoExtensions)};
+        for (const materials::Parameter& parameter : model_.parameters) {
+            // A parameter beside a texture: "normalTexture/scale".
+            const std::string_view where = parameter.place;
+            if (parameter.object == place.object && where.starts_with(place.member + "/")) {
+                info.push_back(parameterRule(parameter, where.substr(place.member.size() + 1)));
+            }
+        }
+        return info;
+    }
+
+    const materials::MaterialModel& model_;
+    std::deque<std::vector<Rule>> kept_;  // Rule::rules point into it.
+    std::span<const Rule> root_;
 };
 
 bool isOneOf(std::string_view value, std::initializer_list<std::string_view> values) {
-    for (const std::string_view candidate : values) {
-        if (candidate == value) {
-            return true;
-        }
-    }
-    return false;
+    return std::ranges::find(values, value) != values.end();
 }
 
-std::optional<SchemaError> checkAccessor(const Json& root, Json& accessor, const std::string& pointer) {
-    if (auto error = checkObject(root, accessor, kAccessor, pointer)) {
-        return error;
-    }
+Status checkAccessor(const Json& root, Json& accessor) {
+    GLINT_TRY_DO(checkObject(root, accessor, kAccessor));
     const std::string& type = accessor["type"].get_ref<const std::string&>();
     if (!isOneOf(type, {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"})) {
-        return SchemaError{"accessor-type", pointer + "/type", fmt::format("\"{}\" is no type", type)};
+        return schemaError("accessor-type", "/type", fmt::format("\"{}\" is no type", type));
     }
     const auto componentType = accessor["componentType"].get<std::int64_t>();
-    if (componentType < 5120 || componentType > 5126 || componentType == 5124) {
-        return SchemaError{"accessor-component-type", pointer + "/componentType",
-                           fmt::format("{} is no component type", componentType)};
-    }
-    return std::nullopt;
+    return componentType < 5120 || componentType > 5126 || componentType == 5124
+               ? schemaError("accessor-component-type", "/componentType",
+                             fmt::format("{} is no component type", componentType))
+               : okStatus();
 }
 
-std::optional<SchemaError> checkCameras(const Json& root) {
-    const Json& cameras = arrayMember(root, "cameras");
-    for (std::size_t i = 0; i < cameras.size(); ++i) {
-        const std::string pointer = fmt::format("/cameras/{}", i);
-        const std::string& type = cameras[i]["type"].get_ref<const std::string&>();
-        if (!isOneOf(type, {"perspective", "orthographic"})) {
-            return SchemaError{"camera-type", pointer + "/type", fmt::format("\"{}\" is no type", type)};
-        }
-        if (find(cameras[i], type) == nullptr) {
-            return SchemaError{"json-missing", pointer, fmt::format("has no \"{}\"", type)};
-        }
+Status checkCamera(const Json& camera) {
+    const std::string& type = camera["type"].get_ref<const std::string&>();
+    if (!isOneOf(type, {"perspective", "orthographic"})) {
+        return schemaError("camera-type", "/type", fmt::format("\"{}\" is no type", type));
     }
-    return std::nullopt;
+    return find(camera, type) == nullptr ? schemaError("json-missing", "", fmt::format("has no \"{}\"", type))
+                                         : okStatus();
 }
 
 }  // namespace
 
-std::optional<SchemaError> checkDocument(Json& root, const materials::MaterialModel& model) {
-    const RootRules rules(model);
-    if (auto error = checkObject(root, root, rules.rules(), "")) {
-        return error;
-    }
-    if (auto error = checkCameras(root)) {
-        return error;
-    }
+Status checkDocument(Json& root, const materials::MaterialModel& model) {
+    GLINT_TRY_DO(checkObject(root, root, RootRules(model).rules()));
+    Status status = okStatus();
+    visitElements(root, "cameras", "", [&](const Json& camera, const std::string& pointer) {
+        status = status ? within(pointer, checkCamera(camera)) : status;
+    });
     const std::vector<bool> used = usedAccessors(root, model);
-    for (std::size_t i = 0; i < used.size(); ++i) {
+    for (std::size_t i = 0; i < used.size() && status; ++i) {
         if (used[i]) {
-            if (auto error = checkAccessor(root, root["accessors"][i], fmt::format("/accessors/{}", i))) {
-                return error;
-            }
+            status = within(fmt::format("/accessors/{}", i), checkAccessor(root, root["accessors"][i]));
         }
     }
-    return std::nullopt;
+    return status;
 }
 
 void visitAccessors(const Json& root, const materials::MaterialModel& model, const AccessorVisitor& visit) {
@@ -338,49 +300,38 @@ void visitAccessors(const Json& root, const materials::MaterialModel& model, con
             visit({accessor->get<int>(), how, name, fmt::format("{}/{}", pointer, name)});
         }
     };
-    const Json& meshes = arrayMember(root, "meshes");
-    for (std::size_t i = 0; i < meshes.size(); ++i) {
-        const Json& primitives = arrayMember(meshes[i], "primitives");
-        for (std::size_t k = 0; k < primitives.size(); ++k) {
-            const std::string pointer = fmt::format("/meshes/{}/primitives/{}", i, k);
-            for (const char* name : kAttributes) {
-                use(primitives[k]["attributes"], name, AccessorUse::Attribute, pointer + "/attributes");
-            }
-            for (const materials::VertexAttribute& attribute : model.attributes) {
-                use(primitives[k]["attributes"], attribute.gltf, AccessorUse::Attribute,
-                    pointer + "/attributes");
-            }
-            const Json& targets = arrayMember(primitives[k], "targets");
-            for (std::size_t t = 0; t < targets.size(); ++t) {
-                for (const char* name : kTargetAttributes) {
-                    use(targets[t], name, AccessorUse::Target, fmt::format("{}/targets/{}", pointer, t));
-                }
-            }
-            use(primitives[k], "indices", AccessorUse::Indices, pointer);
+    visitPrimitives(root, [&](const Json& primitive, const std::string& pointer) {
+        const std::string attributes = pointer + "/attributes";
+        for (const char* name : kAttributes) {
+            use(primitive["attributes"], name, AccessorUse::Attribute, attributes);
         }
-    }
-    const Json& nodes = arrayMember(root, "nodes");
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-        if (const Json* const instancing = findExtension(nodes[i], "EXT_mesh_gpu_instancing")) {
+        for (const materials::VertexAttribute& attribute : model.attributes) {
+            use(primitive["attributes"], attribute.gltf, AccessorUse::Attribute, attributes);
+        }
+        visitElements(primitive, "targets", pointer, [&](const Json& target, const std::string& place) {
+            for (const char* name : kTargetAttributes) {
+                use(target, name, AccessorUse::Target, place);
+            }
+        });
+        use(primitive, "indices", AccessorUse::Indices, pointer);
+    });
+    visitElements(root, "nodes", "", [&](const Json& node, const std::string& pointer) {
+        if (const Json* const instancing = findExtension(node, "EXT_mesh_gpu_instancing")) {
             for (const char* name : kInstanceAttributes) {
                 use((*instancing)["attributes"], name, AccessorUse::Instances,
-                    fmt::format("/nodes/{}/extensions/EXT_mesh_gpu_instancing/attributes", i));
+                    pointer + "/extensions/EXT_mesh_gpu_instancing/attributes");
             }
         }
-    }
-    const Json& animations = arrayMember(root, "animations");
-    for (std::size_t i = 0; i < animations.size(); ++i) {
-        const Json& samplers = arrayMember(animations[i], "samplers");
-        for (std::size_t k = 0; k < samplers.size(); ++k) {
-            const std::string pointer = fmt::format("/animations/{}/samplers/{}", i, k);
-            use(samplers[k], "input", AccessorUse::Times, pointer);
-            use(samplers[k], "output", AccessorUse::Keyframes, pointer);
-        }
-    }
-    const Json& skins = arrayMember(root, "skins");
-    for (std::size_t i = 0; i < skins.size(); ++i) {
-        use(skins[i], "inverseBindMatrices", AccessorUse::InverseBinds, fmt::format("/skins/{}", i));
-    }
+    });
+    visitElements(root, "animations", "", [&](const Json& animation, const std::string& pointer) {
+        visitElements(animation, "samplers", pointer, [&](const Json& sampler, const std::string& place) {
+            use(sampler, "input", AccessorUse::Times, place);
+            use(sampler, "output", AccessorUse::Keyframes, place);
+        });
+    });
+    visitElements(root, "skins", "", [&](const Json& skin, const std::string& pointer) {
+        use(skin, "inverseBindMatrices", AccessorUse::InverseBinds, pointer);
+    });
 }
 
 std::vector<bool> usedAccessors(const Json& root, const materials::MaterialModel& model) {

@@ -1,4 +1,6 @@
-// Checks a glTF document's JSON before anything is read from it.
+// Checks a glTF document's JSON before anything is read from it, against what the importer needs
+// (validate.cpp), and against the extensions that Glint reads and rules of glTF that it can do without
+// (conformance.cpp).
 #pragma once
 
 #include "gltf/document/schema.h"
@@ -6,12 +8,13 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace glint::gltf {
+
+class Document;
 
 // An extension that the importer knows by itself; those of materials are declared (shaders/materials).
 struct KnownExtension {
@@ -33,8 +36,22 @@ inline constexpr const char* kImageExtensions[] = {"EXT_texture_webp", "KHR_text
                                                    "MSFT_texture_dds"};
 
 // Checks types, ranges and references of everything that the importer reads. It checks only the accessors
-// that a mesh, an animation or a skin uses. It ignores `extras` that the model does not declare.
-std::optional<SchemaError> checkDocument(Json& root, const materials::MaterialModel& model);
+// that a mesh, an animation or a skin uses. It ignores `extras` that the model does not declare. The place of
+// an error is a JSON pointer.
+Status checkDocument(Json& root, const materials::MaterialModel& model);
+
+// Returns an error for extensionsRequired that Glint can't honour. Warns once about each other extension that
+// it doesn't read. One note names all those that change no picture.
+Status checkExtensions(Document& document, const Json& root);
+
+bool isSupportedExtension(const materials::MaterialModel& model, std::string_view name);
+
+// Returns whether the extension holds only data that no picture shows: metadata, and choices for users.
+bool changesNoPicture(std::string_view name);
+
+// Warns of rules that a document breaks which checkDocument() has accepted: extensions, the names and forms
+// of attributes, and where the elements of accessors lie. Equal warnings are given once, at the first place.
+void warnOfBrokenRules(Document& document, const Json& root);
 
 enum class AccessorUse : std::uint8_t {
     Attribute,

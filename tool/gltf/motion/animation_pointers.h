@@ -3,8 +3,8 @@
 
 #include "gltf/animation.h"
 #include "gltf/document/document.h"
-#include "gltf/motion/nodes.h"
 #include "gltf/scene.h"
+#include "gltf/steps.h"
 
 #include <cstdint>
 #include <string>

@@ -1,9 +1,8 @@
-#include "gltf/motion/animations.h"
-
+// Imports animations: samplers, and the channels that they drive.
 #include "gltf/document/accessor.h"
 #include "gltf/motion/animatable.h"
 #include "gltf/motion/animation_pointers.h"
-#include "gltf/motion/nodes.h"
+#include "gltf/steps.h"
 
 #include <fmt/format.h>
 
@@ -13,38 +12,30 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
 
 namespace glint::gltf {
 
+constexpr Named<AnimationPath> kPathNames[] = {{AnimationPath::Translation, "translation"},
+                                               {AnimationPath::Rotation, "rotation"},
+                                               {AnimationPath::Scale, "scale"},
+                                               {AnimationPath::Weights, "weights"}};
+constexpr std::span<const Named<AnimationPath>> namesOf(AnimationPath /*of*/) {
+    return kPathNames;
+}
+constexpr Named<Interpolation> kInterpolationNames[] = {{Interpolation::Linear, "LINEAR"},
+                                                        {Interpolation::Step, "STEP"},
+                                                        {Interpolation::CubicSpline, "CUBICSPLINE"}};
+constexpr std::span<const Named<Interpolation>> namesOf(Interpolation /*of*/) {
+    return kInterpolationNames;
+}
+
 namespace {
 
 constexpr const char* kExportAnimation = "export the animation again";
-
-std::optional<AnimationPath> pathOf(const std::string& name) {
-    if (name == "translation") {
-        return AnimationPath::Translation;
-    }
-    if (name == "rotation") {
-        return AnimationPath::Rotation;
-    }
-    if (name == "scale") {
-        return AnimationPath::Scale;
-    }
-    return name == "weights" ? std::optional(AnimationPath::Weights) : std::nullopt;
-}
-
-std::optional<Interpolation> interpolationOf(const std::string& name) {
-    if (name == "LINEAR") {
-        return Interpolation::Linear;
-    }
-    if (name == "STEP") {
-        return Interpolation::Step;
-    }
-    return name == "CUBICSPLINE" ? std::optional(Interpolation::CubicSpline) : std::nullopt;
-}
 
 bool areFinite(const std::vector<float>& values) {
     return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
@@ -117,14 +108,15 @@ private:
         const std::string& pathName = channel.target_path;
         const Value* const extension = extensionOf(channel.target_extensions, "KHR_animation_pointer");
         if (pathName == "pointer" || extension != nullptr) {
-            readPointer(channel, pointer, extension == nullptr ? "" : textMember(*extension, "pointer"));
+            readPointer(channel, pointer,
+                        extension == nullptr ? "" : memberOr<std::string>(*extension, "pointer", ""));
             return;
         }
         const int node = channel.target_node < 0 ? -1 : numbers_.inScene(channel.target_node);
         if (node < 0) {
             return;  // an extension's channel, or one of a node that this scene does not draw
         }
-        const std::optional<AnimationPath> path = pathOf(pathName);
+        const std::optional<AnimationPath> path = valueNamed<AnimationPath>(pathName);
         if (!path) {
             leaveOut(pointer + "/target/path", fmt::format("\"{}\" is no property of a node", pathName));
             return;
@@ -308,7 +300,7 @@ private:
 
     std::optional<AnimationSampler> readSampler(const tinygltf::AnimationSampler& file,
                                                 const std::string& pointer, const KeyframeForm& form) {
-        const std::optional<Interpolation> interpolation = interpolationOf(file.interpolation);
+        const std::optional<Interpolation> interpolation = valueNamed<Interpolation>(file.interpolation);
         if (!interpolation) {
             return refuse(pointer, fmt::format("\"{}\" is no interpolation", file.interpolation));
         }

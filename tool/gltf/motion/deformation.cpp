@@ -1,9 +1,8 @@
-#include "gltf/motion/deformation.h"
-
+// Imports what deforms meshes: morph targets with their weights, and skins with the influences of joints.
 #include "gltf/document/accessor.h"
 #include "gltf/document/validate.h"
-#include "gltf/motion/nodes.h"
 #include "gltf/motion/transform.h"
+#include "gltf/steps.h"
 
 #include <fmt/format.h>
 
@@ -39,19 +38,11 @@ Status readDifferences(Document& document, const Target& target, const std::stri
     const std::string place = pointer + "/" + attribute;
     GLINT_TRY(const auto elements,
               readFloats(document, accessor, N == 4 ? Integers::Normalized : Integers::AsValues));
-    if (elements.components < 3 || elements.components > N) {
-        return document.error("attribute-type", place,
-                              fmt::format("has {} components, not {}", elements.components, N),
-                              kExportMorphs);
-    }
+    GLINT_TRY_DO(toVectors(document, elements, 3, 0.0F, place, kExportMorphs, differences));
     if (elements.count != vertices) {
         return document.error("attribute-count", place,
                               fmt::format("has {} elements, POSITION has {}", elements.count, vertices),
                               kExportMorphs);
-    }
-    differences.resize(vertices);
-    for (std::size_t i = 0; i < vertices; ++i) {
-        std::copy_n(&elements.values[elements.components * i], elements.components, differences[i].begin());
     }
     return okStatus();
 }
@@ -219,25 +210,20 @@ Result<std::vector<Matrix4>> readInverseBinds(Document& document, int accessor, 
     if (accessor < 0) {
         return std::vector<Matrix4>(joints, identity());
     }
-    Result<std::vector<Matrix4>> matrices = readMatrices(document, accessor);
-    if (!matrices) {
-        return matrices;
-    }
+    GLINT_TRY(auto matrices, readMatrices(document, accessor));
     const std::string place = pointer + "/inverseBindMatrices";
-    if (matrices->size() < joints) {
+    if (matrices.size() < joints) {
         return document.error("skin-matrices", place,
-                              fmt::format("has {} matrices for {} joints", matrices->size(), joints),
+                              fmt::format("has {} matrices for {} joints", matrices.size(), joints),
                               kExportSkin);
     }
-    matrices->resize(joints);
-    if (!std::ranges::all_of(*matrices, fitsFloat)) {
+    matrices.resize(joints);
+    if (!std::ranges::all_of(matrices, fitsFloat)) {
         return document.error("skin-matrices", place, "has elements that are no finite numbers", kExportSkin);
     }
     std::size_t odd = 0;
-    for (Matrix4& matrix : *matrices) {
-        odd += matrix[3] != 0.0 || matrix[7] != 0.0 || matrix[11] != 0.0 || matrix[15] != 1.0 ? 1 : 0;
-        matrix[3] = matrix[7] = matrix[11] = 0.0;
-        matrix[15] = 1.0;
+    for (Matrix4& matrix : matrices) {
+        odd += clearProjection(matrix) ? 0 : 1;
     }
     if (odd > 0) {
         document.warn("skin-matrices", place,

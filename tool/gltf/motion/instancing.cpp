@@ -1,10 +1,9 @@
-#include "gltf/motion/instancing.h"
-
+// Imports EXT_mesh_gpu_instancing: many placements of the mesh of one node.
 #include "base/vectors.h"
 #include "gltf/document/accessor.h"
 #include "gltf/document/validate.h"
-#include "gltf/motion/nodes.h"
 #include "gltf/motion/transform.h"
+#include "gltf/steps.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -48,13 +47,9 @@ private:
         }
         const std::string where = fmt::format("{}/{}", pointer_, name);
         // Only rotations may be integers, which then are fractions.
-        GLINT_TRY(auto elements, readFloats(document_, accessor->second.GetNumberAsInt(),
-                                            N == 4 ? Integers::Normalized : Integers::AsValues));
-        if (elements.components != N) {
-            return document_.error("attribute-type", where,
-                                   fmt::format("has {} components, not {}", elements.components, N),
-                                   kExportInstances);
-        }
+        GLINT_TRY(const auto elements, readFloats(document_, accessor->second.GetNumberAsInt(),
+                                                  N == 4 ? Integers::Normalized : Integers::AsValues));
+        GLINT_TRY_DO(toVectors(document_, elements, N, 0.0F, where, kExportInstances, values));
         if (count_ && *count_ != elements.count) {
             return document_.error(
                 "attribute-count", where,
@@ -62,12 +57,10 @@ private:
                 kExportInstances);
         }
         count_ = elements.count;
-        values.resize(elements.count);
         std::size_t damaged = 0;
-        for (std::size_t i = 0; i < values.size(); ++i) {
-            std::copy_n(&elements.values[i * N], N, values[i].begin());
-            if (!base::isFinite(values[i])) {
-                values[i].fill(0.0F);
+        for (std::array<float, N>& value : values) {
+            if (!base::isFinite(value)) {
+                value.fill(0.0F);
                 ++damaged;
             }
         }
@@ -142,7 +135,7 @@ Status importInstances(Document& document, Scene& scene) {
                           kExportInstances);
             continue;
         }
-        const Value::Object& attributes = objectMember(*extension, "attributes");
+        const Value::Object& attributes = extension->Get("attributes").Get<Value::Object>();
         for (const auto& [name, accessor] : attributes) {
             if (std::ranges::find(kInstanceAttributes, name) == std::end(kInstanceAttributes)) {
                 custom.insert(name);

@@ -1,10 +1,9 @@
-// Imports cameras and lights where a node places them.
-#include "gltf/motion/nodes.h"
-
+// Imports the node hierarchy of one of the file's scenes, and the cameras and lights that it places.
 #include "base/text.h"
 #include "base/vectors.h"
 #include "gltf/motion/transform.h"
 #include "gltf/planning_inputs.h"
+#include "gltf/steps.h"
 
 #include <fmt/format.h>
 
@@ -33,11 +32,6 @@ double clampLight(Document& document, const std::string& pointer, double value, 
     return clamped;
 }
 
-double numberOr(const Json& object, std::string_view name, double fallback) {
-    const Json* member = find(object, name);
-    return member == nullptr ? fallback : member->get<double>();
-}
-
 Matrix4 poseOf(Document& document, const std::string& pointer, const Matrix4& world) {
     if (const auto rigid = rigidPart(world)) {
         return *rigid;
@@ -61,8 +55,8 @@ void readSpot(Document& document, const Json& json, const std::string& pointer, 
     const Json& angles = spot == nullptr ? empty : *spot;
     const double outer =
         clampLight(document, pointer + "/spot/outerConeAngle",
-                   numberOr(angles, "outerConeAngle", std::numbers::pi / 4), 0.0, kRightAngle);
-    const double given = numberOr(angles, "innerConeAngle", 0.0);
+                   memberOr(angles, "outerConeAngle", std::numbers::pi / 4), 0.0, kRightAngle);
+    const double given = memberOr(angles, "innerConeAngle", 0.0);
     const double inner = clampLight(document, pointer + "/spot/innerConeAngle", given, 0.0, outer);
     light.outerConeAngle = static_cast<float>(outer);
     light.innerConeAngle = static_cast<float>(inner);
@@ -94,8 +88,6 @@ float readChannel(Document& document, const std::string& pointer, double value) 
     return static_cast<float>(clampLight(document, pointer, value, 0.0, 1.0));
 }
 
-}  // namespace
-
 Result<Camera> importCamera(Document& document, int index, const Matrix4& world) {
     const tinygltf::Camera& file = document.model().cameras[static_cast<std::size_t>(index)];
     const std::string pointer = fmt::format("/cameras/{}/{}", index, file.type);
@@ -105,6 +97,7 @@ Result<Camera> importCamera(Document& document, int index, const Matrix4& world)
     };
     Camera camera;
     camera.name = file.name;
+    camera.source = index;
     camera.world = poseOf(document, fmt::format("/cameras/{}", index), world);
     camera.orthographic = file.type == "orthographic";
     if (camera.orthographic) {
@@ -143,7 +136,8 @@ Result<Light> importLight(Document& document, int index, const Matrix4& world) {
     const Json& json =
         document.json()["extensions"]["KHR_lights_punctual"]["lights"][static_cast<std::size_t>(index)];
     Light light;
-    light.name = textMember(json, "name");
+    light.source = index;
+    light.name = memberOr<std::string>(json, "name", "");
     const std::string& type = json["type"].get_ref<const std::string&>();
     if (type == "spot") {
         light.type = LightType::Spot;
@@ -157,7 +151,7 @@ Result<Light> importLight(Document& document, int index, const Matrix4& world) {
     }
     constexpr double kLargest = std::numeric_limits<float>::max();
     light.intensity = static_cast<float>(
-        clampLight(document, pointer + "/intensity", numberOr(json, "intensity", 1.0), 0.0, kLargest));
+        clampLight(document, pointer + "/intensity", memberOr(json, "intensity", 1.0), 0.0, kLargest));
     light.range = readRange(document, json, pointer + "/range");
     if (light.type == LightType::Directional && light.range > 0.0F) {
         document.warn("light-range", pointer + "/range", "a directional light has no range; it is ignored",
@@ -177,16 +171,12 @@ Result<Light> importLight(Document& document, int index, const Matrix4& world) {
             document.warn("pose-degenerate", pointer, "its node's scale leaves no direction; -Z is used",
                           "give the node a scale that is not zero");
         }
-        const glm::dvec3 direction = axis.value_or(glm::dvec3{0.0, 0.0, -1.0});
-        light.direction = {static_cast<float>(direction[0]), static_cast<float>(direction[1]),
-                           static_cast<float>(direction[2])};
+        light.direction = base::toFloat3(axis.value_or(glm::dvec3{0.0, 0.0, -1.0}));
     }
     return light;
 }
 
 // ---- Nodes ----
-
-namespace {
 
 constexpr const char* kExportNodes = "export the scene again";
 
@@ -212,23 +202,23 @@ Result<std::vector<int>> findParents(const Document& document) {
     return parents;
 }
 
+std::vector<std::size_t> rootsOf(const std::vector<int>& parents) {
+    std::vector<std::size_t> roots;
+    for (std::size_t i = 0; i < parents.size(); ++i) {
+        if (parents[i] < 0) {
+            roots.push_back(i);
+        }
+    }
+    return roots;
+}
+
 // Every node has at most one parent, so a node that no root reaches is on a cycle or below one.
 Status checkCycles(const Document& document, const std::vector<int>& parents) {
     std::vector<bool> reached(parents.size());
-    std::vector<std::size_t> open;
-    for (std::size_t i = 0; i < parents.size(); ++i) {
-        if (parents[i] < 0) {
-            open.push_back(i);
-        }
-    }
-    while (!open.empty()) {
-        const std::size_t node = open.back();
-        open.pop_back();
+    visitTrees(document, rootsOf(parents), [&](std::size_t node) {
         reached[node] = true;
-        for (const int child : document.model().nodes[node].children) {
-            open.push_back(static_cast<std::size_t>(child));
-        }
-    }
+        return true;
+    });
     const auto missed = std::find(reached.begin(), reached.end(), false);
     if (missed != reached.end()) {
         return document.error("node-cycle", pointerOf(static_cast<std::size_t>(missed - reached.begin())),
@@ -299,21 +289,6 @@ struct Extent {
     std::vector<std::size_t> roots;  // nodes without a parent, from which all parts are reached, in order
 };
 
-void takeTree(const Document& document, std::size_t top, std::vector<Part>& parts) {
-    std::vector<std::size_t> open{top};
-    while (!open.empty()) {
-        const std::size_t node = open.back();
-        open.pop_back();
-        if (parts[node] == Part::Whole) {
-            continue;  // and so is everything below it
-        }
-        parts[node] = Part::Whole;
-        for (const int child : document.model().nodes[node].children) {
-            open.push_back(static_cast<std::size_t>(child));
-        }
-    }
-}
-
 // Warns of what a scene may not list, and returns the other nodes in the file's order.
 std::vector<std::size_t> listedNodes(Document& document, int scene, std::size_t count) {
     std::vector<std::size_t> nodes;
@@ -350,19 +325,11 @@ void takeAncestors(std::size_t node, const std::vector<int>& parents, Extent& ex
 // so the nodes above it are taken along for their transforms.
 Extent extentOf(Document& document, int scene, const std::vector<int>& parents) {
     Extent extent{std::vector<Part>(parents.size(), Part::None), {}};
-    std::vector<std::size_t> listed;
-    if (scene < 0) {
-        for (std::size_t i = 0; i < parents.size(); ++i) {
-            if (parents[i] < 0) {
-                listed.push_back(i);
-            }
-        }
-    } else {
-        listed = listedNodes(document, scene, parents.size());
-    }
-    for (const std::size_t node : listed) {
-        takeTree(document, node, extent.parts);
-    }
+    const std::vector<std::size_t> listed =
+        scene < 0 ? rootsOf(parents) : listedNodes(document, scene, parents.size());
+    visitTrees(document, listed, [&](std::size_t node) {
+        return std::exchange(extent.parts[node], Part::Whole) != Part::Whole;
+    });
     for (const std::size_t node : listed) {
         const int parent = parents[node];
         if (parent >= 0) {
@@ -422,11 +389,9 @@ bool shears(const Matrix4& matrix) {
 Matrix4 readMatrix(Document& document, const std::vector<double>& values, const std::string& pointer) {
     Matrix4 matrix{};
     std::ranges::copy(values, matrix.begin());
-    if (matrix[3] != 0.0 || matrix[7] != 0.0 || matrix[11] != 0.0 || matrix[15] != 1.0) {
+    if (!clearProjection(matrix)) {
         document.warn("node-matrix", pointer + "/matrix",
                       "its last row is not 0 0 0 1, which glTF asks for, and is ignored", kExportNodes);
-        matrix[3] = matrix[7] = matrix[11] = 0.0;
-        matrix[15] = 1.0;
     }
     if (shears(matrix)) {
         document.warn("node-matrix", pointer + "/matrix",
@@ -454,22 +419,6 @@ Matrix4 readTransform(Document& document, std::size_t index, Node& placed) {
     return compose(placed.rest);
 }
 
-Status placeCamera(Document& document, int camera, Node& node, Scene& scene) {
-    GLINT_TRY(auto placed, importCamera(document, camera, node.world));
-    node.camera = static_cast<int>(scene.cameras.size());
-    placed.source = camera;
-    scene.cameras.push_back(std::move(placed));
-    return okStatus();
-}
-
-Status placeLight(Document& document, int light, Node& node, Scene& scene) {
-    GLINT_TRY(auto placed, importLight(document, light, node.world));
-    node.light = static_cast<int>(scene.lights.size());
-    placed.source = light;
-    scene.lights.push_back(std::move(placed));
-    return okStatus();
-}
-
 Status appendNode(Document& document, std::size_t index, Part part, int parent, Scene& scene) {
     const tinygltf::Node& file = document.model().nodes[index];
     Node node;
@@ -483,18 +432,20 @@ Status appendNode(Document& document, std::size_t index, Part part, int parent, 
                               "check the scales of the node and its parents");
     }
     if (const Value* const visibility = extensionOf(file.extensions, "KHR_node_visibility")) {
-        node.visible = boolMember(*visibility, "visible", true);
+        node.visible = memberOr(*visibility, "visible", true);
     }
-    if (part == Part::Transform) {
-        scene.nodes.push_back(std::move(node));
-        return okStatus();
+    const bool isWhole = part == Part::Whole;
+    node.mesh = isWhole ? file.mesh : -1;
+    if (isWhole && file.camera >= 0) {
+        GLINT_TRY(auto camera, importCamera(document, file.camera, node.world));
+        node.camera = static_cast<int>(scene.cameras.size());
+        scene.cameras.push_back(std::move(camera));
     }
-    node.mesh = file.mesh;
-    if (file.camera >= 0) {
-        GLINT_TRY_DO(placeCamera(document, file.camera, node, scene));
-    }
-    if (const Value* const light = extensionOf(file.extensions, "KHR_lights_punctual")) {
-        GLINT_TRY_DO(placeLight(document, indexMember(*light, "light"), node, scene));
+    if (const Value* const light = extensionOf(file.extensions, "KHR_lights_punctual");
+        isWhole && light != nullptr) {
+        GLINT_TRY(auto placed, importLight(document, memberOr(*light, "light", -1), node.world));
+        node.light = static_cast<int>(scene.lights.size());
+        scene.lights.push_back(std::move(placed));
     }
     scene.nodes.push_back(std::move(node));
     return okStatus();

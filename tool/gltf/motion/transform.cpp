@@ -48,6 +48,13 @@ std::vector<Matrix4> placesOf(const Scene& scene, const Node& node) {
     return places;
 }
 
+bool clearProjection(Matrix4& matrix) {
+    const bool isClear = matrix[3] == 0.0 && matrix[7] == 0.0 && matrix[11] == 0.0 && matrix[15] == 1.0;
+    matrix[3] = matrix[7] = matrix[11] = 0.0;
+    matrix[15] = 1.0;
+    return isClear;
+}
+
 bool fitsFloat(const Matrix4& matrix) {
     constexpr double kLargest = std::numeric_limits<float>::max();
     return std::all_of(matrix.begin(), matrix.end(),

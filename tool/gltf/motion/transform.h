@@ -23,6 +23,8 @@ Matrix4 instanceTransform(const Instancing& instancing, std::size_t index);
 // Returns the world transforms at which the node draws its mesh, one for each placement. There are none if
 // the node has no mesh or is not shown.
 std::vector<Matrix4> placesOf(const Scene& scene, const Node& node);
+// Makes the last row 0 0 0 1. Returns whether it was.
+bool clearProjection(Matrix4& matrix);
 // Returns whether every element fits into a float.
 bool fitsFloat(const Matrix4& matrix);
 

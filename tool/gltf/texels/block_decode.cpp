@@ -307,21 +307,20 @@ bool unpackTo(TexelFormat format, bool srgb, const std::uint8_t* block, LargestB
 
 }  // namespace
 
-std::optional<std::vector<std::uint8_t>> decodeBlocks(TexelFormat format, bool srgb, std::uint32_t width,
-                                                      std::uint32_t height, ByteView blocks,
-                                                      std::string& problem) {
+Result<base::Bytes> decodeBlocks(TexelFormat format, bool srgb, std::uint32_t width, std::uint32_t height,
+                                 ByteView blocks) {
     const TexelFormatInfo& info = infoOf(format);
     const std::uint32_t across = blocksAcross(width, info.blockWidth);
     const std::uint32_t down = blocksAcross(height, info.blockHeight);
-    std::vector<std::uint8_t> pixels(std::size_t{4} * width * height);
+    base::Bytes pixels(std::size_t{4} * width * height);
     LargestBlock unpacked{};
     const std::uint8_t* block = blocks.data();
     for (std::uint32_t y = 0; y < down; ++y) {
         for (std::uint32_t x = 0; x < across; ++x, block += info.blockBytes) {
             if (!unpackTo(format, srgb, block, unpacked)) {
-                problem = std::string(info.name) +
-                          " is unpacked by sources of Basis Universal, which this Glint was built without";
-                return std::nullopt;
+                return imageFault(
+                    std::string(info.name) +
+                    " is unpacked by sources of Basis Universal, which this Glint was built without");
             }
             const std::uint32_t left = x * info.blockWidth;
             const std::uint32_t columns = std::min(info.blockWidth, width - left);

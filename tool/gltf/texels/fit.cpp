@@ -1,12 +1,8 @@
 #include "gltf/texels/fit.h"
 
 #include "gltf/codecs/basisu.h"
-#include "gltf/codecs/codecs.h"
-#include "gltf/texels/block_decode.h"
 #include "gltf/texels/levels.h"
 #include "gltf/textures.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
@@ -127,39 +123,21 @@ public:
     }
 
 private:
-    Diagnostic damaged(const char* format, const std::string& problem) const {
-        return makeError("image-decode", fmt::format("{}#{}", scene_.path, image_.pointer),
-                         fmt::format("is a {} image that can't be decoded: {}", format, problem),
-                         "store the image as PNG, JPEG or WebP");
-    }
-
     // Unpacks all levels of the file, once.
     Status decode() {
-        if (texels_) {
-            return okStatus();
+        if (!texels_) {
+            GLINT_TRY(texels_, texelsOf(scene_, image_));
         }
-        Image decoded;
-        decoded.width = image_.width;
-        decoded.height = image_.height;
-        decoded.levels = image_.levels;
-        decoded.format = image_.format;
-        decoded.pointer = image_.pointer;
-        decoded.pixels = image_.pixels;
-        if (decoded.pixels.empty()) {
-            decoded.file = image_.file;
-            GLINT_TRY_DO(decodeFile(scene_, decoded));
-        }
-        texels_ =
-            Texels{decoded.width, decoded.height, decoded.format, decoded.levels, std::move(decoded.pixels)};
         return okStatus();
     }
 
     Status fitBlocks() {
-        std::string problem;
-        const std::optional<BlockFile> file = readBlockFile(image_.file, problem);
-        const char* const name = findCodec(image_.file)->name;
+        const auto refuse = [&](const Diagnostic& fault) {
+            return cantDecode(scene_, image_, *findCodec(image_.file), fault);
+        };
+        const Result<BlockFile> file = readBlockFile(image_.file);
         if (!file) {
-            return damaged(name, problem);
+            return refuse(file.error());
         }
         const TexelFormat format =
             file->format ? *file->format : targetFormat(use_, file->hasAlpha, false, options_.formats);
@@ -168,20 +146,18 @@ private:
         }
         // The transcoder knows no channels but red and alpha for these.
         if (!file->format && infoOf(format).channels <= 2) {
-            Status status = decode();
-            if (status) {
-                compress(format);
-            }
-            return status;
+            GLINT_TRY_DO(decode());
+            compress(format);
+            return okStatus();
         }
         fitted_.format = format;
         if (file->format && !file->hasAlpha) {
             fitted_.channels[3] = TexelChannel::One;
         }
-        auto blocks = file->format ? blocksOf(*file, image_.file, problem)
-                                   : transcodeBasis(*file, image_.file, format, problem);
+        Result<base::Bytes> blocks =
+            file->format ? blocksOf(*file, image_.file) : transcodeBasis(*file, image_.file, format);
         if (!blocks) {
-            return damaged(name, problem);
+            return refuse(blocks.error());
         }
         fitted_.texels = std::move(*blocks);
         return completeBlocks();

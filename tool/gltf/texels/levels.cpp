@@ -20,10 +20,6 @@ struct LinearLevel {
     std::vector<Value> values;
 };
 
-// IEC 61966-2-1.
-double decodeSrgb(double encoded) {
-    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
 double encodeSrgb(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
 }
@@ -152,7 +148,7 @@ LinearLevel halved(int width, int height, const At& at) {
     LinearLevel half{std::max(width / 2, 1), std::max(height / 2, 1), {}};
     const std::vector<Taps> columns = tapsOf(width, half.width);
     const std::vector<Taps> rows = tapsOf(height, half.height);
-    half.values.reserve(static_cast<std::size_t>(half.width) * static_cast<std::size_t>(half.height));
+    half.values.reserve(placeOfTexel(0, half.height, half.width));
     for (const Taps& row : rows) {
         for (const Taps& column : columns) {
             Value sum{};
@@ -190,34 +186,30 @@ void complete(Texels& texels, const LevelFilters& filters) {
         return;
     }
     const Coding coding(texels.format, filters);
-    const auto sizeOf = [](int size, int level) { return std::max(size >> level, 1); };
-    const int width = sizeOf(texels.width, texels.levels - 1);
-    const int height = sizeOf(texels.height, texels.levels - 1);
-    const std::size_t last = texels.bytes.size() - sizeof(std::array<Code, 4>) *
-                                                       static_cast<std::size_t>(width) *
-                                                       static_cast<std::size_t>(height);
+    const int width = sizeOfLevel(texels.width, texels.levels - 1);
+    const int height = sizeOfLevel(texels.height, texels.levels - 1);
+    const std::size_t last =
+        texels.bytes.size() - sizeof(std::array<Code, 4>) * placeOfTexel(0, height, width);
     LinearLevel level = halved(width, height, [&](int x, int y) {
         std::array<Code, 4> texel{};
-        std::memcpy(
-            texel.data(),
-            &texels
-                 .bytes[last + sizeof texel * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                               static_cast<std::size_t>(x))],
-            sizeof texel);
+        std::memcpy(texel.data(), &texels.bytes[last + sizeof texel * placeOfTexel(x, y, width)],
+                    sizeof texel);
         return coding.decode({texel[0], texel[1], texel[2], texel[3]});
     });
     append<Code>(level, coding, texels.bytes);
     while (++texels.levels < most) {
         const LinearLevel before = std::move(level);
-        level = halved(before.width, before.height, [&](int x, int y) {
-            return before.values[static_cast<std::size_t>(y) * static_cast<std::size_t>(before.width) +
-                                 static_cast<std::size_t>(x)];
-        });
+        level = halved(before.width, before.height,
+                       [&](int x, int y) { return before.values[placeOfTexel(x, y, before.width)]; });
         append<Code>(level, coding, texels.bytes);
     }
 }
 
 }  // namespace
+
+double decodeSrgb(double encoded) {
+    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
 
 int fullLevels(int width, int height) {
     return std::bit_width(static_cast<std::uint32_t>(std::max(width, height)));

@@ -4,6 +4,7 @@
 #include "gltf/scene.h"
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -38,6 +39,18 @@ struct Texels {
     int levels = 1;
     std::vector<std::uint8_t> bytes;
 };
+
+constexpr int sizeOfLevel(int size, int level) {
+    return size >> level > 1 ? size >> level : 1;
+}
+
+// Returns how many texels come before one, row by row.
+constexpr std::size_t placeOfTexel(int x, int y, int width) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+}
+
+// Returns the linear number of one in sRGB (IEC 61966-2-1).
+double decodeSrgb(double encoded);
 
 // Returns the levels of a full pyramid: 1 + floor(log2(largest side)).
 int fullLevels(int width, int height);

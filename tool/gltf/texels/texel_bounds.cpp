@@ -8,11 +8,13 @@
 #include <cstring>
 #include <limits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace glint::gltf {
 
-namespace {
+// TexelBounds::Levels has members of these types, so they can't be in an anonymous namespace.
+namespace bounds {
 
 // See the head of texel_bounds.h.
 constexpr double kSubTexel = 1.0 / 16.0;
@@ -188,12 +190,8 @@ private:
         std::vector<Texel> least;
         std::vector<Texel> greatest;
 
-        std::size_t placeOf(int x, int y) const {
-            return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                   static_cast<std::size_t>(x);
-        }
         TexelRange at(int x, int y) const {
-            const std::size_t place = placeOf(x, y);
+            const std::size_t place = placeOfTexel(x, y, width);
             const Texel& low = least[place];
             const Texel& high = greatest.empty() ? low : greatest[place];
             return {{low[0], low[1], low[2], low[3]}, {high[0], high[1], high[2], high[3]}};
@@ -202,16 +200,15 @@ private:
 
     static Grid coarser(const Grid& fine) {
         Grid grid{(fine.width + kBranch - 1) / kBranch, (fine.height + kBranch - 1) / kBranch, {}, {}};
-        const std::size_t cells =
-            static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height);
+        const std::size_t cells = placeOfTexel(0, grid.height, grid.width);
         Texel most;
         most.fill(std::numeric_limits<Code>::max());
         grid.least.assign(cells, most);
         grid.greatest.assign(cells, Texel{});
         for (int y = 0; y < fine.height; ++y) {
             for (int x = 0; x < fine.width; ++x) {
-                const std::size_t from = fine.placeOf(x, y);
-                const std::size_t to = grid.placeOf(x / kBranch, y / kBranch);
+                const std::size_t from = placeOfTexel(x, y, fine.width);
+                const std::size_t to = placeOfTexel(x / kBranch, y / kBranch, grid.width);
                 const Texel& high = fine.greatest.empty() ? fine.least[from] : fine.greatest[from];
                 for (std::size_t i = 0; i < 4; ++i) {
                     grid.least[to][i] = std::min(grid.least[to][i], fine.least[from][i]);
@@ -288,26 +285,8 @@ private:
     std::vector<Grid> grids_;  // that of texels first
 };
 
-}  // namespace
-
-class TexelBounds::Levels {
-public:
-    Levels() = default;
-    Levels(const Levels&) = delete;
-    Levels& operator=(const Levels&) = delete;
-    virtual ~Levels() = default;
-    virtual int count() const = 0;
-    virtual const TexelRange& whole() const = 0;
-    virtual void join(const TexCoordBox& box, const LookupKind& kind, TexelRange& range) const = 0;
-    virtual TexelPlace find(const TexCoordBox& box, const LookupKind& kind, std::size_t channel,
-                            bool greatest, std::uint16_t code) const = 0;
-    virtual std::array<materials::ValueInterval, 4> valuesOf(const TexelRange& range) const = 0;
-};
-
-namespace {
-
 template <typename Code>
-class LevelsOf final : public TexelBounds::Levels {
+class LevelsOf {
 public:
     using Texel = CodeTexel<Code>;
 
@@ -316,12 +295,11 @@ public:
             completeLevels(texels, rules.filters);
         }
         const int count = rules.complete ? fullLevels(texels.width, texels.height) : texels.levels;
-        const auto sizeOf = [](int size, int level) { return std::max(size >> level, 1); };
         std::size_t offset = 0;
         for (int level = 0; level < count; ++level) {
-            const int width = sizeOf(texels.width, level);
-            const int height = sizeOf(texels.height, level);
-            const std::size_t number = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+            const int width = sizeOfLevel(texels.width, level);
+            const int height = sizeOfLevel(texels.height, level);
+            const std::size_t number = placeOfTexel(0, height, width);
             std::vector<Texel> values;
             if (level < texels.levels) {
                 values.resize(number);
@@ -339,14 +317,14 @@ public:
         }
     }
 
-    int count() const override {
+    int count() const {
         return static_cast<int>(levels_.size());
     }
-    const TexelRange& whole() const override {
+    const TexelRange& whole() const {
         return whole_;
     }
 
-    void join(const TexCoordBox& box, const LookupKind& kind, TexelRange& range) const override {
+    void join(const TexCoordBox& box, const LookupKind& kind, TexelRange& range) const {
         for (int level = 0; level < levelsRead(kind, count()); ++level) {
             const LevelBounds<Code>& bounds = levels_[static_cast<std::size_t>(level)];
             forEachArea(box, kind, level, mayBeLast(level), bounds.width(), bounds.height(),
@@ -355,7 +333,7 @@ public:
     }
 
     TexelPlace find(const TexCoordBox& box, const LookupKind& kind, std::size_t channel, bool greatest,
-                    std::uint16_t code) const override {
+                    std::uint16_t code) const {
         TexelPlace found;
         for (int level = 0; level < levelsRead(kind, count()) && found.level < 0; ++level) {
             const LevelBounds<Code>& bounds = levels_[static_cast<std::size_t>(level)];
@@ -368,11 +346,6 @@ public:
                         });
         }
         return found;
-    }
-
-    std::array<materials::ValueInterval, 4> valuesOf(const TexelRange& range) const override {
-        return gltf::valuesOf(range, sizeof(Code) == 1 ? PixelFormat::Rgba8 : PixelFormat::Rgba16,
-                              rules_.tolerance);
     }
 
 private:
@@ -397,12 +370,11 @@ private:
         const int slack = rules_.isUnknown ? std::numeric_limits<Code>::max()
                           : blits          ? steps * codes * kStep
                                            : 0;
-        std::vector<Texel> least(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+        std::vector<Texel> least(placeOfTexel(0, height, width));
         std::vector<Texel> greatest(least.size());
         for (int y = 0; y < height; ++y) {
             for (int x = 0; x < width; ++x) {
-                const std::size_t place = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                                          static_cast<std::size_t>(x);
+                const std::size_t place = placeOfTexel(x, y, width);
                 const Span columns = covered(x, width, finer.width());
                 const Span rows = covered(y, height, finer.height());
                 TexelRange hull;
@@ -439,7 +411,7 @@ private:
     TexelRange whole_;
 };
 
-}  // namespace
+}  // namespace bounds
 
 std::array<materials::ValueInterval, 4> valuesOf(const TexelRange& range, PixelFormat format, int tolerance) {
     const int most = format == PixelFormat::Rgba16 ? 65535 : 255;
@@ -470,10 +442,6 @@ LevelRules levelRulesOf(const Image& image, const ImageUse& use) {
     return rules;
 }
 
-bool TexCoordBox::isFinite() const {
-    return std::isfinite(low[0]) && std::isfinite(low[1]) && std::isfinite(high[0]) && std::isfinite(high[1]);
-}
-
 TexCoordBox boxOf(std::span<const Float2> corners, const materials::TextureTransform& transform) {
     const materials::TransformRows rows = rowsOf(transform);
     TexCoordBox box;
@@ -491,7 +459,7 @@ TexCoordBox boxOf(std::span<const Float2> corners, const materials::TextureTrans
             magnitude = std::max(
                 magnitude, std::abs(row[0] * corner[0]) + std::abs(row[1] * corner[1]) + std::abs(row[2]));
         }
-        const double margin = kSingle * magnitude + kPackedBarycentrics * (high - low);
+        const double margin = bounds::kSingle * magnitude + bounds::kPackedBarycentrics * (high - low);
         box.low[axis] = isKnown ? low - margin : -std::numeric_limits<double>::infinity();
         box.high[axis] = isKnown ? high + margin : std::numeric_limits<double>::infinity();
     }
@@ -514,11 +482,21 @@ void TexelRange::join(const TexelRange& other) {
     }
 }
 
-TexelBounds::TexelBounds(Texels texels, const LevelRules& rules) {
-    if (texels.format == PixelFormat::Rgba16) {
-        bounds_ = std::make_unique<const LevelsOf<std::uint16_t>>(std::move(texels), rules);
+struct TexelBounds::Levels {
+    std::variant<bounds::LevelsOf<std::uint8_t>, bounds::LevelsOf<std::uint16_t>> of;
+
+    template <typename Use>
+    auto visit(const Use& use) const {
+        return std::visit(use, of);
+    }
+};
+
+TexelBounds::TexelBounds(Texels texels, const LevelRules& rules)
+    : format_(texels.format), tolerance_(rules.tolerance) {
+    if (format_ == PixelFormat::Rgba16) {
+        levels_.reset(new Levels{bounds::LevelsOf<std::uint16_t>(std::move(texels), rules)});
     } else {
-        bounds_ = std::make_unique<const LevelsOf<std::uint8_t>>(std::move(texels), rules);
+        levels_.reset(new Levels{bounds::LevelsOf<std::uint8_t>(std::move(texels), rules)});
     }
 }
 
@@ -527,11 +505,11 @@ TexelBounds& TexelBounds::operator=(TexelBounds&&) noexcept = default;
 TexelBounds::~TexelBounds() = default;
 
 int TexelBounds::levels() const {
-    return bounds_->count();
+    return levels_->visit([](const auto& levels) { return levels.count(); });
 }
 
-const TexelRange& TexelBounds::whole() const {
-    return bounds_->whole();
+TexelRange TexelBounds::whole() const {
+    return levels_->visit([](const auto& levels) { return levels.whole(); });
 }
 
 TexelRange TexelBounds::over(const TexCoordBox& box, const LookupKind& kind) const {
@@ -541,19 +519,22 @@ TexelRange TexelBounds::over(const TexCoordBox& box, const LookupKind& kind) con
 }
 
 void TexelBounds::joinOver(const TexCoordBox& box, const LookupKind& kind, TexelRange& range) const {
-    if (!range.encloses(whole())) {
-        bounds_->join(box, kind, range);
-    }
+    levels_->visit([&](const auto& levels) {
+        if (!range.encloses(levels.whole())) {
+            levels.join(box, kind, range);
+        }
+    });
 }
 
 TexelPlace TexelBounds::find(const TexCoordBox& box, const LookupKind& kind, const TexelRange& range,
                              std::size_t channel, bool greatest) const {
-    return bounds_->find(box, kind, channel, greatest,
-                         greatest ? range.greatest[channel] : range.least[channel]);
+    const std::uint16_t code = greatest ? range.greatest[channel] : range.least[channel];
+    return levels_->visit(
+        [&](const auto& levels) { return levels.find(box, kind, channel, greatest, code); });
 }
 
 std::array<materials::ValueInterval, 4> TexelBounds::valuesOf(const TexelRange& range) const {
-    return bounds_->valuesOf(range);
+    return gltf::valuesOf(range, format_, tolerance_);
 }
 
 }  // namespace glint::gltf

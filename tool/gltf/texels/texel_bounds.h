@@ -33,8 +33,6 @@ namespace glint::gltf {
 struct TexCoordBox {
     std::array<double, 2> low{};
     std::array<double, 2> high{};
-
-    bool isFinite() const;
 };
 
 // Returns the box of all coordinates that a device may interpolate between the corners of a triangle, in the
@@ -47,9 +45,6 @@ struct TexelRange {
     std::array<std::uint16_t, 4> least{65535, 65535, 65535, 65535};
     std::array<std::uint16_t, 4> greatest{};
 
-    bool isEmpty() const {
-        return least[0] > greatest[0];
-    }
     bool encloses(const TexelRange& other) const;
     void join(const TexelRange& other);
     bool operator==(const TexelRange&) const = default;
@@ -102,7 +97,7 @@ public:
 
     int levels() const;
     // The codes of all texels of all levels.
-    const TexelRange& whole() const;
+    TexelRange whole() const;
     // Returns the codes that lookups in the box can combine. Takes constant time for small boxes, and time in
     // proportion to the box's sides in texels for others.
     TexelRange over(const TexCoordBox& box, const LookupKind& kind) const;
@@ -115,10 +110,12 @@ public:
     // Returns valuesOf() with the image's format and tolerance.
     std::array<materials::ValueInterval, 4> valuesOf(const TexelRange& range) const;
 
-    class Levels;  // texel_bounds.cpp
-
 private:
-    std::unique_ptr<const Levels> bounds_;
+    struct Levels;  // texel_bounds.cpp
+
+    std::unique_ptr<const Levels> levels_;
+    PixelFormat format_;
+    int tolerance_;
 };
 
 }  // namespace glint::gltf

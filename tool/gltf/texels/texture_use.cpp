@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 
 namespace glint::gltf {
@@ -62,11 +61,6 @@ namespace {
 
 using materials::ValueInterval;
 
-// IEC 61966-2-1.
-double linearOf(double value) {
-    return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
-}
-
 ValueInterval widened(ValueInterval value, double share) {
     const bool isWhite = value.low == 1.0;
     const bool isBlack = value.high == 0.0;
@@ -77,21 +71,19 @@ ValueInterval widened(ValueInterval value, double share) {
 }  // namespace
 
 double numberAsRead(double stored, bool isColor) {
-    return isColor ? linearOf(stored) : stored;
+    return isColor ? decodeSrgb(stored) : stored;
 }
 
 std::array<ValueInterval, 4> contentAsRead(const std::array<ValueInterval, 4>& stored, bool isColor) {
     // Filters in single precision, and llvmpipe's sRGB, which is off by up to 0.7 %.
     constexpr double kFilter = 1e-5;
     constexpr double kSrgb = 0.01;
-    std::array<ValueInterval, 4> read = stored;
+    std::array<ValueInterval, 4> read{};
     for (std::size_t channel = 0; channel < 4; ++channel) {
-        ValueInterval& value = read[channel];
-        if (isColor && channel < 3) {
-            value = widened({linearOf(value.low), linearOf(value.high)}, kSrgb);
-        } else {
-            value = widened(value, kFilter);
-        }
+        const ValueInterval& value = stored[channel];
+        read[channel] = isColor && channel < 3
+                            ? widened({decodeSrgb(value.low), decodeSrgb(value.high)}, kSrgb)
+                            : widened(value, kFilter);
     }
     return read;
 }

@@ -29,11 +29,6 @@ bool isIdOperand(spv_operand_type_t type) {
            type == SPV_OPERAND_TYPE_SCOPE_ID;
 }
 
-bool isDecorating(std::uint32_t opcode) {
-    return opcode == spv::OpDecorate || opcode == spv::OpMemberDecorate || opcode == spv::OpDecorateId ||
-           opcode == spv::OpDecorateString || opcode == spv::OpMemberDecorateString;
-}
-
 // Places in the source do not change the work of a module.
 bool isPlace(std::uint32_t opcode) {
     return opcode == spv::OpLine || opcode == spv::OpNoLine || opcode == spv::OpString ||
@@ -64,7 +59,7 @@ void add(Reading& reading, const ParsedInstruction& instruction) {
         module.functions.back().body.push_back(instruction);
     } else if (opcode == spv::OpName || opcode == spv::OpMemberName) {
         module.names.add(module.words[instruction.at + 1], instruction);
-    } else if (isDecorating(opcode)) {
+    } else if (isSpirvDecoration(opcode)) {
         addDecoration(module, instruction);
     } else if (opcode == spv::OpDecorationGroup || opcode == spv::OpGroupDecorate ||
                opcode == spv::OpGroupMemberDecorate) {
