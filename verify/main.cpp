@@ -8,8 +8,6 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <cstdio>
-#include <exception>
 #include <optional>
 #include <string>
 #include <vector>
@@ -73,10 +71,5 @@ int proveAndReport(const Console& console, const std::vector<std::string>& packs
 }  // namespace glint::verify
 
 int main(int argc, char** argv) {
-    try {
-        return glint::cli::runCommandLine(argc, argv, {.proveMaterials = glint::verify::proveAndReport});
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "glint: error: %s\n", error.what());
-        return glint::cli::kExitFailed;
-    }
+    return glint::cli::runCommandLine(argc, argv, {.proveMaterials = glint::verify::proveAndReport});
 }

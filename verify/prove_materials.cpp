@@ -2,8 +2,7 @@
 
 #include "emit/compile.h"
 #include "emit/context.h"
-#include "emit/glsl/flatten.h"
-#include "emit/glsl/prune.h"
+#include "emit/glsl/passes.h"
 #include "emit/material_code.h"
 #include "emit/sources.h"
 #include "gltf/scene.h"

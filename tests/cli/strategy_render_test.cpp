@@ -1,5 +1,5 @@
 // Tests glint render --strategy auto, and the device file as the program writes and reads it.
-#include "cli/bench/text.h"
+#include "cli/bench/bench.h"
 #include "cli/planted_device.h"
 #include "cli/render_command.h"
 #include "cli/schemas.h"

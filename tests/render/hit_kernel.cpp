@@ -1,7 +1,7 @@
 #include "render/hit_kernel.h"
 
 #include "base/files.h"
-#include "emit/glsl/flatten.h"
+#include "emit/glsl/passes.h"
 #include "emit/sources.h"
 #include "support/shared_modules.h"
 

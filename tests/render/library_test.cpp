@@ -3,7 +3,7 @@
 
 #include "base/files.h"
 #include "emit/compile.h"
-#include "emit/glsl/flatten.h"
+#include "emit/glsl/passes.h"
 #include "emit/sources.h"
 #include "gltf/import.h"
 #include "materials/declarations.h"

@@ -2,7 +2,7 @@
 #include "base/files.h"
 #include "base/json.h"
 #include "cli/command_line.h"
-#include "cli/commands.h"
+#include "cli/options/options.h"
 #include "cli/report.h"
 #include "cli/table.h"
 #include "image/image_file.h"

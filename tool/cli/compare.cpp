@@ -3,7 +3,7 @@
 
 #include "base/files.h"
 #include "cli/command_line.h"
-#include "cli/commands.h"
+#include "cli/options/options.h"
 #include "cli/report.h"
 #include "cli/table.h"
 #include "image/flip.h"

@@ -2,7 +2,7 @@
 #include "inspect/diff.h"
 
 #include "cli/command_line.h"
-#include "cli/commands.h"
+#include "cli/options/options.h"
 #include "cli/report.h"
 #include "cli/table.h"
 

@@ -1,10 +1,10 @@
 // glint inspect: shows the contents of a package.
 #include "cli/command_line.h"
-#include "cli/commands.h"
 #include "cli/inspect/pipelines.h"
+#include "cli/options/options.h"
 #include "cli/report.h"
 #include "cli/table.h"
-#include "emit/package/json.h"
+#include "emit/package/manifest.h"
 #include "inspect/package.h"
 #include "plan/plan.h"
 #include "resolve/resolve.h"

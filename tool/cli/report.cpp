@@ -1,7 +1,7 @@
 #include "cli/report.h"
 
 #include "cli/table.h"
-#include "emit/package/json.h"
+#include "emit/package/manifest.h"
 
 #include <glint/package_modules.h>
 #include <glint/renderer_options.h>

@@ -1,10 +1,9 @@
 // glint view: shows a scene in a window.
 #include "cli/cache.h"
 #include "cli/command_line.h"
-#include "cli/commands.h"
-#include "cli/explain/text.h"
+#include "cli/options/options.h"
 #include "cli/render/arguments.h"
-#include "cli/render/pipeline_cache.h"
+#include "cli/report.h"
 #include "view/request.h"
 
 #include <algorithm>

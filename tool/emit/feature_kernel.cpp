@@ -1,8 +1,7 @@
 #include "emit/feature_kernel.h"
 
 #include "emit/context.h"
-#include "emit/glsl/flatten.h"
-#include "emit/glsl/prune.h"
+#include "emit/glsl/passes.h"
 #include "emit/material_code.h"
 #include "emit/sources.h"
 #include "spirv/compiler.h"

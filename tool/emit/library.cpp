@@ -2,9 +2,7 @@
 
 #include "cache/module_cache.h"
 #include "emit/context.h"
-#include "emit/glsl/flatten.h"
-#include "emit/glsl/prune.h"
-#include "emit/glsl/readable.h"
+#include "emit/glsl/passes.h"
 #include "emit/material_code.h"
 #include "emit/sources.h"
 #include "resolve/host.h"

@@ -3,7 +3,7 @@
 
 #include "emit/package/compiled_package.h"
 #include "gltf/scene_list.h"
-#include "settings/compile_settings.h"
+#include "settings/settings.h"
 
 #include <glint/result.h>
 

@@ -8,7 +8,7 @@
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
 #include "resolve/build.h"
-#include "settings/compile_settings.h"
+#include "settings/settings.h"
 
 #include <glint/result.h>
 

@@ -5,7 +5,7 @@
 #include "emit/warm_modules.h"
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
-#include "settings/compile_settings.h"
+#include "settings/settings.h"
 
 #include <glint/result.h>
 

@@ -4,7 +4,7 @@
 #include "emit/source_set.h"
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
-#include "settings/compile_settings.h"
+#include "settings/settings.h"
 
 #include <glint/result.h>
 

@@ -4,7 +4,7 @@
 #include "emit/compile.h"
 #include "synthetic/cases_scene.h"
 
-#include <glint/measure/calibration_report.h>
+#include <glint/measure/device_file.h>
 #include <glint/measure/strategy_fit.h>
 #include <glint/session/session.h>
 

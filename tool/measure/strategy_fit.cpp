@@ -1,4 +1,3 @@
-#include "measure/least_squares.h"
 #include "plan/strategy_cost.h"
 
 #include <glint/measure/statistics.h>

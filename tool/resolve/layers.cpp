@@ -1,7 +1,7 @@
 #include "resolve/layers.h"
 
 #include "base/text.h"
-#include "settings/compile_settings.h"
+#include "settings/settings.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "plan/plan.h"
-#include "settings/compile_settings.h"
+#include "settings/settings.h"
 
 #include <glint/layers.h>
 #include <glint/result.h>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "emit/compile_modules.h"
-#include "emit/glsl/items.h"
+#include "emit/glsl/text.h"
 
 #include <cstdint>
 #include <string>

@@ -1,7 +1,5 @@
-#include "cli/bench/arguments.h"
-
 #include "base/text.h"
-#include "cli/bench/denoise_filter.h"
+#include "cli/bench/bench.h"
 #include "cli/options/options.h"
 
 #include <fmt/format.h>

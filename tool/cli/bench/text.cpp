@@ -1,7 +1,7 @@
 // The text that glint bench prints.
-#include "cli/bench/text.h"
-
 #include "base/text.h"
+
+#include "cli/bench/bench.h"
 #include "cli/table.h"
 
 #include <glint/measure/report.h>

@@ -5,8 +5,8 @@
 #include "cli/options/options.h"
 #include "cli/options/setting_options.h"
 #include "emit/compile.h"
-#include "emit/package/embed_source.h"
-#include "emit/package/write.h"
+#include "emit/package/compiled_package.h"
+#include "emit/package/header.h"
 #include "materials/declarations.h"
 #include "resolve/host.h"
 

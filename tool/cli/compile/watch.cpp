@@ -5,7 +5,7 @@
 #include "base/input_watch.h"
 #include "cli/options/options.h"
 #include "cli/options/setting_options.h"
-#include "emit/package/write.h"
+#include "emit/package/compiled_package.h"
 
 #include <glint/package.h>
 

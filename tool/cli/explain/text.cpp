@@ -1,7 +1,6 @@
-#include "cli/explain/text.h"
-
+#include "cli/report.h"
 #include "cli/table.h"
-#include "emit/package/json.h"
+#include "emit/package/manifest.h"
 #include "plan/plan_cost.h"
 
 #include <fmt/format.h>

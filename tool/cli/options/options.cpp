@@ -1,7 +1,7 @@
 #include "cli/options/options.h"
 
 #include "base/text.h"
-#include "cli/options/diagnostic_table.h"
+#include "cli/console.h"
 #include "cli/table.h"
 #include "settings/settings.h"
 

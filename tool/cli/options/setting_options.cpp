@@ -6,7 +6,6 @@
 #include "settings/descriptor.h"
 
 #include <glint/measure/settings.h>
-#include <glint/measure/settings_file.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -4,7 +4,6 @@
 #include "cli/cache.h"
 #include "cli/options/motion_options.h"
 #include "cli/options/setting_options.h"
-#include "cli/render/pipeline_cache.h"
 #include "image/tone.h"
 
 #include <cstdint>

@@ -1,9 +1,9 @@
 #include "cli/render/report.h"
 
+#include "base/fields.h"
 #include "cli/report.h"
 #include "cli/table.h"
-#include "emit/package/json.h"
-#include "measure/report_json.h"
+#include "emit/package/manifest.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

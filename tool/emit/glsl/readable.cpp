@@ -1,8 +1,5 @@
-#include "emit/glsl/readable.h"
-
-#include "emit/glsl/items.h"
-#include "emit/glsl/prune.h"
-#include "emit/glsl/unit.h"
+#include "emit/glsl/passes.h"
+#include "emit/glsl/text.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,3 @@
-#include "emit/package/write.h"
-
 #include "base/files.h"
 #include "emit/package/compiled_package.h"
 #include "emit/package/manifest.h"

@@ -7,14 +7,10 @@
 #include "view/camera_control.h"
 #include "view/controls.h"
 #include "view/display.h"
-#include "view/interface.h"
 #include "view/look.h"
-#include "view/passes_panel.h"
-#include "view/pick.h"
 #include "view/picture.h"
 #include "view/presenter.h"
 #include "view/script.h"
-#include "view/settings_panel.h"
 
 #include <glint/package.h>
 

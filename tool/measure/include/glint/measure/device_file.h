@@ -1,12 +1,16 @@
-// The files of `glint bench --calibrate`: calibration.json with the measurements, and device.json with the
-// constants fitted to them, by which `--strategy auto` chooses.
+// A calibration: its settings, the times that it measured, and the file of costs that are fitted to them.
 #pragma once
 
+#include "base/fields_fwd.h"
 #include "plan/strategy_cost.h"
+#include "settings/settings.h"
 
+#include <glint/measure/machine.h>
+#include <glint/measure/point.h>
 #include <glint/measure/strategy_fit.h>
 #include <glint/result.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -14,10 +18,88 @@
 
 namespace glint::measure {
 
+// The difference between a picture and that of uber. The strategy must not change the picture.
+struct PictureDifference {
+    double largest = 0.0;         // |a - b| / max(1, |b|) over all channels
+    std::uint64_t differing = 0;  // pixels that differ by more than 0.001 of that
+    std::uint64_t pixels = 0;     // all
+    bool isWrong() const;         // more than 1 in 1000
+};
+
+// A strategy at one point, with its times for one sample.
+struct StrategyMeasure {
+    std::string strategy;
+    std::string skipped;  // why it did not run; empty: it did
+    std::string tracer;
+    std::string ordering;        // empty where hits are not ordered
+    std::vector<double> times;   // milliseconds of the passes that strategies differ in, one a round
+    std::vector<double> ratios;  // to uber in the same round
+    HitTimes split;              // means over all rounds
+    double pipelineMs = 0.0;     // wall clock
+    double firstMs = 0.0;        // wall clock of the first sample, in which drivers may compile
+    std::uint64_t bytes = 0;     // of buffers and images
+    PictureDifference difference;
+};
+
+struct CalibrationEntry {
+    CalibrationPoint point;  // its times: of the strategies that ran, whose pictures are right
+    std::string shares;
+    std::uint32_t lights = 0;
+    bool shadows = false;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::uint32_t samples = 0;  // samples of which each time is the mean
+    std::uint64_t hits = 0;     // a sample
+    std::uint32_t filledCases = 0;
+    std::vector<StrategyMeasure> strategies;
+    // The strategies whose interval of the ratio overlaps with that of the fastest; empty if nothing ran.
+    std::vector<std::string> fastest;
+};
+base::Fields fieldsOf(const CalibrationEntry*);
+
+struct CalibrationReport {
+    std::string command;
+    std::string date;  // UTC, ISO 8601
+    BenchMachine machine;
+    std::uint32_t rounds = 0;
+    std::uint32_t seed = 0;
+    bool quick = false;
+    double compileSeconds = 0.0;  // wall clock, before anything is measured
+    double seconds = 0.0;         // wall clock of everything
+    bool complete = false;        // else more points were to come
+    std::vector<CalibrationEntry> entries;
+};
+// Reads what is needed to fit costs to it. Values that follow from others, and those of the run, are not
+// read.
+base::Fields fieldsOf(const CalibrationReport*);
+
+// Returns the mean over the cases, weighted by their shares of hits, that is, the work of an average hit.
+double meanOf(const std::vector<CaseWork>& work, double CaseWork::*member);
+
+// Fills in the members that follow from the measurements: point.times and fastest.
+void settleEntry(CalibrationEntry& entry);
+
+struct CalibrationSettings {
+    compiler::Settings render;
+    std::string output;                // folder of calibration.json
+    bool quick = false;                // fewer numbers of cases and of rays
+    std::vector<std::uint32_t> cases;  // empty: by `quick`
+    std::vector<std::uint64_t> rays;   // empty: by `quick` and the device
+    std::vector<std::string> costs{"cheap", "expensive"};
+    std::vector<std::string> coherences{"coherent", "incoherent"};
+    std::string shares = "uniform";  // or "zipf"
+    std::int64_t lights = 0;         // point lights, besides the sky
+    bool shadows = false;            // of those lights
+    std::string pictures;            // folder; empty: none are written
+};
+
+// --- device.json ---
+
 struct DeviceFile {
     compiler::DeviceCosts costs;
     FitQuality quality;
 };
+base::Fields fieldsOf(const DeviceFile*);
 
 // Fits the constants of a device to measurements on it. `device` holds everything except its strategies. Adds
 // notes "calibration-points" about points that were left out. Returns an error with that id if no strategy
