@@ -20,8 +20,7 @@ using cli::Console;
 using cli::Detail;
 
 std::string toText(const std::vector<FeatureProofOutcome>& outcomes, Detail detail) {
-    std::vector<std::vector<std::string>> rows{
-        {"feature", "proof", "undecided", "boxes", "what the bounds can't exclude"}};
+    cli::Rows rows{{"feature", "proof", "undecided", "boxes", "what the bounds can't exclude"}};
     for (const FeatureProofOutcome& outcome : outcomes) {
         const bool isOpen = outcome.state == FeatureProofState::Undecided;
         rows.push_back({outcome.feature, std::string(nameOf(outcome.state)),

@@ -5,7 +5,6 @@
 #include "cli/schemas.h"
 
 #include <glint/measure/device_file.h>
-#include <glint/measure/strategy_fit.h>
 #include <glint/package_modules.h>
 
 #include <algorithm>

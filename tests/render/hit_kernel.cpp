@@ -1,8 +1,8 @@
 #include "render/hit_kernel.h"
 
 #include "base/files.h"
+#include "emit/context.h"
 #include "emit/glsl/passes.h"
-#include "emit/sources.h"
 #include "support/shared_modules.h"
 
 #include <utility>

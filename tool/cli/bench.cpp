@@ -11,6 +11,7 @@
 #include "cli/options/options.h"
 #include "cli/options/setting_options.h"
 #include "cli/report.h"
+#include "measure/calibration_measure.h"
 
 #include <glint/measure/bench.h>
 #include <glint/measure/calibration.h>

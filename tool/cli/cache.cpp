@@ -4,8 +4,8 @@
 #include "cache/action.h"
 #include "cache/store.h"
 #include "cli/options/options.h"
-#include "emit/compile_modules.h"
 #include "emit/module_files.h"
+#include "emit/modules.h"
 
 #include <fmt/format.h>
 
@@ -37,16 +37,13 @@ std::string variable(const char* name) {
 }  // namespace
 
 void addCacheOptions(CLI::App& command, CacheArguments& arguments) {
+    const OptionGroup group(command, kWork);
     addText(command, "--cache", arguments.folder, "DIR",
-            "folder that keeps compiled shaders; none: keep nothing\n"
-            "(default: $GLINT_CACHE, else $XDG_CACHE_HOME/glint, else\n"
-            "~/.cache/glint)")
-        .group(kWork);
+            "folder that keeps compiled shaders; none: keep nothing (default: $GLINT_CACHE, else "
+            "$XDG_CACHE_HOME/glint, else ~/.cache/glint)");
     constexpr std::int64_t kLargest = 1 << 20;
     addInteger(command, "--cache-size", arguments.mebibytes, 1, kLargest,
-               "size limit of the cache in MiB; the least recently used\n"
-               "entries are removed first")
-        .group(kWork);
+               "size limit of the cache in MiB; the least recently used entries are removed first");
 }
 
 std::optional<fs::path> cacheFolder(const CacheArguments& arguments) {
@@ -85,8 +82,6 @@ std::string describeOptions(const CLI::App& command) {
     }
     return packer.take();
 }
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -179,13 +174,10 @@ std::vector<std::string> pathsOf(std::span<const compiler::FileState> files) {
 
 // --- Pipelines of drivers ---
 
-namespace fs = std::filesystem;
-
 void addPipelineOptions(CLI::App& command, PipelineArguments& arguments) {
     addText(command, "--pipeline-cache", arguments.cache, "DIR",
-            "folder that keeps the driver's compiled pipelines; none:\n"
-            "keep nothing (default: pipelines in the folder of glint\n"
-            "compile --cache)")
+            "folder that keeps the driver's compiled pipelines; none: keep nothing (default: pipelines in "
+            "the folder of glint compile --cache)")
         .group("Device");
 }
 

@@ -22,8 +22,6 @@ struct DiffSides {
     const inspect::DiffPackage& after;
 };
 
-using Rows = std::vector<std::vector<std::string>>;
-
 // A scene may have a hundred thousand materials, and nobody reads more than a page of them.
 constexpr std::size_t kMaxMaterials = 40;
 
@@ -46,7 +44,7 @@ std::string shaderAt(const std::vector<int>& ids, std::size_t place, const inspe
 }
 
 // Returns "+1: normals" for one key, "+3" for several.
-std::string keyCount(char sign, const std::vector<std::vector<std::string>>& keys) {
+std::string keyCount(char sign, const Rows& keys) {
     if (keys.empty()) {
         return {};
     }

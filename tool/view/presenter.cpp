@@ -3,11 +3,6 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <algorithm>
-#include <memory>
-
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
-#include <algorithm>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_vulkan.h>
 #include <imgui.h>
@@ -97,8 +92,8 @@ Status Presenter::createRenderPass() {
     info.pAttachments = &target;
     info.subpassCount = 1;
     info.pSubpasses = &subpass;
-    const VkResult result = vkCreateRenderPass(context_.handles().device, &info, nullptr, &renderPass_);
-    return result == VK_SUCCESS ? okStatus() : Status(callError("vkCreateRenderPass", result));
+    return checkCall("vkCreateRenderPass",
+                     vkCreateRenderPass(context_.handles().device, &info, nullptr, &renderPass_));
 }
 
 Status Presenter::createFrames() {
@@ -109,13 +104,9 @@ Status Presenter::createFrames() {
         fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
         VkSemaphoreCreateInfo semaphore{};
         semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
-        VkResult result = vkCreateFence(device, &fence, nullptr, &frame.done);
-        if (result == VK_SUCCESS) {
-            result = vkCreateSemaphore(device, &semaphore, nullptr, &frame.acquired);
-        }
-        if (result != VK_SUCCESS) {
-            return callError("vkCreateFence", result);
-        }
+        GLINT_TRY_DO(checkCall("vkCreateFence", vkCreateFence(device, &fence, nullptr, &frame.done)));
+        GLINT_TRY_DO(
+            checkCall("vkCreateSemaphore", vkCreateSemaphore(device, &semaphore, nullptr, &frame.acquired)));
     }
     return okStatus();
 }
@@ -145,10 +136,7 @@ Status Presenter::addImages() {
         view.viewType = VK_IMAGE_VIEW_TYPE_2D;
         view.format = format_.format;
         view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-        VkResult result = vkCreateImageView(device, &view, nullptr, &image.view);
-        if (result != VK_SUCCESS) {
-            return callError("vkCreateImageView", result);
-        }
+        GLINT_TRY_DO(checkCall("vkCreateImageView", vkCreateImageView(device, &view, nullptr, &image.view)));
         VkFramebufferCreateInfo target{};
         target.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
         target.renderPass = renderPass_;
@@ -157,16 +145,12 @@ Status Presenter::addImages() {
         target.width = extent_.width;
         target.height = extent_.height;
         target.layers = 1;
-        result = vkCreateFramebuffer(device, &target, nullptr, &image.framebuffer);
-        if (result != VK_SUCCESS) {
-            return callError("vkCreateFramebuffer", result);
-        }
+        GLINT_TRY_DO(checkCall("vkCreateFramebuffer",
+                               vkCreateFramebuffer(device, &target, nullptr, &image.framebuffer)));
         VkSemaphoreCreateInfo semaphore{};
         semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
-        result = vkCreateSemaphore(device, &semaphore, nullptr, &image.drawn);
-        if (result != VK_SUCCESS) {
-            return callError("vkCreateSemaphore", result);
-        }
+        GLINT_TRY_DO(
+            checkCall("vkCreateSemaphore", vkCreateSemaphore(device, &semaphore, nullptr, &image.drawn)));
     }
     return okStatus();
 }
@@ -174,11 +158,9 @@ Status Presenter::addImages() {
 Status Presenter::createSwapchain() {
     VkDevice device = context_.handles().device;
     VkSurfaceCapabilitiesKHR can{};
-    VkResult result =
-        vkGetPhysicalDeviceSurfaceCapabilitiesKHR(context_.handles().physicalDevice, surface_, &can);
-    if (result != VK_SUCCESS) {
-        return callError("vkGetPhysicalDeviceSurfaceCapabilitiesKHR", result);
-    }
+    GLINT_TRY_DO(checkCall(
+        "vkGetPhysicalDeviceSurfaceCapabilitiesKHR",
+        vkGetPhysicalDeviceSurfaceCapabilitiesKHR(context_.handles().physicalDevice, surface_, &can)));
     int width = 0;
     int height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
@@ -214,12 +196,10 @@ Status Presenter::createSwapchain() {
     info.clipped = VK_TRUE;
     info.oldSwapchain = swapchain_;
     VkSwapchainKHR made = VK_NULL_HANDLE;
-    result = vkCreateSwapchainKHR(device, &info, nullptr, &made);
+    const VkResult result = vkCreateSwapchainKHR(device, &info, nullptr, &made);
     vkDestroySwapchainKHR(device, swapchain_, nullptr);
     swapchain_ = made;
-    if (result != VK_SUCCESS) {
-        return callError("vkCreateSwapchainKHR", result);
-    }
+    GLINT_TRY_DO(checkCall("vkCreateSwapchainKHR", result));
     GLINT_TRY_DO(addImages());
     stale_ = false;
     return okStatus();
@@ -229,10 +209,7 @@ Result<bool> Presenter::begin(Frame& frame) {
     VkDevice device = context_.handles().device;
     InFlight& own = inFlight_[slot_];
     if (own.number > completed_) {
-        const VkResult waited = vkWaitForFences(device, 1, &own.done, VK_TRUE, kNoLimit);
-        if (waited != VK_SUCCESS) {
-            return callError("vkWaitForFences", waited);
-        }
+        GLINT_TRY_DO(checkCall("vkWaitForFences", vkWaitForFences(device, 1, &own.done, VK_TRUE, kNoLimit)));
         completed_ = own.number;
     }
     if (stale_) {
@@ -296,10 +273,7 @@ Status Presenter::end(const Frame& frame) {
     VkDevice device = context_.handles().device;
     InFlight& own = inFlight_[slot_];
     vkCmdEndRenderPass(frame.commands);
-    VkResult result = vkEndCommandBuffer(frame.commands);
-    if (result != VK_SUCCESS) {
-        return callError("vkEndCommandBuffer", result);
-    }
+    GLINT_TRY_DO(checkCall("vkEndCommandBuffer", vkEndCommandBuffer(frame.commands)));
     vkResetFences(device, 1, &own.done);
     const VkPipelineStageFlags stage = VK_PIPELINE_STAGE_TRANSFER_BIT;
     VkSubmitInfo submit{};
@@ -311,10 +285,7 @@ Status Presenter::end(const Frame& frame) {
     submit.pCommandBuffers = &own.commands;
     submit.signalSemaphoreCount = 1;
     submit.pSignalSemaphores = &images_[frame.image].drawn;
-    result = vkQueueSubmit(context_.handles().queue, 1, &submit, own.done);
-    if (result != VK_SUCCESS) {
-        return callError("vkQueueSubmit", result);
-    }
+    GLINT_TRY_DO(checkCall("vkQueueSubmit", vkQueueSubmit(context_.handles().queue, 1, &submit, own.done)));
     own.number = ++submitted_;
     VkPresentInfoKHR present{};
     present.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR;
@@ -323,23 +294,21 @@ Status Presenter::end(const Frame& frame) {
     present.swapchainCount = 1;
     present.pSwapchains = &swapchain_;
     present.pImageIndices = &frame.image;
-    result = vkQueuePresentKHR(context_.handles().queue, &present);
+    const VkResult result = vkQueuePresentKHR(context_.handles().queue, &present);
     slot_ = (slot_ + 1) % kFramesInFlight;
     if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR) {
         stale_ = true;
         return okStatus();
     }
-    return result == VK_SUCCESS ? okStatus() : Status(callError("vkQueuePresentKHR", result));
+    return checkCall("vkQueuePresentKHR", result);
 }
 
 Status Presenter::waitForFrames() {
     VkDevice device = context_.handles().device;
     for (const InFlight& frame : inFlight_) {
         if (frame.number > completed_) {
-            const VkResult result = vkWaitForFences(device, 1, &frame.done, VK_TRUE, kNoLimit);
-            if (result != VK_SUCCESS) {
-                return callError("vkWaitForFences", result);
-            }
+            GLINT_TRY_DO(
+                checkCall("vkWaitForFences", vkWaitForFences(device, 1, &frame.done, VK_TRUE, kNoLimit)));
         }
     }
     completed_ = submitted_;
@@ -410,10 +379,8 @@ Status Interface::start(GLFWwindow* window, const Presenter& presenter) {
     pool.maxSets = kTextures;
     pool.poolSizeCount = 1;
     pool.pPoolSizes = &size;
-    VkResult result = vkCreateDescriptorPool(handles.device, &pool, nullptr, &pool_);
-    if (result != VK_SUCCESS) {
-        return callError("vkCreateDescriptorPool", result);
-    }
+    GLINT_TRY_DO(
+        checkCall("vkCreateDescriptorPool", vkCreateDescriptorPool(handles.device, &pool, nullptr, &pool_)));
 
     ImGui_ImplVulkan_InitInfo info{};
     info.Instance = handles.instance;
@@ -439,10 +406,8 @@ Status Interface::start(GLFWwindow* window, const Presenter& presenter) {
     commandPool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
     commandPool.queueFamilyIndex = handles.queueFamily;
     VkCommandPool once = VK_NULL_HANDLE;
-    result = vkCreateCommandPool(handles.device, &commandPool, nullptr, &once);
-    if (result != VK_SUCCESS) {
-        return callError("vkCreateCommandPool", result);
-    }
+    GLINT_TRY_DO(
+        checkCall("vkCreateCommandPool", vkCreateCommandPool(handles.device, &commandPool, nullptr, &once)));
     VkCommandBufferAllocateInfo allocation{};
     allocation.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
     allocation.commandPool = once;

@@ -126,6 +126,7 @@ private:
     void addPicture(const std::string& file);
     // These add single parts.
     void act(Act act);
+    void perform(const std::function<void()>& work);
     void waitUntil(const std::function<bool()>& test);
     void pause(double seconds);
     void click();

@@ -1,6 +1,6 @@
 // Tests the fit behind glint bench --calibrate: it must find the constants of planted devices.
+#include <glint/measure/device_file.h>
 #include <glint/measure/statistics.h>
-#include <glint/measure/strategy_fit.h>
 
 #include <gtest/gtest.h>
 

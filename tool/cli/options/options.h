@@ -72,11 +72,30 @@ private:
 // The group of options about how a command works, which change nothing in what it writes.
 inline constexpr const char* kWork = "Work";
 
+// While it lives, the options that are added to the command belong to the group of that name.
+class OptionGroup {
+public:
+    OptionGroup(CLI::App& command, const std::string& name)
+        : command_(command), before_(command.option_defaults()->get_group()) {
+        command.option_defaults()->group(name);
+    }
+    ~OptionGroup() {
+        command_.option_defaults()->group(before_);
+    }
+    OptionGroup(const OptionGroup&) = delete;
+    OptionGroup& operator=(const OptionGroup&) = delete;
+
+private:
+    CLI::App& command_;
+    std::string before_;
+};
+
 // Adds a subcommand with its short help.
 CLI::App& addCommand(CLI::App& app, const CommandText& text);
 
-// Appends a note to an option's text: on its last line, or on a new line if that would be too long.
-std::string withNote(const std::string& help, const std::string& note);
+// Returns an option's text in lines of kHelpColumns, with a note on the last line, or on a new line if that
+// would be too long. The functions below do the same with the texts that they get.
+std::string helpText(const std::string& help, const std::string& note = {});
 // Adds an option that takes one of `choices`; the text in `value`, if any, is the default. A misspelt value
 // suggests the nearest choice.
 CLI::Option& addChoice(CLI::App& command, const std::string& flags, std::string& value,
@@ -109,9 +128,11 @@ CLI::Option& addInteger(CLI::App& command, const std::string& flags, std::int64_
 // Adds an option for a number within [min, max].
 CLI::Option& addReal(CLI::App& command, const std::string& flags, double& value, double min, double max,
                      const std::string& help);
-// Adds an option for a path or a name: any text except an empty one.
+// Says what is wrong with a value; empty: nothing is.
+using Complaint = std::function<std::string(const std::string&)>;
+// Adds an option for a path or a name: any text except an empty one, and one that there is a complaint about.
 CLI::Option& addText(CLI::App& command, const std::string& flags, std::string& value, const std::string& type,
-                     const std::string& help);
+                     const std::string& help, const Complaint& complaint = {});
 // Adds an option for one or more texts.
 CLI::Option& addTexts(CLI::App& command, const std::string& flags, std::vector<std::string>& values,
                       const std::string& type, const std::string& help);
@@ -128,8 +149,7 @@ std::string switchFlags(const std::string& flags, const std::string& on, const s
 // Adds --jobs: how many threads work at the same time.
 void addJobs(CLI::App& command, int& jobs);
 // Adds --device and --validate. `checks` is what the latter does besides.
-void addDeviceChoice(CLI::App& command, std::string& device, bool& validate, const std::string& checks = {},
-                     const std::string& group = "Device");
+void addDeviceChoice(CLI::App& command, std::string& device, bool& validate, const std::string& checks = {});
 
 // Appends a parsed option as it would be given again, with one word for each value.
 void addWords(const CLI::Option& option, std::vector<std::string>& words);

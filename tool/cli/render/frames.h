@@ -2,7 +2,6 @@
 #pragma once
 
 #include "cli/console.h"
-#include "cli/options/motion_options.h"
 #include "cli/render/arguments.h"
 #include "cli/render/report.h"
 #include "gltf/scene.h"

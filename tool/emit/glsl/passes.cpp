@@ -32,11 +32,34 @@ struct Frame {
     int line = 0;  // where the conditional opens
 };
 
+Diagnostic errorAt(std::string id, std::string_view name, int line, std::string message, std::string hint) {
+    return makeError(std::move(id), fmt::format("{}:{}", name, line), std::move(message), std::move(hint));
+}
+
+bool isActive(const std::vector<Frame>& frames) {
+    return std::ranges::all_of(frames, &Frame::taken);
+}
 class Flattener {
 public:
     Flattener(const SourceLookup& lookup, FlattenSide side) : lookup_(lookup), side_(side) {}
 
-    Status addFile(std::string_view name, std::string_view text);
+    Status addFile(std::string_view name, std::string_view text) {
+        File file{std::string(name), splitLines(text), {}, 1};
+        added_.insert(file.name);
+        open_.push_back(file.name);
+        for (std::size_t i = 0; i < file.lines.size(); ++i) {
+            GLINT_TRY(auto handled, addDirective(file, i));
+            if (!handled && isActive(file.frames)) {
+                unit_.add(file.lines[i], file.name, static_cast<int>(i) + file.offset);
+            }
+        }
+        if (!file.frames.empty()) {
+            return errorAt("source-conditional", name, file.frames.back().line,
+                           "the conditional has no #endif", "close it in the same file");
+        }
+        open_.pop_back();
+        return okStatus();
+    }
     GlslUnit takeUnit() {
         return std::move(unit_);
     }
@@ -53,10 +76,108 @@ private:
     };
 
     // Handles the directive at `index` if flatten() decides it itself. Returns whether it did.
-    Result<bool> addDirective(File& file, std::size_t index);
-    Result<bool> addConditional(File& file, std::size_t index, const Directive& directive);
-    Status addInclude(const File& file, int line, std::string_view argument);
-    bool opensGuard(const File& file, std::size_t index) const;
+    Result<bool> addDirective(File& file, std::size_t index) {
+        const Directive directive = parseDirective(file.lines[index]);
+        if (directive.word.empty()) {
+            return false;
+        }
+        const int line = static_cast<int>(index) + file.offset;
+        if (directive.word == "include" && isActive(file.frames)) {
+            const bool isSystem = directive.argument.starts_with('<');
+            if (isSystem) {
+                return side_ == FlattenSide::Glsl;
+            }
+            const Status status = addInclude(file, line, directive.argument);
+            return status ? Result<bool>(true) : Result<bool>(status.error());
+        }
+        if (directive.word == "version" && side_ == FlattenSide::Glsl && !sawVersion_) {
+            sawVersion_ = true;
+            return false;
+        }
+        if (directive.word == "line") {
+            int number = 0;
+            std::from_chars(directive.argument.data(), directive.argument.data() + directive.argument.size(),
+                            number);
+            file.offset = number - static_cast<int>(index) - 1;
+            return true;
+        }
+        // This is the guard's own #define.
+        const bool inGuard = !file.frames.empty() && file.frames.back().kind == FrameKind::Guard;
+        if (inGuard && directive.word == "define" && file.frames.back().line == line - 1) {
+            return true;
+        }
+        return addConditional(file, index, directive);
+    }
+    Result<bool> addConditional(File& file, std::size_t index, const Directive& directive) {
+        const int line = static_cast<int>(index) + file.offset;
+        const std::string_view word = directive.word;
+        std::vector<Frame>& frames = file.frames;
+        if (word == "if" || word == "ifdef" || word == "ifndef") {
+            if (word == "if" && directive.argument.find("__cplusplus") != std::string_view::npos) {
+                return errorAt("source-conditional", file.name, line, "#if on __cplusplus can't be decided",
+                               "write #ifdef __cplusplus or #ifndef __cplusplus");
+            }
+            Frame frame{FrameKind::Other, true, line};
+            if (directive.argument == "__cplusplus") {
+                frame = {FrameKind::Side, (word == "ifdef") == (side_ == FlattenSide::Cpp), line};
+            } else if (word == "ifndef" && opensGuard(file, index)) {
+                frame.kind = FrameKind::Guard;
+            }
+            frames.push_back(frame);
+            return frame.kind != FrameKind::Other;
+        }
+        if (word != "else" && word != "elif" && word != "endif") {
+            return false;
+        }
+        if (frames.empty()) {
+            return errorAt("source-conditional", file.name, line, fmt::format("#{} without #if", word),
+                           "open the conditional in the same file");
+        }
+        const bool isOwn = frames.back().kind != FrameKind::Other;
+        if (word == "endif") {
+            // The frame is popped first, because an #endif belongs to the text around the conditional.
+            frames.pop_back();
+            return isOwn;
+        }
+        if (isOwn && (word == "elif" || frames.back().kind == FrameKind::Guard)) {
+            return errorAt("source-conditional", file.name, line,
+                           fmt::format("#{} can't follow this conditional", word),
+                           "use #else, with #ifdef __cplusplus");
+        }
+        if (isOwn) {
+            frames.back().taken = !frames.back().taken;
+        }
+        return isOwn;
+    }
+    Status addInclude(const File& file, int line, std::string_view argument) {
+        if (argument.size() < 3 || argument.front() != '"' || argument.back() != '"') {
+            return errorAt("source-include", file.name, line, "#include without a name in quotes",
+                           "write #include \"folder/file.glsl\"");
+        }
+        const std::string_view name = argument.substr(1, argument.size() - 2);
+        if (std::ranges::find(open_, name) != open_.end()) {
+            return errorAt("source-include", file.name, line, fmt::format("\"{}\" includes itself", name),
+                           "break the cycle");
+        }
+        if (added_.contains(name)) {
+            return okStatus();
+        }
+        const std::optional<std::string_view> text = lookup_(name);
+        if (!text) {
+            return errorAt("source-include", file.name, line, fmt::format("there is no \"{}\"", name),
+                           "names are relative to the shader folder");
+        }
+        return addFile(name, *text);
+    }
+    // C++ keeps its include guards, so that the result can be included next to the headers that it was made
+    // from.
+    bool opensGuard(const File& file, std::size_t index) const {
+        if (side_ == FlattenSide::Cpp || !file.frames.empty() || index + 1 >= file.lines.size()) {
+            return false;
+        }
+        const Directive next = parseDirective(file.lines[index + 1]);
+        return next.word == "define" && next.argument == parseDirective(file.lines[index]).argument;
+    }
 
     const SourceLookup& lookup_;
     FlattenSide side_;
@@ -65,138 +186,6 @@ private:
     std::vector<std::string> open_;  // files being flattened, outermost first
     bool sawVersion_ = false;
 };
-
-Diagnostic errorAt(std::string id, std::string_view name, int line, std::string message, std::string hint) {
-    return makeError(std::move(id), fmt::format("{}:{}", name, line), std::move(message), std::move(hint));
-}
-
-bool isActive(const std::vector<Frame>& frames) {
-    return std::ranges::all_of(frames, &Frame::taken);
-}
-
-Status Flattener::addFile(std::string_view name, std::string_view text) {
-    File file{std::string(name), splitLines(text), {}, 1};
-    added_.insert(file.name);
-    open_.push_back(file.name);
-    for (std::size_t i = 0; i < file.lines.size(); ++i) {
-        GLINT_TRY(auto handled, addDirective(file, i));
-        if (!handled && isActive(file.frames)) {
-            unit_.add(file.lines[i], file.name, static_cast<int>(i) + file.offset);
-        }
-    }
-    if (!file.frames.empty()) {
-        return errorAt("source-conditional", name, file.frames.back().line, "the conditional has no #endif",
-                       "close it in the same file");
-    }
-    open_.pop_back();
-    return okStatus();
-}
-
-Result<bool> Flattener::addDirective(File& file, std::size_t index) {
-    const Directive directive = parseDirective(file.lines[index]);
-    if (directive.word.empty()) {
-        return false;
-    }
-    const int line = static_cast<int>(index) + file.offset;
-    if (directive.word == "include" && isActive(file.frames)) {
-        const bool isSystem = directive.argument.starts_with('<');
-        if (isSystem) {
-            return side_ == FlattenSide::Glsl;
-        }
-        const Status status = addInclude(file, line, directive.argument);
-        return status ? Result<bool>(true) : Result<bool>(status.error());
-    }
-    if (directive.word == "version" && side_ == FlattenSide::Glsl && !sawVersion_) {
-        sawVersion_ = true;
-        return false;
-    }
-    if (directive.word == "line") {
-        int number = 0;
-        std::from_chars(directive.argument.data(), directive.argument.data() + directive.argument.size(),
-                        number);
-        file.offset = number - static_cast<int>(index) - 1;
-        return true;
-    }
-    // This is the guard's own #define.
-    const bool inGuard = !file.frames.empty() && file.frames.back().kind == FrameKind::Guard;
-    if (inGuard && directive.word == "define" && file.frames.back().line == line - 1) {
-        return true;
-    }
-    return addConditional(file, index, directive);
-}
-
-Result<bool> Flattener::addConditional(File& file, std::size_t index, const Directive& directive) {
-    const int line = static_cast<int>(index) + file.offset;
-    const std::string_view word = directive.word;
-    std::vector<Frame>& frames = file.frames;
-    if (word == "if" || word == "ifdef" || word == "ifndef") {
-        if (word == "if" && directive.argument.find("__cplusplus") != std::string_view::npos) {
-            return errorAt("source-conditional", file.name, line, "#if on __cplusplus can't be decided",
-                           "write #ifdef __cplusplus or #ifndef __cplusplus");
-        }
-        Frame frame{FrameKind::Other, true, line};
-        if (directive.argument == "__cplusplus") {
-            frame = {FrameKind::Side, (word == "ifdef") == (side_ == FlattenSide::Cpp), line};
-        } else if (word == "ifndef" && opensGuard(file, index)) {
-            frame.kind = FrameKind::Guard;
-        }
-        frames.push_back(frame);
-        return frame.kind != FrameKind::Other;
-    }
-    if (word != "else" && word != "elif" && word != "endif") {
-        return false;
-    }
-    if (frames.empty()) {
-        return errorAt("source-conditional", file.name, line, fmt::format("#{} without #if", word),
-                       "open the conditional in the same file");
-    }
-    const bool isOwn = frames.back().kind != FrameKind::Other;
-    if (word == "endif") {
-        // The frame is popped first, because an #endif belongs to the text around the conditional.
-        frames.pop_back();
-        return isOwn;
-    }
-    if (isOwn && (word == "elif" || frames.back().kind == FrameKind::Guard)) {
-        return errorAt("source-conditional", file.name, line,
-                       fmt::format("#{} can't follow this conditional", word),
-                       "use #else, with #ifdef __cplusplus");
-    }
-    if (isOwn) {
-        frames.back().taken = !frames.back().taken;
-    }
-    return isOwn;
-}
-
-// C++ keeps its include guards, so that the result can be included next to the headers that it was made from.
-bool Flattener::opensGuard(const File& file, std::size_t index) const {
-    if (side_ == FlattenSide::Cpp || !file.frames.empty() || index + 1 >= file.lines.size()) {
-        return false;
-    }
-    const Directive next = parseDirective(file.lines[index + 1]);
-    return next.word == "define" && next.argument == parseDirective(file.lines[index]).argument;
-}
-
-Status Flattener::addInclude(const File& file, int line, std::string_view argument) {
-    if (argument.size() < 3 || argument.front() != '"' || argument.back() != '"') {
-        return errorAt("source-include", file.name, line, "#include without a name in quotes",
-                       "write #include \"folder/file.glsl\"");
-    }
-    const std::string_view name = argument.substr(1, argument.size() - 2);
-    if (std::ranges::find(open_, name) != open_.end()) {
-        return errorAt("source-include", file.name, line, fmt::format("\"{}\" includes itself", name),
-                       "break the cycle");
-    }
-    if (added_.contains(name)) {
-        return okStatus();
-    }
-    const std::optional<std::string_view> text = lookup_(name);
-    if (!text) {
-        return errorAt("source-include", file.name, line, fmt::format("there is no \"{}\"", name),
-                       "names are relative to the shader folder");
-    }
-    return addFile(name, *text);
-}
-
 }  // namespace
 
 Result<GlslUnit> flatten(std::string_view name, std::string_view text, const SourceLookup& lookup,
@@ -339,11 +328,11 @@ std::string renamedOf(std::string_view name) {
                                     : "glint_" + std::string(name);
 }
 
-using Names = std::set<std::string_view>;
+using Words = std::set<std::string_view>;
 
 // The functions, macros and constants of a text.
-Names namesOf(std::string_view glsl) {
-    Names names;
+Words namesOf(std::string_view glsl) {
+    Words names;
     for (const GlslItem& item : splitGlsl(glsl)) {
         if (!item.name.empty() && !isPublic(item.name)) {
             names.insert(item.name);
@@ -353,8 +342,8 @@ Names namesOf(std::string_view glsl) {
 }
 
 // The structs and blocks of a text.
-Names typesOf(std::string_view glsl) {
-    Names types;
+Words typesOf(std::string_view glsl) {
+    Words types;
     std::string_view before;
     forEachPiece(glsl, [&](std::string_view piece) {
         if (isName(piece) && (before == "struct" || before == "buffer") && !isPublic(piece)) {
@@ -392,8 +381,8 @@ private:
 }  // namespace
 
 std::string prefixNames(std::string_view glsl) {
-    const Names names = namesOf(glsl);
-    const Names types = typesOf(glsl);
+    const Words names = namesOf(glsl);
+    const Words types = typesOf(glsl);
     std::string text;
     text.reserve(glsl.size() + glsl.size() / 8);
     Members members;

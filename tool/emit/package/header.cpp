@@ -2,7 +2,6 @@
 
 #include "emit/context.h"
 #include "emit/material_layout.h"
-#include "emit/sources.h"
 
 #include <fmt/format.h>
 

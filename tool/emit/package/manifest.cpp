@@ -143,9 +143,6 @@ std::string stageName(const package::ModuleKey& key) {
     return alone || key.tracer != package::kTracerRayPipeline ? name : name + ", ray-pipeline";
 }
 
-using base::field;
-using base::output;
-
 namespace {
 
 // Returns the path relative to the scene's folder, because a package must not tell where it was built.

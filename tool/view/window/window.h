@@ -78,7 +78,7 @@ private:
         return *sides_[edited_];
     }
 
-    // --- builds.cpp ---
+    // --- results.cpp: builds ---
     // `changed`: files.
     void order(std::size_t side, std::span<const std::string> changed = {});
     void pollFiles();
@@ -98,7 +98,7 @@ private:
     Status followLook();
     void finishSamples();
 
-    // --- motion.cpp ---
+    // --- frames.cpp: the camera, and the moment of animations ---
     CameraView cameraView() const;
     double distanceToMiddle(const CameraView& view) const;
     void startCamera();
@@ -119,7 +119,7 @@ private:
     void nextCamera();
     void chooseLook(const Look& look);
 
-    // --- results.cpp ---
+    // --- results.cpp: measurements and files ---
     void measureExposure();
     Status writeShot(const std::string& file, const Look& shown, const LinearImage& image);
     void saveScreenshot();

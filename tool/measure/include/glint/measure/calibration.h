@@ -2,8 +2,6 @@
 // command line.
 #pragma once
 
-#include "base/json.h"
-#include "gltf/scene.h"
 #include "settings/settings.h"
 
 #include <glint/context.h>
@@ -11,13 +9,11 @@
 #include <glint/measure/observer.h>
 #include <glint/result.h>
 
-#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 
 namespace glint::compiler {
-class CacheStore;
 class ModuleCache;
 }  // namespace glint::compiler
 
@@ -42,20 +38,5 @@ Status runCalibration(const Observer& observer, const CalibrationSettings& setti
 // Errors of readFile() and writeFile(), "calibration-format".
 Result<std::optional<DeviceFile>> fitCalibration(const Observer& observer,
                                                  const std::filesystem::path& folder);
-
-// --- The report about a device ---
-
-struct DeviceReportSettings {
-    compiler::Settings render;  // device, validation, size and samples of the scene's picture
-    std::uint32_t rounds = 1;
-    std::uint32_t seed = 1;
-    bool quick = false;  // fewer cases, rays and rounds
-};
-
-// Times every strategy on five generated scenes, and on `scene` unless it is null, and makes all pipelines of
-// their packages. `cache` and `store` may be null. Errors: of the device, of compiling, "validation".
-Result<base::Json> makeDeviceReport(const Observer& observer, const DeviceReportSettings& settings,
-                                    const gltf::Scene* scene, compiler::ModuleCache* cache,
-                                    compiler::CacheStore* store);
 
 }  // namespace glint::measure

@@ -45,10 +45,10 @@ struct ViewInfo {
     // The layers that it reads. The value of "distance" is that of the source of light which the view is
     // about.
     std::vector<std::string_view> layers;
+    void (*evaluate)(const ViewInput& input, ViewValues& values) = nullptr;
     bool readsReference = false;  // it compares with another picture
     // A further layer that it reads of every source of light that has it; empty if there is none.
     std::string_view everySource{};
-    void (*evaluate)(const ViewInput& input, ViewValues& values) = nullptr;
 };
 
 // All rows, in the order in which --help lists them.
