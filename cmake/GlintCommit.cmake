@@ -1,5 +1,5 @@
 # glint_commit(TARGET): compiles the commit of the sources into TARGET, as sourceCommit() of
-# tool/measure/commit.h. Every build checks the commit, but only a new commit compiles anything.
+# glint/measure/machine.h. Every build checks the commit, but only a new commit compiles anything.
 #
 # The same file is the script that checks: cmake -DSOURCE=… -DOUTPUT=… -P GlintCommit.cmake.
 
@@ -15,7 +15,7 @@ if(CMAKE_SCRIPT_MODE_FILE)
     set(commit "unknown")
   endif()
   file(CONFIGURE OUTPUT "${OUTPUT}" @ONLY CONTENT
-       "#include \"measure/commit.h\"\n\nstd::string_view glint::measure::sourceCommit() {\n    return \"@commit@\";\n}\n")
+       "#include <glint/measure/machine.h>\n\nstd::string_view glint::measure::sourceCommit() {\n    return \"@commit@\";\n}\n")
   return()
 endif()
 

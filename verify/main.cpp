@@ -8,8 +8,6 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <cstdio>
-#include <exception>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,8 +20,7 @@ using cli::Console;
 using cli::Detail;
 
 std::string toText(const std::vector<FeatureProofOutcome>& outcomes, Detail detail) {
-    std::vector<std::vector<std::string>> rows{
-        {"feature", "proof", "undecided", "boxes", "what the bounds can't exclude"}};
+    cli::Rows rows{{"feature", "proof", "undecided", "boxes", "what the bounds can't exclude"}};
     for (const FeatureProofOutcome& outcome : outcomes) {
         const bool isOpen = outcome.state == FeatureProofState::Undecided;
         rows.push_back({outcome.feature, std::string(nameOf(outcome.state)),
@@ -73,10 +70,5 @@ int proveAndReport(const Console& console, const std::vector<std::string>& packs
 }  // namespace glint::verify
 
 int main(int argc, char** argv) {
-    try {
-        return glint::cli::runCommandLine(argc, argv, {.proveMaterials = glint::verify::proveAndReport});
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "glint: error: %s\n", error.what());
-        return glint::cli::kExitFailed;
-    }
+    return glint::cli::runCommandLine(argc, argv, {.proveMaterials = glint::verify::proveAndReport});
 }

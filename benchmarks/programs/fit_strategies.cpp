@@ -1,7 +1,7 @@
 // glint_fit_strategies: fits a device file again to the measurements of `glint bench --calibrate`. It is for
 // benchmarks/fit_strategy_costs.py, and for changes of the model in plan/strategy_cost.h.
 #include "base/files.h"
-#include "cli/bench/text.h"
+#include "cli/bench/bench.h"
 
 #include <glint/measure/device_file.h>
 

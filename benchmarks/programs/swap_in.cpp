@@ -3,7 +3,7 @@
 // and while another package of the scene replaces the first.
 #include "base/clock.h"
 #include "emit/compile.h"
-#include "emit/package/write.h"
+#include "emit/package/compiled_package.h"
 #include "synthetic/cases_scene.h"
 
 #include <glint/session/camera.h>

@@ -1,5 +1,5 @@
 // The table that glint bench --calibrate prints.
-#include "cli/bench/text.h"
+#include "cli/bench/bench.h"
 
 #include <gtest/gtest.h>
 

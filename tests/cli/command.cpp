@@ -1,6 +1,6 @@
 #include "cli/command.h"
 
-#include "cli/options/diagnostic_table.h"
+#include "cli/console.h"
 
 #include <algorithm>
 #include <array>

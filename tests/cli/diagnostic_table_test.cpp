@@ -1,5 +1,5 @@
 // Compares the table of diagnostics with the sources that make them, and with its document.
-#include "cli/options/diagnostic_table.h"
+#include "cli/console.h"
 
 #include <gtest/gtest.h>
 

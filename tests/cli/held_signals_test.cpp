@@ -1,4 +1,4 @@
-#include "cli/compile/watch.h"
+#include "cli/compile/compile.h"
 
 #include <gtest/gtest.h>
 

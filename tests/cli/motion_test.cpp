@@ -1,5 +1,5 @@
 // Tests glint render with moving scenes: its files, its pictures, and its messages.
-#include "cli/options/motion_options.h"
+#include "cli/render/arguments.h"
 #include "cli/render_command.h"
 #include "cli/schemas.h"
 #include "cli/tiny_scene.h"

@@ -1,5 +1,5 @@
 // Tests the output about pipelines and memory, as text and JSON.
-#include "cli/render/device_report.h"
+#include "cli/render/report.h"
 
 #include <gtest/gtest.h>
 

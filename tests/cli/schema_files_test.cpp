@@ -4,10 +4,10 @@
 #include "cli/render/report.h"
 #include "emit/package/manifest.h"
 #include "inspect/pipelines.h"
-#include "measure/report_json.h"
 #include "resolve/profile.h"
 
 #include <glint/measure/device_file.h>
+#include <glint/measure/report.h>
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,10 @@
 // Tests glint render --strategy auto, and the device file as the program writes and reads it.
-#include "cli/bench/text.h"
+#include "cli/bench/bench.h"
 #include "cli/planted_device.h"
 #include "cli/render_command.h"
 #include "cli/schemas.h"
 
 #include <glint/measure/device_file.h>
-#include <glint/measure/strategy_fit.h>
 #include <glint/package_modules.h>
 
 #include <algorithm>

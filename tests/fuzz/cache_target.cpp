@@ -3,7 +3,7 @@
 #include "cache/action.h"
 #include "cache/module_cache.h"
 #include "cache/store.h"
-#include "cli/compile/summary.h"
+#include "cli/compile/compile.h"
 #include "fuzz/fuzz_target.h"
 #include "fuzz/scratch_file.h"
 #include "support/temporary_folder.h"

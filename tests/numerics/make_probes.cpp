@@ -3,7 +3,7 @@
 //
 //   make_probes OUTPUT SOURCES…     OUTPUT: a folder; SOURCES: folders that includes are searched in
 #include "base/files.h"
-#include "emit/glsl/flatten.h"
+#include "emit/glsl/passes.h"
 #include "emit/material_code.h"
 #include "materials/material_model.h"
 #include "resolve/host.h"

@@ -1,6 +1,6 @@
 // Early packages, which show an edit of a pack as a draft until the whole package is made.
 #include "base/files.h"
-#include "emit/package/early.h"
+#include "emit/compile.h"
 #include "materials/declarations.h"
 #include "render/edited_scene.h"
 #include "render/pixel_test.h"

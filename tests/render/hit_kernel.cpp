@@ -1,8 +1,8 @@
 #include "render/hit_kernel.h"
 
 #include "base/files.h"
-#include "emit/glsl/flatten.h"
-#include "emit/sources.h"
+#include "emit/context.h"
+#include "emit/glsl/passes.h"
 #include "support/shared_modules.h"
 
 #include <utility>

@@ -1,10 +1,8 @@
 // The library in shaders of the tests' own, against Glint's shading; and a host of the tests' own.
-#include "emit/library.h"
-
 #include "base/files.h"
 #include "emit/compile.h"
-#include "emit/glsl/flatten.h"
-#include "emit/sources.h"
+#include "emit/context.h"
+#include "emit/glsl/passes.h"
 #include "gltf/import.h"
 #include "materials/declarations.h"
 #include "render/hit_kernel.h"

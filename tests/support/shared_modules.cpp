@@ -1,7 +1,7 @@
 #include "support/shared_modules.h"
 
-#include "emit/compile_modules.h"
 #include "emit/module_files.h"
+#include "emit/modules.h"
 #include "spirv/compiler.h"
 
 #include <optional>

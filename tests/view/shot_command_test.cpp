@@ -1,8 +1,7 @@
-#include "view/shot_command.h"
-
 #include "resolve/resolve.h"
 #include "settings/descriptor.h"
-#include "view/passes_panel.h"
+#include "view/controls.h"
+#include "view/request.h"
 
 #include <gtest/gtest.h>
 

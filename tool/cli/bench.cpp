@@ -1,18 +1,17 @@
 // glint bench: what each setting costs in time, and what it gains in accuracy.
+#include "cli/bench/bench.h"
+
 #include "base/clock.h"
+#include "base/fields.h"
 #include "base/files.h"
 #include "base/json.h"
-#include "cli/bench/arguments.h"
-#include "cli/bench/text.h"
 #include "cli/cache.h"
 #include "cli/command_line.h"
-#include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/options/options.h"
 #include "cli/options/setting_options.h"
-#include "cli/render/pipeline_cache.h"
 #include "cli/report.h"
-#include "measure/device_report.h"
-#include "measure/report_json.h"
+#include "measure/calibration_measure.h"
 
 #include <glint/measure/bench.h>
 #include <glint/measure/calibration.h>

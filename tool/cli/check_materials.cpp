@@ -2,7 +2,7 @@
 #include "base/files.h"
 #include "base/json.h"
 #include "cli/command_line.h"
-#include "cli/commands.h"
+#include "cli/options/options.h"
 #include "cli/report.h"
 #include "cli/table.h"
 #include "image/image_file.h"
@@ -52,7 +52,7 @@ std::string cellOf(const measure::CheckOutcome& outcome) {
 }
 
 std::string toText(const measure::MaterialChecksReport& report, Detail detail) {
-    std::vector<std::vector<std::string>> rows{{"feature", "tried"}};
+    Rows rows{{"feature", "tried"}};
     std::vector<std::string> limits{"limit", "-"};
     for (const measure::MaterialCheck check : measure::kMaterialChecks) {
         rows.front().emplace_back(nameOf(check));
@@ -183,21 +183,20 @@ void addCheckMaterials(CLI::App& app, Action& chosen, std::span<const char* cons
              "folders of material features (docs/material_features.md)")
         .required();
     addText(command, "--pictures", arguments->pictures, "DIR",
-            "write pictures of features; PNG files: each feature's lobe\n"
-            "over all directions for three views, and a sphere in a\n"
-            "white furnace, which is brighter than the background, or\n"
-            "red, where it creates energy; existing files are replaced");
+            "write pictures of features; PNG files: each feature's lobe over all directions for three views, "
+            "and a sphere in a white furnace, which is brighter than the background, or red, where it "
+            "creates energy; existing files are replaced");
     addInteger(command, "--samples", arguments->samples, 256, 1 << 20,
-               "sampled directions for each combination and view; more\nfind smaller errors of densities");
+               "sampled directions for each combination and view; more find smaller errors of densities");
     addInteger(command, "--combinations", arguments->combinations, 1, 4096,
-               "maximum number of parameter combinations for each feature;\n"
-               "the first are the usual values and each range's ends");
+               "maximum number of parameter combinations for each feature; the first are the usual values "
+               "and each range's ends");
     addFlag(command, "--prove", arguments->prove,
-            "prove on intervals instead, without a device; no operation\n"
-            "fails, and all results are finite and in their ranges");
+            "prove on intervals instead, without a device; no operation fails, and all results are finite "
+            "and in their ranges");
     addInteger(command, "--boxes", arguments->boxes, 1, 100000000,
-               "the most boxes of inputs for each feature; of --prove; more\n"
-               "decide a larger share");
+               "the most boxes of inputs for each feature; of --prove; more decide a larger share");
+    const OptionGroup group(command, "Device");
     addDeviceChoice(command, arguments->options.device, arguments->options.validate);
     addJobs(command, arguments->options.jobs);
     command.callback([arguments, line, companion, &command, &chosen] {

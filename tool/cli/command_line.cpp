@@ -1,22 +1,22 @@
 #include "cli/command_line.h"
 
-#include "cli/commands.h"
 #include "cli/options/options.h"
 #include "cli/options/setting_options.h"
-#include "cli/options/usage.h"
 #include "gltf/codecs/basisu.h"
-#include "measure/commit.h"
 #include "spirv/compiler.h"
 
+#include <glint/measure/machine.h>
 #include <glint/package_format.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <new>
 #include <optional>
 #include <span>
 #include <string>
@@ -117,9 +117,7 @@ int act(const Action& chosen, const ReportArguments& report) {
     return code;
 }
 
-}  // namespace
-
-int runCommandLine(int argc, const char* const* argv, const Companion& companion) {
+int run(int argc, const char* const* argv, const Companion& companion) {
     CLI::App app;
     Action chosen;
     describe(app);
@@ -168,6 +166,22 @@ int runCommandLine(int argc, const char* const* argv, const Companion& companion
         return refuse({command, message});
     }
     return act(chosen, report);
+}
+
+}  // namespace
+
+int runCommandLine(int argc, const char* const* argv, const Companion& companion) {
+    try {
+        return run(argc, argv, companion);
+    } catch (const std::bad_alloc&) {
+        std::fputs(
+            "error: the work does not fit into memory; use smaller inputs, or a machine with more"
+            " [out-of-memory]\n",
+            stderr);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "glint: error: %s\n", error.what());
+    }
+    return kExitFailed;
 }
 
 }  // namespace glint::cli

@@ -10,6 +10,10 @@
 #include <string>
 #include <vector>
 
+namespace CLI {
+class App;
+}  // namespace CLI
+
 namespace glint::view {
 struct Request;
 }  // namespace glint::view
@@ -31,7 +35,25 @@ struct Companion {
 // `missing`.
 Diagnostic startCompanion(const char* program, std::span<const char* const> line, const Diagnostic& missing);
 
-// Parses the command line and does what it says. Results go to stdout, diagnostics to stderr.
+// The subcommands. Each declares its options. If the command line names it, it sets `chosen` to its work.
+// `line` has the words of the command line, without the program.
+void addCompile(CLI::App& app, Action& chosen, std::span<const char* const> line);
+void addCompileModule(CLI::App& app, Action& chosen);
+void addExplain(CLI::App& app, Action& chosen);
+void addInspect(CLI::App& app, Action& chosen);
+void addDiff(CLI::App& app, Action& chosen);
+void addLint(CLI::App& app, Action& chosen);
+void addRender(CLI::App& app, Action& chosen);
+void addView(CLI::App& app, Action& chosen, std::span<const char* const> line, const Companion& companion);
+void addBench(CLI::App& app, Action& chosen);
+void addCompare(CLI::App& app, Action& chosen);
+void addCheckMaterials(CLI::App& app, Action& chosen, std::span<const char* const> line,
+                       const Companion& companion);
+// Call this after all other commands are added, because the script is made from their options.
+void addCompletion(CLI::App& app, Action& chosen);
+
+// Parses the command line, does what it says, and returns the exit code. Results go to stdout, diagnostics to
+// stderr. Throws nothing.
 int runCommandLine(int argc, const char* const* argv, const Companion& companion = {});
 
 }  // namespace glint::cli

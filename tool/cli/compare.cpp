@@ -3,7 +3,7 @@
 
 #include "base/files.h"
 #include "cli/command_line.h"
-#include "cli/commands.h"
+#include "cli/options/options.h"
 #include "cli/report.h"
 #include "cli/table.h"
 #include "image/flip.h"
@@ -145,9 +145,8 @@ void addCompare(CLI::App& app, Action& chosen) {
         "write a map of the relative errors: black up to 1e-4, then violet, red, orange to pale yellow at "
         "1 and above; green: NaN or infinity");
     CLI::Option& limit = addReal(command, "--max-error", *maxError, 0.0, 1e30,
-                                 "exit 1 if a relative error is above X; that is |A - B| /\n"
-                                 "max(1, |B|); also if a pixel is NaN or infinite (0 to 1e30,\n"
-                                 "default: no limit)");
+                                 "exit 1 if a relative error is above X; that is |A - B| / max(1, |B|); also "
+                                 "if a pixel is NaN or infinite (0 to 1e30, default: no limit)");
     command.callback([arguments, maxError, &limit, &chosen] {
         if (limit.count() > 0) {
             arguments->maxError = *maxError;

@@ -5,16 +5,14 @@
 #include "base/files.h"
 #include "cli/cache.h"
 #include "cli/command_line.h"
-#include "cli/commands.h"
-#include "cli/compile/arguments.h"
-#include "cli/compile/summary.h"
-#include "cli/compile/watch.h"
+#include "cli/compile/compile.h"
+#include "cli/options/options.h"
 #include "cli/report.h"
 #include "cli/table.h"
 #include "emit/module_files.h"
-#include "emit/package/embed_source.h"
-#include "emit/package/json.h"
-#include "emit/package/write.h"
+#include "emit/package/compiled_package.h"
+#include "emit/package/header.h"
+#include "emit/package/manifest.h"
 #include "gltf/import.h"
 #include "resolve/build.h"
 
@@ -197,13 +195,12 @@ std::string outputsOf(const CompileArguments& arguments) {
     return arguments.output + (both ? ", " : "") + arguments.embed;
 }
 
-std::vector<std::vector<std::string>> fieldsOf(const Outcome& outcome) {
+Rows fieldsOf(const Outcome& outcome) {
     const compiler::Plan& plan = outcome.plan;
-    std::vector<std::vector<std::string>> rows{
-        {"materials", fmt::format("{}", outcome.scenes.materials().size())},
-        {"keys possible", fmt::format("{:.0f}", plan.keysPossible)},
-        {"keys present", fmt::format("{}", plan.keys.size())},
-        {"cases", fmt::format("{}", caseCount(plan))}};
+    Rows rows{{"materials", fmt::format("{}", outcome.scenes.materials().size())},
+              {"keys possible", fmt::format("{:.0f}", plan.keysPossible)},
+              {"keys present", fmt::format("{}", plan.keys.size())},
+              {"cases", fmt::format("{}", caseCount(plan))}};
     const compiler::CompileSettings& settings = outcome.build.settings.compile;
     if (settings.strategyChoice) {
         rows.push_back({"strategies",

@@ -2,7 +2,6 @@
 // the description of the command line.
 #include "base/text.h"
 #include "cli/command_line.h"
-#include "cli/commands.h"
 #include "cli/options/options.h"
 
 #include <fmt/format.h>

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace glint::cli {
 
@@ -78,10 +80,27 @@ private:
     std::unique_ptr<State> state_;
 };
 
+// The work of a subcommand once its command line is parsed. Returns the exit code; an error is reported.
+using Action = std::function<Result<int>(const Console&)>;
+
 nlohmann::ordered_json toJson(const Diagnostic& diagnostic);
 nlohmann::ordered_json toJson(std::span<const Diagnostic> diagnostics);
 
 // Reports an error; returns the exit code of a command that failed.
 int fail(const Console& console, const Diagnostic& error);
+
+// --- Every diagnostic that Glint makes, by id: what -W and --werror take. docs/diagnostics.md explains them
+// ---
+
+inline constexpr std::uint8_t kNote = 1;
+inline constexpr std::uint8_t kWarning = 2;
+inline constexpr std::uint8_t kError = 4;
+inline constexpr std::uint8_t kAnySeverity = kNote | kWarning | kError;
+
+// Returns the ids of the diagnostics that come with any of the severities (bits), sorted.
+std::vector<std::string> diagnosticIds(std::uint8_t severities = kAnySeverity);
+
+// Returns the severities with which diagnostics of that id come, or 0 if there is none.
+std::uint8_t severitiesOf(std::string_view id);
 
 }  // namespace glint::cli

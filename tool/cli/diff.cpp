@@ -2,7 +2,7 @@
 #include "inspect/diff.h"
 
 #include "cli/command_line.h"
-#include "cli/commands.h"
+#include "cli/options/options.h"
 #include "cli/report.h"
 #include "cli/table.h"
 
@@ -21,8 +21,6 @@ struct DiffSides {
     const inspect::DiffPackage& before;
     const inspect::DiffPackage& after;
 };
-
-using Rows = std::vector<std::vector<std::string>>;
 
 // A scene may have a hundred thousand materials, and nobody reads more than a page of them.
 constexpr std::size_t kMaxMaterials = 40;
@@ -46,7 +44,7 @@ std::string shaderAt(const std::vector<int>& ids, std::size_t place, const inspe
 }
 
 // Returns "+1: normals" for one key, "+3" for several.
-std::string keyCount(char sign, const std::vector<std::vector<std::string>>& keys) {
+std::string keyCount(char sign, const Rows& keys) {
     if (keys.empty()) {
         return {};
     }

@@ -2,12 +2,11 @@
 #include "base/text.h"
 #include "cli/cache.h"
 #include "cli/command_line.h"
-#include "cli/commands.h"
-#include "cli/explain/text.h"
+#include "cli/options/options.h"
 #include "cli/options/setting_options.h"
 #include "cli/report.h"
 #include "cli/table.h"
-#include "emit/package/json.h"
+#include "emit/package/manifest.h"
 #include "gltf/import.h"
 #include "plan/gpu_costs.h"
 #include "scene/deformed.h"
@@ -156,7 +155,7 @@ base::Json motionToJson(const gltf::Scene& scene) {
 
 // Returns an empty text if nothing moves.
 std::string motionText(const gltf::Scene& scene) {
-    std::vector<std::vector<std::string>> rows;
+    Rows rows;
     for (std::size_t i = 0; i < scene.animations.size(); ++i) {
         const gltf::Animation& animation = scene.animations[i];
         std::string channels;
@@ -194,7 +193,7 @@ struct ExplainArguments {
 
 std::string toText(const compiler::Build& build, int material, Detail detail) {
     const std::string text = fmt::format("material {}: {}\n", material, build.scenes->materialName(material));
-    const std::vector<std::vector<std::string>> rows = materialRows(build, material, detail);
+    const Rows rows = materialRows(build, material, detail);
     return text + (rows.empty() ? "  no primitive uses it: no key, no shader\n" : formatFields(rows, detail));
 }
 
@@ -241,7 +240,7 @@ base::Json sameImagesToJson(const gltf::Scene& scene) {
 
 // Returns an empty text if no image has the texels of another one.
 std::string sameImagesText(const gltf::Scene& scene) {
-    std::vector<std::vector<std::string>> rows;
+    Rows rows;
     for (const gltf::Image& image : scene.images) {
         if (image.sameAs >= 0) {
             rows.push_back(
@@ -280,7 +279,7 @@ Result<std::vector<int>> chooseMaterials(const gltf::SceneList& scenes, const st
 
 // Returns a line for each effect: whether it is chosen, and why.
 std::string effectsText(const compiler::EffectPlan& plan) {
-    std::vector<std::vector<std::string>> rows{{"effect", "auto", "why"}};
+    Rows rows{{"effect", "auto", "why"}};
     for (const compiler::EffectDecision& decision : plan.decisions) {
         rows.push_back({decision.name, decision.chosen ? "yes" : "no", decision.reason});
     }
@@ -418,12 +417,10 @@ void addExplain(CLI::App& app, Action& chosen) {
                                    "--variant", "--verbose", "--json"}});
     addText(command, "SCENE", arguments->scene, "FILE", "the scene, .gltf or .glb").required();
     CLI::Option& material = addText(command, "--material", arguments->material, "NAME|INDEX",
-                                    "show only this material; numbers count from 0 (default:\n"
-                                    "all)");
+                                    "show only this material; numbers count from 0 (default: all)");
     addFlag(command, "--plan", arguments->wholePlan,
-            "show the shaders instead of the materials: what each\n"
-            "costs by the cost model of --merge auto, which keys share\n"
-            "it, and why")
+            "show the shaders instead of the materials: what each costs by the cost model of --merge auto, "
+            "which keys share it, and why")
         .excludes(&material);
     addReadingOptions(command, arguments->settings);
     addCalibration(command, arguments->settings);

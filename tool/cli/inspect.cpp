@@ -1,10 +1,10 @@
 // glint inspect: shows the contents of a package.
 #include "cli/command_line.h"
-#include "cli/commands.h"
 #include "cli/inspect/pipelines.h"
+#include "cli/options/options.h"
 #include "cli/report.h"
 #include "cli/table.h"
-#include "emit/package/json.h"
+#include "emit/package/manifest.h"
 #include "inspect/package.h"
 #include "plan/plan.h"
 #include "resolve/resolve.h"
@@ -106,8 +106,7 @@ std::string skyOf(const Package& package) {
 }
 
 std::string sceneTable(const inspect::InspectedPackage& inspected) {
-    std::vector<std::vector<std::string>> rows{
-        {"scene", "variant", "materials", "primitives", "textures", "samplers"}};
+    Rows rows{{"scene", "variant", "materials", "primitives", "textures", "samplers"}};
     for (std::uint32_t i = 0; i < inspected.package.sceneCount(); ++i) {
         const PackageScene scene = inspected.package.scene(i);
         const std::string variant = inspected.variantOf(i);
@@ -137,7 +136,7 @@ std::string featuresText(const materials::MaterialModel& model, materials::Featu
 }
 
 std::string shaderTable(const inspect::InspectedPackage& inspected, Detail detail) {
-    std::vector<std::vector<std::string>> rows{{"shader", "keys", "always", "sometimes", "materials"}};
+    Rows rows{{"shader", "keys", "always", "sometimes", "materials"}};
     std::uint32_t id = 0;
     for (const package::CaseEntry& shader : inspected.package.cases()) {
         rows.push_back({shaderTitle(id, inspected.package.string(shader.name), detail),
@@ -162,8 +161,7 @@ std::string titleOf(const inspect::InspectedModule& module) {
 }
 
 std::string moduleTable(const inspect::InspectedPackage& inspected, Detail detail) {
-    std::vector<std::vector<std::string>> rows{
-        {"module", "tracer", "file", "bytes", "instructions", "fetches", "queries", "branches"}};
+    Rows rows{{"module", "tracer", "file", "bytes", "instructions", "fetches", "queries", "branches"}};
     for (const inspect::InspectedModule& module : inspected.modules) {
         const std::string tracer = tracerName(module.key());
         const compiler::SpirvStatistics& it = module.statistics;
@@ -357,9 +355,8 @@ void addInspect(CLI::App& app, Action& chosen) {
               .usual = {"--disassemble", "--verbose", "--json"}});
     addText(command, "DIR", arguments->folder, "DIR", "folder of the package").required();
     addText(command, "--disassemble", arguments->disassemble, "ID|NAME",
-            "print modules as SPIR-V assembly instead: those of a\n"
-            "shader by ID or name, of a role, or of a file (default:\n"
-            "off)");
+            "print modules as SPIR-V assembly instead: those of a shader by ID or name, of a role, or of a "
+            "file (default: off)");
     addPipelineReportOptions(command, arguments->pipelines);
     command.get_option("--disassemble")->excludes(command.get_option("--pipelines"));
     command.callback([arguments, &chosen] {

@@ -2,7 +2,7 @@
 #include "inspect/lint.h"
 
 #include "cli/command_line.h"
-#include "cli/commands.h"
+#include "cli/options/options.h"
 #include "cli/report.h"
 #include "cli/table.h"
 
@@ -110,8 +110,7 @@ std::string toText(const inspect::LintReport& report, Detail detail) {
     // Files are named after their shaders, so the short table has their names alone.
     const bool hasNames = detail == Detail::Whole && std::ranges::any_of(report.modules, isNamed);
     const bool hasCycles = std::ranges::any_of(report.modules, isEstimated);
-    std::vector<std::vector<std::string>> rows{
-        {"file", "instructions", "fetches", "queries", "traces", "errors", "warnings"}};
+    Rows rows{{"file", "instructions", "fetches", "queries", "traces", "errors", "warnings"}};
     if (detail == Detail::Whole) {
         rows[0] = {"file",   "stage",     "instructions", "fetches", "queries",
                    "traces", "functions", "errors",       "warnings"};
@@ -273,8 +272,8 @@ void addLint(CLI::App& app, Action& chosen) {
     addBudget(command, "--max-texture-fetches", arguments->textureFetches, "texture fetches");
     addBudget(command, "--max-ray-queries", arguments->rayQueries, "ray queries");
     addText(command, "--malioc", arguments->malioc, "PROGRAM",
-            "Arm's Mali Offline Compiler; for cycles and registers\n"
-            "of compute shaders (default: malioc, if PATH has it)");
+            "Arm's Mali Offline Compiler; for cycles and registers of compute shaders (default: malioc, if "
+            "PATH has it)");
     addText(command, "--core", arguments->core, "NAME",
             "the GPU that malioc compiles for (default: malioc's)");
     command.callback([arguments, &chosen] {

@@ -1,20 +1,13 @@
+// The programs glint and, with the window linked in, glint-view.
 #include "cli/command_line.h"
-
-#include <cstdio>
-#include <exception>
-#include <new>
+#ifdef GLINT_WINDOW
+#include "view/request.h"
+#endif
 
 int main(int argc, char** argv) {
-    try {
-        return glint::cli::runCommandLine(argc, argv);
-    } catch (const std::bad_alloc&) {
-        std::fputs(
-            "error: the work does not fit into memory; use smaller inputs, or a machine with more"
-            " [out-of-memory]\n",
-            stderr);
-        return glint::cli::kExitFailed;
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "glint: error: %s\n", error.what());
-        return glint::cli::kExitFailed;
-    }
+#ifdef GLINT_WINDOW
+    return glint::cli::runCommandLine(argc, argv, {.showWindow = glint::view::showWindow});
+#else
+    return glint::cli::runCommandLine(argc, argv);
+#endif
 }

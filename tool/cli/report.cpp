@@ -1,7 +1,7 @@
 #include "cli/report.h"
 
 #include "cli/table.h"
-#include "emit/package/json.h"
+#include "emit/package/manifest.h"
 
 #include <glint/package_modules.h>
 #include <glint/renderer_options.h>
@@ -62,7 +62,7 @@ std::string featureList(const materials::MaterialModel& model, materials::Featur
 }
 
 std::string droppedText(const compiler::Plan& plan) {
-    std::vector<std::vector<std::string>> rows;
+    Rows rows;
     for (const compiler::DroppedFeature& dropped : plan.dropped) {
         rows.push_back(
             {"  " + dropped.feature, base::counted(dropped.materials.size(), "material"), dropped.reason});
@@ -165,8 +165,7 @@ base::Fields fieldsOf(const TrafficReport*) {
 }
 
 std::string toText(const TrafficReport& report) {
-    std::vector<std::vector<std::string>> rows{
-        {"bytes moved by", "for each", "of which", "read", "written", "a pixel"}};
+    Rows rows{{"bytes moved by", "for each", "of which", "read", "written", "a pixel"}};
     for (const TrafficRow& row : trafficRows(report.shape)) {
         const double count = report.counts[row.unit];
         rows.push_back(
@@ -201,7 +200,7 @@ std::string trafficTable(const Package& package) {
     for (const Named<TrafficUnit>& unit : kTrafficUnitNames) {
         header.emplace_back(unit.name);
     }
-    std::vector<std::vector<std::string>> rows{std::move(header)};
+    Rows rows{std::move(header)};
     forEachStrategy(package, [&](const package::StrategyInfo& info) {
         std::vector<std::string>& row = rows.emplace_back();
         row.emplace_back(info.name);

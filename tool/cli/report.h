@@ -3,10 +3,12 @@
 
 #include "base/fields.h"
 #include "cli/console.h"
+#include "cli/table.h"
 #include "emit/compile.h"
-#include "emit/package/json.h"
+#include "emit/package/manifest.h"
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
+#include "resolve/build.h"
 
 #include <glint/frame_traffic.h>
 #include <glint/package.h>
@@ -59,5 +61,22 @@ base::Fields fieldsOf(const StrategyTraffic*);
 // The bytes that frames of a package move for each pixel, ray and hit, by strategy.
 std::vector<StrategyTraffic> trafficOf(const Package& package);
 std::string trafficTable(const Package& package);
+
+// --- The texts of glint explain: cases and their costs, strategies, materials with their keys ---
+
+std::string planText(const compiler::Build& build, Detail detail);
+
+// Returns the members that `explain --plan --json` adds to the plan's options: docs/cli.md lists them.
+base::Json planToJson(const compiler::Build& build);
+
+// Returns a table of milliseconds, the recommended strategy and the reason.
+std::string strategiesText(const compiler::StrategyAdvice& advice);
+
+// --- The text of glint explain about a material: its keys and cases, and why ---
+
+// Returns rows of a label and a text. There are none if no primitive has the material.
+Rows materialRows(const compiler::Build& build, int material, Detail detail);
+// Returns a member of `materials` of `explain --json`: docs/cli.md lists its members.
+base::Json materialToJson(const compiler::Build& build, int material);
 
 }  // namespace glint::cli

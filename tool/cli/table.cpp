@@ -11,8 +11,6 @@ namespace glint::cli {
 
 namespace {
 
-using Rows = std::vector<std::vector<std::string>>;
-
 // Counts characters, not bytes, so that names in UTF-8 line up.
 std::size_t displayWidth(const std::string& text) {
     return static_cast<std::size_t>(std::count_if(

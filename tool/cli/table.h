@@ -17,6 +17,9 @@ enum class Detail : std::uint8_t {
     Whole,  // everything, with --verbose
 };
 
+// Cells by row.
+using Rows = std::vector<std::vector<std::string>>;
+
 // The length of a line with Detail::Short, in characters. Tables of many columns may take up to
 // kMostTableWidth, and more only if their numbers alone do.
 inline constexpr std::size_t kTableWidth = 80;
@@ -26,14 +29,14 @@ inline constexpr std::size_t kMostTableWidth = 100;
 // cell below the first row begins with a digit or is "-", and none is the title of a shader. Missing cells
 // are empty. With Detail::Short the widest columns of text are cut, with "…" at the end, or at the beginning
 // of a path.
-std::string formatTable(const std::vector<std::vector<std::string>>& rows, Detail detail = Detail::Short);
+std::string formatTable(const Rows& rows, Detail detail = Detail::Short);
 
 // Formats the same as a table in Markdown, with nothing cut.
-std::string formatMarkdown(const std::vector<std::vector<std::string>>& rows);
+std::string formatMarkdown(const Rows& rows);
 
 // Formats lines of "label  value" with padded labels. With Detail::Short the last cell of a row is wrapped at
 // spaces, and continues below itself.
-std::string formatFields(const std::vector<std::vector<std::string>>& rows, Detail detail = Detail::Short);
+std::string formatFields(const Rows& rows, Detail detail = Detail::Short);
 
 // Returns the text with line breaks instead of some spaces, so that its lines have at most `width`
 // characters unless a word is longer. Existing line breaks stay, and lines that begin with a space are not

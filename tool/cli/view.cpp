@@ -1,10 +1,9 @@
 // glint view: shows a scene in a window.
 #include "cli/cache.h"
 #include "cli/command_line.h"
-#include "cli/commands.h"
-#include "cli/explain/text.h"
+#include "cli/options/options.h"
 #include "cli/render/arguments.h"
-#include "cli/render/pipeline_cache.h"
+#include "cli/report.h"
 #include "view/request.h"
 
 #include <algorithm>
@@ -85,17 +84,14 @@ void addView(CLI::App& app, Action& chosen, std::span<const char* const> line, c
     arguments->samples = kSamplesInWindow;
     addSceneOptions(command, *arguments);
     addPackageOption(command, *arguments, "; and the next one when it is written (glint compile --watch)");
-    const std::string group = "Window";
-    addMoment(command, arguments->motion, "begin", group);
-    addFlag(command, "--play", arguments->plays, "begin to play the animation").group(group);
-    addFlag(command, "--panel", arguments->panel, "begin with the panel; Tab shows and hides it")
-        .group(group);
+    const OptionGroup group(command, "Window");
+    addMoment(command, arguments->motion, "begin");
+    addFlag(command, "--play", arguments->plays, "begin to play the animation");
+    addFlag(command, "--panel", arguments->panel, "begin with the panel; Tab shows and hides it");
     addText(command, "--screenshots", arguments->folder, "DIR",
-            "where screenshots are written, under new names (default:\nhere)")
-        .group(group);
+            "where screenshots are written, under new names (default: here)");
     addText(command, "--script", arguments->script, "FILE",
-            "replay keys, mouse moves and clicks (docs/view.md), for\ntests and tours")
-        .group(group);
+            "replay keys, mouse moves and clicks (docs/view.md), for tests and tours");
     command.callback([arguments, line, companion, &command, &chosen] {
         checkPackageChoice(command);
         checkSceneOptions(command, *arguments);

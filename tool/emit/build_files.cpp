@@ -1,5 +1,3 @@
-#include "emit/build_files.h"
-
 #include "base/files.h"
 #include "base/text.h"
 #include "emit/module_files.h"

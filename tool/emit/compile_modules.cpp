@@ -1,8 +1,7 @@
-#include "emit/compile_modules.h"
-
 #include "base/parallel.h"
 #include "cache/module_cache.h"
 #include "emit/module_files.h"
+#include "emit/modules.h"
 #include "emit/warm_modules.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #include "emit/context.h"
 
-#include "settings/compile_settings.h"
+#include "settings/settings.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,7 +1,6 @@
-#include "emit/effects.h"
-
+#include "emit/context.h"
 #include "emit/material_layout.h"
-#include "resolve/layers.h"
+#include "resolve/light.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -45,16 +44,14 @@ mustache::data fieldsOf(const LayerEntry& entry, const Plan& plan) {
     const package::LayerFormatInfo& format = package::infoOf(info.format);
     const auto place = std::ranges::find(plan.layers, entry) - plan.layers.begin();
     const std::string variable = variableNamed(layerNameOf(entry, *plan.model));
-    mustache::data fields;
-    fields.set("binding", fmt::format("kBindingLayers + {}u", place));
-    fields.set("qualifier", std::string(format.qualifier));
-    fields.set("image", info.format == package::LayerFormat::Integer ? "uimage2D" : "image2D");
-    fields.set("value", variable);
-    fields.set("variable", variable + "Layer");
-    fields.set("function", std::string(info.function));
-    fields.set("absent", std::string(info.absent));
-    fields.set("isMean", mustache::data(info.mean == package::LayerMean::Mean));
-    return fields;
+    return mustache::object{{"binding", fmt::format("kBindingLayers + {}u", place)},
+                            {"qualifier", std::string(format.qualifier)},
+                            {"image", info.format == package::LayerFormat::Integer ? "uimage2D" : "image2D"},
+                            {"value", variable},
+                            {"variable", variable + "Layer"},
+                            {"function", std::string(info.function)},
+                            {"absent", std::string(info.absent)},
+                            {"isMean", info.mean == package::LayerMean::Mean}};
 }
 
 const LayerEntry* findEntry(const Plan& plan, std::string_view layer, package::Effect effect,
@@ -83,13 +80,12 @@ mustache::data lightFields(const Plan& plan, package::Effect effect, std::uint32
     fields.set("radiance", variableOf(*radiance, plan));
     for (const char* const name : {"demodulated", "variance"}) {
         const LayerEntry* const entry = findEntry(plan, prefix + name, effect, bounce);
-        mustache::data own(false);
-        if (entry != nullptr) {
-            own = mustache::data();
-            own.set("variable", variableOf(*entry, plan));
-            own.set("albedo", demodulates(infoOf(*entry)) ? albedoVariable(plan, effect) : std::string());
-        }
-        fields.set(name, own);
+        fields.set(name,
+                   entry == nullptr
+                       ? mustache::data(false)
+                       : mustache::data(mustache::object{
+                             {"variable", variableOf(*entry, plan)},
+                             {"albedo", demodulates(infoOf(*entry)) ? albedoVariable(plan, effect) : ""}}));
     }
     return fields;
 }
@@ -101,10 +97,8 @@ mustache::data imageFields(const Plan& plan, std::string_view layer, package::Ef
     if (found == nullptr) {
         return false;
     }
-    mustache::data fields;
-    fields.set("variable", variableOf(*found, plan));
-    fields.set("shows", declarationOf(*plan.model, effect).shows);
-    return fields;
+    return mustache::object{{"variable", variableOf(*found, plan)},
+                            {"shows", declarationOf(*plan.model, effect).shows}};
 }
 
 // The macro GLINT_SLOTS_READ(features): a bit for each texture of a record that a surface with these features
@@ -212,13 +206,10 @@ void addTallies(mustache::data& context, const Plan& plan) {
     }
     mustache::data kept(mustache::data::type::list);
     for (const auto& [info, ofSources] : images) {
-        mustache::data fields;
-        fields.set("macro", std::string(info->tally));
         std::string name = variableNamed(info->name);
         name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
-        fields.set("name", name);
-        fields.set("images", ofSources);
-        kept.push_back(fields);
+        kept.push_back(
+            mustache::object{{"macro", std::string(info->tally)}, {"name", name}, {"images", ofSources}});
     }
     context.set("tallies", tallies);
     context.set("added", added);
@@ -281,10 +272,7 @@ void addLayersOf(mustache::data& entry, const Plan& plan, package::Effect effect
     const mustache::data shader = imageFields(plan, "hit-shader", effect);
     mustache::data rays(!distance.is_false() || !motion.is_false() || !shader.is_false());
     if (rays.is_true()) {
-        rays = mustache::data();
-        rays.set("distance", distance);
-        rays.set("motion", motion);
-        rays.set("shader", shader);
+        rays = mustache::object{{"distance", distance}, {"motion", motion}, {"shader", shader}};
     }
     entry.set("rayLayers", rays);
 
@@ -293,20 +281,16 @@ void addLayersOf(mustache::data& entry, const Plan& plan, package::Effect effect
         const mustache::data ofBounce = lightFields(plan, effect, bounce);
         const mustache::data length = imageFields(plan, "bounce-distance", effect, bounce);
         if (!ofBounce.is_false() || !length.is_false()) {
-            mustache::data fields;
-            fields.set("bounce", fmt::format("{}", bounce));
-            fields.set("slice", fmt::format("{}", bounce - 1));
-            fields.set("isFirst", mustache::data(bounce == 1));
-            fields.set("light", ofBounce);
-            fields.set("distance", length);
-            bounces.push_back(fields);
+            bounces.push_back(mustache::object{{"bounce", std::to_string(bounce)},
+                                               {"slice", std::to_string(bounce - 1)},
+                                               {"isFirst", bounce == 1},
+                                               {"light", ofBounce},
+                                               {"distance", length}});
         }
     }
     entry.set("bounceLayers", bounces);
     entry.set("storesLight", mustache::data(!light.is_false() || bounces.is_non_empty_list()));
 }
-
-namespace mustache = kainjow::mustache;
 
 namespace {
 

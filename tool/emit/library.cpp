@@ -1,12 +1,8 @@
-#include "emit/library.h"
-
 #include "cache/module_cache.h"
+#include "emit/compile.h"
 #include "emit/context.h"
-#include "emit/glsl/flatten.h"
-#include "emit/glsl/prune.h"
-#include "emit/glsl/readable.h"
+#include "emit/glsl/passes.h"
 #include "emit/material_code.h"
-#include "emit/sources.h"
 #include "resolve/host.h"
 #include "spirv/compiler.h"
 

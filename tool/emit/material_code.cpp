@@ -57,11 +57,10 @@ mustache::data stageOf(const materials::MaterialModel& model,
         if ((one->*file).empty()) {
             continue;
         }
-        mustache::data entry;
-        entry.set("name", one->name);
         const std::string condition = conditionOf(model, *one, asked);
-        entry.set("when", condition.empty() ? mustache::data(false) : mustache::data(condition));
-        list.push_back(std::move(entry));
+        list.push_back(mustache::object{
+            {"name", one->name},
+            {"when", condition.empty() ? mustache::data(false) : mustache::data(condition)}});
     }
     return list;
 }
@@ -80,9 +79,7 @@ mustache::data includesOf(const std::vector<const materials::FeatureCode*>& code
     }
     mustache::data list(mustache::data::type::list);
     for (const std::string& file : files) {
-        mustache::data entry;
-        entry.set("file", file);
-        list.push_back(std::move(entry));
+        list.push_back(mustache::object{{"file", file}});
     }
     return list;
 }
@@ -98,19 +95,17 @@ void addLayers(mustache::data& context, const materials::MaterialModel& model,
         if (layer->layer.empty()) {
             continue;
         }
-        mustache::data entry;
-        entry.set("name", layer->name);
-        entry.set("type", typeName(layer->name));
-        entry.set("macro", model.features[static_cast<std::size_t>(layer->feature)].macro);
-        entry.set("file", layer->layer);
-        entry.set("coversEmission", mustache::data(layer->coversEmission));
-        entry.set("isMirror", mustache::data(layer->isTraced));
+        mustache::data entry(
+            mustache::object{{"name", layer->name},
+                             {"type", typeName(layer->name)},
+                             {"macro", model.features[static_cast<std::size_t>(layer->feature)].macro},
+                             {"file", layer->layer},
+                             {"coversEmission", layer->coversEmission},
+                             {"isMirror", layer->isTraced}});
         mustache::data below(mustache::data::type::list);
         mustache::data mirrorsBelow(mustache::data::type::list);
         for (const materials::FeatureCode* const one : lower) {
-            mustache::data pair;
-            pair.set("name", one->name);
-            pair.set("upper", layer->name);
+            const mustache::object pair{{"name", one->name}, {"upper", layer->name}};
             below.push_back(pair);
             if (one->isTraced) {
                 mirrorsBelow.push_back(pair);
@@ -129,12 +124,10 @@ void addLayers(mustache::data& context, const materials::MaterialModel& model,
     mustache::data diffuse(mustache::data::type::list);
     for (const materials::FeatureCode* const one : code) {
         if (!one->diffuse.empty()) {
-            mustache::data entry;
-            entry.set("name", one->name);
-            entry.set("type", typeName(one->name));
-            entry.set("file", one->diffuse);
-            entry.set("when", conditionOf(model, *one, Asked::OfModule));
-            diffuse.push_back(std::move(entry));
+            diffuse.push_back(mustache::object{{"name", one->name},
+                                               {"type", typeName(one->name)},
+                                               {"file", one->diffuse},
+                                               {"when", conditionOf(model, *one, Asked::OfModule)}});
         }
     }
     context.set("diffuse", diffuse);

@@ -3,7 +3,7 @@
 #include "base/files.h"
 #include "cache/store.h"
 #include "emit/context.h"
-#include "emit/glsl/prune.h"
+#include "emit/glsl/passes.h"
 #include "emit/warm_modules.h"
 #include "spirv/statistics.h"
 

@@ -1,14 +1,13 @@
 #include "emit/modules.h"
 
 #include "emit/context.h"
-#include "emit/effects.h"
 #include "emit/material_code.h"
 #include "emit/source_set.h"
 #include "emit/warm_modules.h"
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
 #include "resolve/build.h"
-#include "settings/compile_settings.h"
+#include "settings/settings.h"
 
 #include <glint/result.h>
 
@@ -31,6 +30,10 @@ namespace {
 // --- The parts of shaders that choose among cases: the entry point with the switch, and each case by itself
 // ---
 
+constexpr std::string_view kSwitchFile = "generated/cases.glsl";
+constexpr std::string_view kEmitterFile = "light/emitter.glsl";
+constexpr std::string_view kSwitchTemplate = "cases.glsl.mustache";
+constexpr std::string_view kPartTemplate = "case_part.comp.mustache";
 // A case's part knows its own features only, as the case's shader of the strategy `visibility` does, and
 // traces no ray. So it is the same for every strategy and tracer.
 class SwitchParts {
@@ -50,17 +53,82 @@ public:
           ofEmitters_(ofEmitters) {}
 
     // Makes the texts of the switch. Has the errors of renderTemplate().
-    Status makeSwitches();
+    Status makeSwitches() {
+        kainjow::mustache::data context = context_;
+        for (const bool fallbackAlone : {false, true}) {
+            if (fallbackAlone) {
+                context.set("cases", kainjow::mustache::data(kainjow::mustache::data::type::list));
+            }
+            for (const bool apart : {false, true}) {
+                context.set("apart", apart);
+                GLINT_TRY(auto text, renderTemplate(sources_, kSwitchTemplate, context));
+                SourceSet& to = (apart ? head_ : whole_)[fallbackAlone ? 1 : 0];
+                to.add(std::string(kSwitchFile), std::move(text));
+                if (apart && settings_.emissiveLights != EmissiveLights::On) {
+                    // The emission of lights is the only code of materials that the switch would have, and an
+                    // edit of that code would change the switch.
+                    to.add(std::string(kEmitterFile), "");
+                }
+            }
+        }
+        return okStatus();
+    }
     // Returns the switch with the code of its cases: all of them, or the fallback alone.
     const SourceSet& wholeSwitch(bool fallbackAlone) const {
         return whole_[fallbackAlone ? 1 : 0];
     }
     // Adds the parts of a module whose text is `text`. Has the errors of renderTemplate().
     Status addTo(ModuleSource& module, const std::string& origin, const std::string& text,
-                 bool fallbackAlone);
+                 bool fallbackAlone) {
+        std::vector<Case> cases;
+        if (!fallbackAlone) {
+            for (const Case& shaderCase : plan_.cases) {
+                if (!shaderCase.isRetired()) {
+                    cases.push_back(shaderCase);
+                }
+            }
+        }
+        if (settings_.plan.fallback) {
+            cases.push_back(fallbackCase(plan_));
+        }
+        if (cases.empty()) {
+            return okStatus();
+        }
+        std::vector<std::shared_ptr<const ModuleSource>> parts;
+        for (const Case& shaderCase : cases) {
+            GLINT_TRY(auto part, partOf(shaderCase));
+            module.functionsApart.push_back(part->link->exported.front());
+            parts.push_back(std::move(part));
+        }
+        const std::shared_ptr<ModuleSource> head = makeHead(module, module.functionsApart);
+        module.parts.push_back(head);
+        std::ranges::move(parts, std::back_inserter(module.parts));
+        drafts_.add(head, origin, text, head_[fallbackAlone ? 1 : 0]);
+        return okStatus();
+    }
 
 private:
-    Result<std::shared_ptr<const ModuleSource>> partOf(const Case& shaderCase);
+    Result<std::shared_ptr<const ModuleSource>> partOf(const Case& shaderCase) {
+        const std::string function = "shade" + shaderCase.name;
+        std::shared_ptr<const ModuleSource>& made = made_[function];
+        if (made) {
+            return made;
+        }
+        GLINT_TRY(auto code, codeOfCases_.find(shaderCase.always | shaderCase.sometimes | ofEmitters_));
+        kainjow::mustache::data context = context_;
+        addCase(context, scenes_, *plan_.model, shaderCase);
+        GLINT_TRY(auto text, renderTemplate(sources_, kPartTemplate, context));
+        insertPartDefines(text, settings_.precision);
+        const std::shared_ptr<ModuleSource> part = makePart(function + ".part", {function});
+        if (settings_.emissiveLights == EmissiveLights::On) {
+            // It shades a point on an emissive triangle, whatever the case. Inlined, it would be a quarter of
+            // each case; apart, it is equal in all parts, and the joined shader has it once.
+            part->functionsApart.emplace_back("sampleEmitter");
+        }
+        drafts_.add(part, part->name, std::move(text), *code);
+        made = part;
+        return made;
+    }
 
     const kainjow::mustache::data context_;
     const gltf::SceneList& scenes_;
@@ -74,84 +142,6 @@ private:
     SourceSet head_[2];                                                // switches whose cases have no code
     std::map<std::string, std::shared_ptr<const ModuleSource>> made_;  // by the function's name
 };
-
-constexpr std::string_view kSwitchFile = "generated/cases.glsl";
-constexpr std::string_view kEmitterFile = "light/emitter.glsl";
-constexpr std::string_view kSwitchTemplate = "cases.glsl.mustache";
-constexpr std::string_view kPartTemplate = "case_part.comp.mustache";
-
-Status SwitchParts::makeSwitches() {
-    kainjow::mustache::data context = context_;
-    for (const bool fallbackAlone : {false, true}) {
-        if (fallbackAlone) {
-            context.set("cases", kainjow::mustache::data(kainjow::mustache::data::type::list));
-        }
-        for (const bool apart : {false, true}) {
-            context.set("apart", apart);
-            GLINT_TRY(auto text, renderTemplate(sources_, kSwitchTemplate, context));
-            SourceSet& to = (apart ? head_ : whole_)[fallbackAlone ? 1 : 0];
-            to.add(std::string(kSwitchFile), std::move(text));
-            if (apart && settings_.emissiveLights != EmissiveLights::On) {
-                // The emission of lights is the only code of materials that the switch would have, and an
-                // edit of that code would change the switch.
-                to.add(std::string(kEmitterFile), "");
-            }
-        }
-    }
-    return okStatus();
-}
-
-Result<std::shared_ptr<const ModuleSource>> SwitchParts::partOf(const Case& shaderCase) {
-    const std::string function = "shade" + shaderCase.name;
-    std::shared_ptr<const ModuleSource>& made = made_[function];
-    if (made) {
-        return made;
-    }
-    GLINT_TRY(auto code, codeOfCases_.find(shaderCase.always | shaderCase.sometimes | ofEmitters_));
-    kainjow::mustache::data context = context_;
-    addCase(context, scenes_, *plan_.model, shaderCase);
-    GLINT_TRY(auto text, renderTemplate(sources_, kPartTemplate, context));
-    insertPartDefines(text, settings_.precision);
-    const std::shared_ptr<ModuleSource> part = makePart(function + ".part", {function});
-    if (settings_.emissiveLights == EmissiveLights::On) {
-        // It shades a point on an emissive triangle, whatever the case. Inlined, it would be a quarter of
-        // each case; apart, it is equal in all parts, and the joined shader has it once.
-        part->functionsApart.emplace_back("sampleEmitter");
-    }
-    drafts_.add(part, part->name, std::move(text), *code);
-    made = part;
-    return made;
-}
-
-Status SwitchParts::addTo(ModuleSource& module, const std::string& origin, const std::string& text,
-                          bool fallbackAlone) {
-    std::vector<Case> cases;
-    if (!fallbackAlone) {
-        for (const Case& shaderCase : plan_.cases) {
-            if (!shaderCase.isRetired()) {
-                cases.push_back(shaderCase);
-            }
-        }
-    }
-    if (settings_.plan.fallback) {
-        cases.push_back(fallbackCase(plan_));
-    }
-    if (cases.empty()) {
-        return okStatus();
-    }
-    std::vector<std::shared_ptr<const ModuleSource>> parts;
-    for (const Case& shaderCase : cases) {
-        GLINT_TRY(auto part, partOf(shaderCase));
-        module.functionsApart.push_back(part->link->exported.front());
-        parts.push_back(std::move(part));
-    }
-    const std::shared_ptr<ModuleSource> head = makeHead(module, module.functionsApart);
-    module.parts.push_back(head);
-    std::ranges::move(parts, std::back_inserter(module.parts));
-    drafts_.add(head, origin, text, head_[fallbackAlone ? 1 : 0]);
-    return okStatus();
-}
-
 }  // namespace
 
 using package::ModuleRole;

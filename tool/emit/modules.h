@@ -1,14 +1,19 @@
-// Decides which shader modules a package has, and makes their GLSL.
+// Decides which shader modules a package has, makes their GLSL and, in parallel, their SPIR-V, or takes
+// modules that were compiled before.
 #pragma once
 
+#include "emit/package/compiled_package.h"
 #include "emit/source_set.h"
 #include "emit/warm_modules.h"
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
-#include "settings/compile_settings.h"
+#include "settings/settings.h"
 
 #include <glint/result.h>
 
+#include <cstddef>
+#include <filesystem>
+#include <functional>
 #include <vector>
 
 namespace glint::compiler {
@@ -23,5 +28,25 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
 Result<ModuleSource> makeEditSource(const gltf::SceneList& scenes, const Plan& plan, const SourceSet& sources,
                                     const CompileSettings& settings, materials::FeatureMask edited,
                                     WarmModules* warm = nullptr);
+
+// --- SPIR-V ---
+
+class ModuleCache;
+class WarmModules;
+
+// Compiles on `jobs` threads (0: one for each core). Equal texts are compiled once, those of parts too, and
+// texts that `cache` or `warm` has are not compiled; both may be null. Neither the result nor the reported
+// error depends on `jobs`: if there are several errors, it is that of the first module. Modules with equal
+// SPIR-V get the same `file`, that of the first of them. If `isOutdated` is given and returns true before a
+// text is compiled, on any thread, the error is "outdated". `progress` is CompileSettings::progress.
+Result<std::vector<CompiledModule>> compileModules(
+    std::vector<ModuleSource> sources, int jobs, bool debugInfo, ModuleCache* cache = nullptr,
+    WarmModules* warm = nullptr, const std::function<bool()>& isOutdated = {},
+    const std::function<void(std::size_t, std::size_t)>& progress = {});
+
+// Takes every module from `folder`, where `glint compile-module` left them. Errors are those of
+// readCompiledModule(); if there are several, that of the first module is reported.
+Result<std::vector<CompiledModule>> takeModules(std::vector<ModuleSource> sources, bool debugInfo,
+                                                const std::filesystem::path& folder);
 
 }  // namespace glint::compiler

@@ -1,8 +1,8 @@
 // The GLSL of modules: files by the names under which shaders include them, and modules made of these.
 #pragma once
 
-#include "emit/glsl/flatten.h"
-#include "emit/glsl/unit.h"
+#include "emit/glsl/passes.h"
+#include "emit/glsl/text.h"
 #include "spirv/compiler.h"
 
 #include <glint/package_modules.h>

@@ -1,8 +1,5 @@
-#include "emit/sources.h"
-
 #include "base/files.h"
 #include "emit/context.h"
-#include "emit/effects.h"
 #include "emit/material_code.h"
 #include "emit/material_layout.h"
 #include "emit/source_set.h"

@@ -2,8 +2,7 @@
 
 #include "base/files.h"
 #include "base/parallel.h"
-#include "emit/glsl/flatten.h"
-#include "emit/glsl/prune.h"
+#include "emit/glsl/passes.h"
 
 #include <algorithm>
 #include <optional>

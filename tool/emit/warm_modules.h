@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cache/module_cache.h"
-#include "emit/glsl/flatten.h"
+#include "emit/glsl/passes.h"
 #include "emit/source_set.h"
 
 #include <glint/result.h>

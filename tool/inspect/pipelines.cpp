@@ -3,7 +3,6 @@
 #include "base/fields.h"
 #include "base/text.h"
 #include "emit/compile.h"
-#include "inspect/gpu_tables.h"
 #include "inspect/package.h"
 #include "resolve/resolve.h"
 

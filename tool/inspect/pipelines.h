@@ -4,6 +4,7 @@
 // driver's name, and adds facts that mean the same on every device.
 #pragma once
 
+#include "base/builtin_file.h"
 #include "base/fields_fwd.h"
 #include "inspect/package.h"
 #include "plan/gpu_costs.h"
@@ -148,5 +149,9 @@ Result<PipelineBudget> readPipelineBudget(const std::filesystem::path& file);
 // Returns an error "pipeline-budget" for each fact that exceeds its limit or that the driver does not report,
 // and a warning "pipeline-budget-unused" for each rule that fits no pipeline of its device.
 std::vector<Diagnostic> overBudget(const PipelineReport& report, const PipelineBudget& budget);
+
+using base::BuiltinFile;
+
+std::span<const BuiltinFile> gpuTables();
 
 }  // namespace glint::inspect

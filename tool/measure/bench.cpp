@@ -1,6 +1,5 @@
 #include "gltf/codecs/basisu.h"
 #include "measure/measurer.h"
-#include "measure/reference.h"
 
 #include <glint/measure/bench.h>
 #include <glint/measure/sweep.h>

@@ -1,8 +1,8 @@
 #include "base/clock.h"
+#include "base/fields.h"
 #include "base/files.h"
 #include "base/json.h"
 #include "measure/calibration_measure.h"
-#include "measure/report_json.h"
 
 #include <glint/measure/calibration.h>
 #include <glint/measure/device_file.h>

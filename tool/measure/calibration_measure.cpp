@@ -3,7 +3,7 @@
 #include "base/clock.h"
 #include "image/image_file.h"
 #include "image/tone.h"
-#include "measure/rounds.h"
+#include "measure/measurer.h"
 #include "resolve/resolve.h"
 #include "synthetic/coherence.h"
 

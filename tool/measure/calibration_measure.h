@@ -1,17 +1,23 @@
-// Measures the strategies on generated scenes of one number of cases and one cost, which share a package.
+// Measures the strategies on generated scenes of one number of cases and one cost, which share a package, and
+// reports about a device.
 #pragma once
 
+#include "base/json.h"
 #include "emit/compile.h"
 #include "synthetic/cases_scene.h"
 
-#include <glint/measure/calibration_report.h>
-#include <glint/measure/strategy_fit.h>
+#include <glint/measure/device_file.h>
+#include <glint/measure/observer.h>
 #include <glint/session/session.h>
 
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
+
+namespace glint::compiler {
+class CacheStore;
+}  // namespace glint::compiler
 
 namespace glint::measure {
 
@@ -68,5 +74,20 @@ struct PointOptions {
 Result<CalibrationEntry> measurePoint(Context& context, CalibrationGroup& group,
                                       const CalibrationScene& scene, const CalibrationSettings& settings,
                                       const PointOptions& options);
+
+// --- The report about a device ---
+
+struct DeviceReportSettings {
+    compiler::Settings render;  // device, validation, size and samples of the scene's picture
+    std::uint32_t rounds = 1;
+    std::uint32_t seed = 1;
+    bool quick = false;  // fewer cases, rays and rounds
+};
+
+// Times every strategy on five generated scenes, and on `scene` unless it is null, and makes all pipelines of
+// their packages. `cache` and `store` may be null. Errors: of the device, of compiling, "validation".
+Result<base::Json> makeDeviceReport(const Observer& observer, const DeviceReportSettings& settings,
+                                    const gltf::Scene* scene, compiler::ModuleCache* cache,
+                                    compiler::CacheStore* store);
 
 }  // namespace glint::measure

@@ -1,11 +1,9 @@
-#include "measure/device_report.h"
-
+#include "base/fields.h"
 #include "inspect/pipelines.h"
 #include "measure/calibration_measure.h"
-#include "measure/commit.h"
-#include "measure/report_json.h"
 
 #include <glint/measure/bed.h>
+#include <glint/measure/calibration.h>
 #include <glint/measure/machine.h>
 #include <glint/session/session.h>
 

@@ -1,14 +1,17 @@
 #include "resolve/resolve.h"
 
 #include <glint/measure/machine.h>
+#include <glint/measure/observer.h>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <ctime>
 #include <fstream>
+#include <string>
 #include <sys/utsname.h>
 #include <thread>
+#include <vector>
 
 namespace glint::measure {
 
@@ -49,6 +52,18 @@ bool isOnCpu(const Context& context) {
 
 std::string utcNow() {
     return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
+Status checkValidation(const Observer& observer, const Context& context) {
+    const std::vector<std::string> messages = context.validationMessages();
+    for (const std::string& message : messages) {
+        observer.report(makeWarning("validation", "", message));
+    }
+    if (messages.empty()) {
+        return okStatus();
+    }
+    return makeError("validation", "", fmt::format("the validation layers have {} messages", messages.size()),
+                     "this is a defect of Glint or of the driver: please report it");
 }
 
 }  // namespace glint::measure

@@ -1,18 +1,56 @@
-// Measures times and errors of configurations in rounds, in each of which every configuration renders one
-// picture, in random order.
+// Measures the reference of a bench and its points, in rounds.
 #pragma once
 
 #include <glint/measure/bed.h>
 #include <glint/measure/observer.h>
 #include <glint/measure/point.h>
+#include <glint/measure/report.h>
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <numeric>
+#include <random>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+namespace glint::compiler {
+class CacheStore;
+}  // namespace glint::compiler
+
 namespace glint::measure {
+
+// The time for which a GPU renders before a round, and before each measured time. Its clocks fall while the
+// host works between rounds, and take a while to rise again.
+inline constexpr std::chrono::milliseconds kRoundWarmUp{250};
+inline constexpr std::chrono::milliseconds kWarmUp{10};
+
+// Returns a permutation of [0, count), the order of a round, so that no configuration always follows the same
+// other one. The result depends only on the state of `random`, with every standard library.
+inline std::vector<std::size_t> shuffled(std::size_t count, std::mt19937_64& random) {
+    // The shuffle of Fisher and Yates, because std::shuffle differs between libraries.
+    std::vector<std::size_t> order(count);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    for (std::size_t i = count; i > 1; --i) {
+        std::swap(order[i - 1], order[random() % i]);
+    }
+    return order;
+}
+
+struct ReferenceOptions {
+    // The target for the reference's own relative error: 0.003 is 0.3 % of a pixel's light. Rendering stops
+    // at maxSamples even if the target is not reached.
+    double target = 0.003;
+    std::uint32_t maxSamples = 16384;
+};
+
+// Renders blocks of samples with independent random numbers; their spread gives the uncertainty of their
+// mean. If `store` has the samples of an earlier run of the same program with the same scene, view and
+// device, it continues from them. With a null `store` nothing is kept.
+Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const compiler::BenchFacts& facts,
+                                const ReferenceOptions& options, compiler::CacheStore* store);
 
 struct MeasureOptions {
     std::uint32_t rounds = 9;

@@ -1,7 +1,5 @@
 #include "measure/page.h"
 
-#include "measure/page_files.h"
-
 #include <kainjow/mustache.hpp>
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // The page that shows the measurements of `glint bench`.
 #pragma once
 
+#include "base/builtin_file.h"
 #include "base/files.h"
 
 #include <nlohmann/json.hpp>
@@ -19,5 +20,8 @@ struct PageImage {
 // refers to, the styles and the scripts. No text of the report is ever read as markup; bytes that are not
 // UTF-8 become U+FFFD. The same input gives the same bytes.
 std::string makePage(const nlohmann::ordered_json& report, std::span<const PageImage> images);
+
+// Returns the files, sorted by name. They have static storage.
+std::span<const base::BuiltinFile> pageFiles();
 
 }  // namespace glint::measure

@@ -1,9 +1,11 @@
-#include "measure/report_json.h"
-
+#include "base/fields.h"
 #include "base/text.h"
-#include "emit/package/json.h"
-#include "measure/commit.h"
+#include "emit/package/manifest.h"
 #include "settings/descriptor.h"
+
+#include <glint/measure/device_file.h>
+#include <glint/measure/machine.h>
+#include <glint/measure/report.h>
 
 #include <fmt/format.h>
 

@@ -9,10 +9,13 @@
 #include "plan/plan.h"
 #include "settings/settings.h"
 
+#include <glint/layers.h>
 #include <glint/result.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 namespace glint::compiler {
 
@@ -83,5 +86,23 @@ EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan,
 // and where no material has what light would pass otherwise.
 package::ShadowThrough shadowThroughOf(const gltf::SceneList& scenes, const Plan& plan,
                                        const CompileSettings& settings);
+
+// --- The layers of a package ---
+
+// Returns the layers that CompileSettings::layers names, with those that they are computed from, in the order
+// of their images: that of the table, then that of effects. Errors: "layer-effect" (a layer of an effect that
+// the package lacks), "passes" (the package draws no frame). Requires plan.effects.
+Result<std::vector<package::LayerEntry>> resolveLayers(const Plan& plan, const CompileSettings& settings,
+                                                       const std::string& where);
+
+// Returns the name of a layer of a package: "depth", "reflection.radiance".
+std::string layerNameOf(const package::LayerEntry& entry, const materials::MaterialModel& model);
+
+const package::LayerInfo& infoOf(const package::LayerEntry& entry);
+const materials::EffectDeclaration& declarationOf(const materials::MaterialModel& model,
+                                                  package::Effect effect);
+// Returns the albedo that the light of a source is divided by: that of the lobes that bring it.
+const package::LayerInfo& albedoOf(package::Effect effect, const materials::MaterialModel& model);
+bool demodulates(const package::LayerInfo& info);
 
 }  // namespace glint::compiler

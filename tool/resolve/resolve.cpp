@@ -3,7 +3,6 @@
 #include "base/clock.h"
 #include "base/text.h"
 #include "resolve/build.h"
-#include "resolve/layers.h"
 #include "resolve/light.h"
 #include "resolve/lock_file.h"
 #include "resolve/profile.h"

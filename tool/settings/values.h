@@ -2,8 +2,8 @@
 // several members belong together.
 #pragma once
 
-#include "settings/compile_settings.h"
 #include "settings/descriptor.h"
+#include "settings/settings.h"
 
 #include <glint/layers.h>
 

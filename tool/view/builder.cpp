@@ -7,7 +7,7 @@
 #include "gltf/scene_list.h"
 #include "materials/declarations.h"
 #include "resolve/host.h"
-#include "resolve/layers.h"
+#include "resolve/light.h"
 
 #include <glint/measure/settings.h>
 #include <glint/measure/target.h>

@@ -78,7 +78,7 @@ public:
     void start(BuildOrder order);
     // Forgets the order for a picture.
     void cancel(std::size_t picture);
-    // Returns the last build of a picture with an early package (emit/package/early.h) in the place of its
+    // Returns the last build of a picture with an early package (emit/compile.h) in the place of its
     // own, once, while another build for edited GLSL of packs is being made.
     std::optional<Build> pollEarly(std::size_t picture);
     // Returns the finished build of a picture, once.

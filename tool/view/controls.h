@@ -1,10 +1,18 @@
-// The places of the panels' controls, so that a script can find them as a person would: by their names.
+// Panels and their controls, whose places are known so that a script can find them as a person would: by
+// their names.
 #pragma once
 
+#include "settings/descriptor.h"
+
+#include <glint/renderer.h>
+
 #include <array>
+#include <cstdint>
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace glint::view {
 
@@ -39,5 +47,67 @@ void fittedText(const std::string& text);
 
 // Shows a text while the mouse is over ImGui's last item.
 void tip(const std::string& text);
+
+// --- The controls of settings ---
+
+class SettingsPanel {
+public:
+    // Draws a control for each setting of `glint render` and changes `settings`. `facts` tells which of them
+    // change nothing in this scene. Returns whether any has changed.
+    bool draw(Controls& controls, compiler::Settings& settings, const compiler::BenchFacts& facts);
+
+private:
+    // A setting as its control shows it.
+    struct Shown {
+        const compiler::Descriptor& row;
+        std::string name;
+        std::string label;    // of the control, which shows no text
+        std::string present;  // the text of the value
+        std::string typed;    // the same, or what is being typed or dragged
+        std::vector<compiler::SettingWord> words;
+        bool isNumber = false;
+    };
+    // These draw the control, and return the text of a value that was chosen.
+    std::optional<std::string> drawValue(Controls& controls, const Shown& shown);
+    std::optional<std::string> drawList(Controls& controls, const Shown& shown);
+    // Sets the value, or keeps the complaint about it. Returns whether it was set.
+    bool take(const compiler::Descriptor& row, const std::string& next, compiler::Settings& settings);
+    bool drawRow(Controls& controls, const compiler::Descriptor& row, compiler::Settings& settings,
+                 const compiler::BenchFacts& facts);
+
+    // Text that is being typed or dragged, by setting, until it is finished.
+    std::map<std::string, std::string, std::less<>> drafts_;
+    std::string filter_;
+    std::string complaint_;  // about the last text that was typed
+};
+
+// --- The time of each pass of the last frames, as a running chart ---
+
+// Device times of the last frames.
+class PassHistory {
+public:
+    static constexpr std::size_t kFrames = 160;
+
+    void add(const std::vector<PassTiming>& passes);
+    void clear();
+    // Names of passes in the order in which they first ran.
+    const std::vector<std::string>& names() const {
+        return names_;
+    }
+    // Milliseconds by pass, for each frame, the oldest first. Later frames may have more passes.
+    const std::deque<std::vector<double>>& frames() const {
+        return frames_;
+    }
+    // The median of the frames that have the pass.
+    double median(std::size_t pass) const;
+    double medianFrame() const;
+
+private:
+    std::vector<std::string> names_;
+    std::deque<std::vector<double>> frames_;
+};
+
+// Draws chart and table. `counters` are those of the last frame.
+void drawPasses(Controls& controls, const PassHistory& history, const FrameCounters& counters);
 
 }  // namespace glint::view

@@ -38,10 +38,8 @@ Status Display::createPipeline() {
     setInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
     setInfo.bindingCount = static_cast<std::uint32_t>(bindings.size());
     setInfo.pBindings = bindings.data();
-    VkResult result = vkCreateDescriptorSetLayout(device, &setInfo, nullptr, &setLayout_);
-    if (result != VK_SUCCESS) {
-        return callError("vkCreateDescriptorSetLayout", result);
-    }
+    GLINT_TRY_DO(checkCall("vkCreateDescriptorSetLayout",
+                           vkCreateDescriptorSetLayout(device, &setInfo, nullptr, &setLayout_)));
     const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
                                     kSets * static_cast<std::uint32_t>(bindings.size())};
     VkDescriptorPoolCreateInfo poolInfo{};
@@ -49,10 +47,8 @@ Status Display::createPipeline() {
     poolInfo.maxSets = kSets;
     poolInfo.poolSizeCount = 1;
     poolInfo.pPoolSizes = &size;
-    result = vkCreateDescriptorPool(device, &poolInfo, nullptr, &pool_);
-    if (result != VK_SUCCESS) {
-        return callError("vkCreateDescriptorPool", result);
-    }
+    GLINT_TRY_DO(
+        checkCall("vkCreateDescriptorPool", vkCreateDescriptorPool(device, &poolInfo, nullptr, &pool_)));
     std::array<VkDescriptorSetLayout, kSets> layouts{};
     layouts.fill(setLayout_);
     VkDescriptorSetAllocateInfo sets{};
@@ -60,10 +56,7 @@ Status Display::createPipeline() {
     sets.descriptorPool = pool_;
     sets.descriptorSetCount = kSets;
     sets.pSetLayouts = layouts.data();
-    result = vkAllocateDescriptorSets(device, &sets, sets_);
-    if (result != VK_SUCCESS) {
-        return callError("vkAllocateDescriptorSets", result);
-    }
+    GLINT_TRY_DO(checkCall("vkAllocateDescriptorSets", vkAllocateDescriptorSets(device, &sets, sets_)));
     const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(DisplayOptions)};
     VkPipelineLayoutCreateInfo layoutInfo{};
     layoutInfo.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
@@ -71,19 +64,15 @@ Status Display::createPipeline() {
     layoutInfo.pSetLayouts = &setLayout_;
     layoutInfo.pushConstantRangeCount = 1;
     layoutInfo.pPushConstantRanges = &range;
-    result = vkCreatePipelineLayout(device, &layoutInfo, nullptr, &layout_);
-    if (result != VK_SUCCESS) {
-        return callError("vkCreatePipelineLayout", result);
-    }
+    GLINT_TRY_DO(
+        checkCall("vkCreatePipelineLayout", vkCreatePipelineLayout(device, &layoutInfo, nullptr, &layout_)));
     VkShaderModuleCreateInfo moduleInfo{};
     moduleInfo.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
     moduleInfo.codeSize = sizeof(kDisplayShader);
     moduleInfo.pCode = kDisplayShader;
     VkShaderModule module = VK_NULL_HANDLE;
-    result = vkCreateShaderModule(device, &moduleInfo, nullptr, &module);
-    if (result != VK_SUCCESS) {
-        return callError("vkCreateShaderModule", result);
-    }
+    GLINT_TRY_DO(
+        checkCall("vkCreateShaderModule", vkCreateShaderModule(device, &moduleInfo, nullptr, &module)));
     VkComputePipelineCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
     info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
@@ -91,9 +80,9 @@ Status Display::createPipeline() {
     info.stage.module = module;
     info.stage.pName = "main";
     info.layout = layout_;
-    result = vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline_);
+    const VkResult result = vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline_);
     vkDestroyShaderModule(device, module, nullptr);
-    return result == VK_SUCCESS ? okStatus() : Status(callError("vkCreateComputePipelines", result));
+    return checkCall("vkCreateComputePipelines", result);
 }
 
 Result<bool> Display::resize(std::uint32_t width, std::uint32_t height) {
@@ -117,10 +106,10 @@ void Display::prepare(VkCommandBuffer commands) {
 Status Display::keep(const image::DisplayImage& picture) {
     constexpr std::size_t kPixelBytes = 4;
     const std::size_t bytes = picture.pixels.size() * kPixelBytes;
-    if (kept_.bytes() < bytes) {
+    if (kept_.bytes < bytes) {
         GLINT_TRY(kept_, HostBuffer::create(context_, bytes));
     }
-    std::uint8_t* to = kept_.data();
+    std::uint8_t* to = kept_.data;
     for (const std::array<std::uint8_t, 3>& pixel : picture.pixels) {
         to = std::ranges::copy(pixel, to).out;
         *to++ = 0xFF;
@@ -131,14 +120,14 @@ Status Display::keep(const image::DisplayImage& picture) {
 }
 
 bool Display::recordCopy(VkCommandBuffer commands) {
-    if (kept_.bytes() == 0 || image_.width != keptWidth_ || image_.height != keptHeight_) {
+    if (kept_.bytes == 0 || image_.width != keptWidth_ || image_.height != keptHeight_) {
         return false;
     }
     prepare(commands);
     VkBufferImageCopy copy{};
     copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     copy.imageExtent = {keptWidth_, keptHeight_, 1};
-    vkCmdCopyBufferToImage(commands, kept_.handle(), image_.image, VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
+    vkCmdCopyBufferToImage(commands, kept_.handle, image_.image, VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
     recordBarrier(commands);
     return true;
 }

@@ -1,11 +1,14 @@
-// A view or a layer that the window shows in place of the picture. Both are pictures of tool/measure.
+// What the window shows in place of the picture, a view or a layer, and what it says of a pixel.
 #pragma once
 
 #include "image/exr.h"
+#include "view/controls.h"
 #include "view/picture.h"
 
 #include <glint/measure/views.h>
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -43,5 +46,25 @@ Result<measure::View> makeLook(const Look& look, Picture& picture, double exposu
 Result<image::ExrLayer> layerForFile(const Look& look, Picture& picture);
 // Returns the word of the setting `layers` for a layer. The layers of all bounces have one word.
 std::string layerWord(const std::string& layer);
+
+// Draws the list of looks and the legend of the one that is shown; `shown` is null until it is made. `note`
+// is the reason why it is not shown. Returns the look that was clicked.
+std::optional<Look> drawLooks(Controls& controls, const Build& build, const Look& chosen,
+                              const measure::View* shown, const std::string& note);
+
+// --- A pixel ---
+
+struct Pick {
+    std::uint32_t x = 0;  // pixels of the picture
+    std::uint32_t y = 0;
+    std::vector<Field> fields;
+    int material = -1;  // index into Scene::materials; -1: the sky
+};
+
+// Describes the surface that the pixel sees in the last sample: material, key, case and the reasons for them,
+// bucket, rays, cost. Waits for the device. Errors are those of Renderer::readPlace() and
+// Renderer::readOutput().
+Result<Pick> pickPixel(const Request& request, Picture& picture, std::uint32_t x, std::uint32_t y,
+                       double exposure);
 
 }  // namespace glint::view

@@ -3,7 +3,9 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <algorithm>
-#include <memory>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_vulkan.h>
+#include <imgui.h>
 
 namespace glint::view {
 
@@ -90,8 +92,8 @@ Status Presenter::createRenderPass() {
     info.pAttachments = &target;
     info.subpassCount = 1;
     info.pSubpasses = &subpass;
-    const VkResult result = vkCreateRenderPass(context_.handles().device, &info, nullptr, &renderPass_);
-    return result == VK_SUCCESS ? okStatus() : Status(callError("vkCreateRenderPass", result));
+    return checkCall("vkCreateRenderPass",
+                     vkCreateRenderPass(context_.handles().device, &info, nullptr, &renderPass_));
 }
 
 Status Presenter::createFrames() {
@@ -102,13 +104,9 @@ Status Presenter::createFrames() {
         fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
         VkSemaphoreCreateInfo semaphore{};
         semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
-        VkResult result = vkCreateFence(device, &fence, nullptr, &frame.done);
-        if (result == VK_SUCCESS) {
-            result = vkCreateSemaphore(device, &semaphore, nullptr, &frame.acquired);
-        }
-        if (result != VK_SUCCESS) {
-            return callError("vkCreateFence", result);
-        }
+        GLINT_TRY_DO(checkCall("vkCreateFence", vkCreateFence(device, &fence, nullptr, &frame.done)));
+        GLINT_TRY_DO(
+            checkCall("vkCreateSemaphore", vkCreateSemaphore(device, &semaphore, nullptr, &frame.acquired)));
     }
     return okStatus();
 }
@@ -138,10 +136,7 @@ Status Presenter::addImages() {
         view.viewType = VK_IMAGE_VIEW_TYPE_2D;
         view.format = format_.format;
         view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-        VkResult result = vkCreateImageView(device, &view, nullptr, &image.view);
-        if (result != VK_SUCCESS) {
-            return callError("vkCreateImageView", result);
-        }
+        GLINT_TRY_DO(checkCall("vkCreateImageView", vkCreateImageView(device, &view, nullptr, &image.view)));
         VkFramebufferCreateInfo target{};
         target.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
         target.renderPass = renderPass_;
@@ -150,16 +145,12 @@ Status Presenter::addImages() {
         target.width = extent_.width;
         target.height = extent_.height;
         target.layers = 1;
-        result = vkCreateFramebuffer(device, &target, nullptr, &image.framebuffer);
-        if (result != VK_SUCCESS) {
-            return callError("vkCreateFramebuffer", result);
-        }
+        GLINT_TRY_DO(checkCall("vkCreateFramebuffer",
+                               vkCreateFramebuffer(device, &target, nullptr, &image.framebuffer)));
         VkSemaphoreCreateInfo semaphore{};
         semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
-        result = vkCreateSemaphore(device, &semaphore, nullptr, &image.drawn);
-        if (result != VK_SUCCESS) {
-            return callError("vkCreateSemaphore", result);
-        }
+        GLINT_TRY_DO(
+            checkCall("vkCreateSemaphore", vkCreateSemaphore(device, &semaphore, nullptr, &image.drawn)));
     }
     return okStatus();
 }
@@ -167,11 +158,9 @@ Status Presenter::addImages() {
 Status Presenter::createSwapchain() {
     VkDevice device = context_.handles().device;
     VkSurfaceCapabilitiesKHR can{};
-    VkResult result =
-        vkGetPhysicalDeviceSurfaceCapabilitiesKHR(context_.handles().physicalDevice, surface_, &can);
-    if (result != VK_SUCCESS) {
-        return callError("vkGetPhysicalDeviceSurfaceCapabilitiesKHR", result);
-    }
+    GLINT_TRY_DO(checkCall(
+        "vkGetPhysicalDeviceSurfaceCapabilitiesKHR",
+        vkGetPhysicalDeviceSurfaceCapabilitiesKHR(context_.handles().physicalDevice, surface_, &can)));
     int width = 0;
     int height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
@@ -207,12 +196,10 @@ Status Presenter::createSwapchain() {
     info.clipped = VK_TRUE;
     info.oldSwapchain = swapchain_;
     VkSwapchainKHR made = VK_NULL_HANDLE;
-    result = vkCreateSwapchainKHR(device, &info, nullptr, &made);
+    const VkResult result = vkCreateSwapchainKHR(device, &info, nullptr, &made);
     vkDestroySwapchainKHR(device, swapchain_, nullptr);
     swapchain_ = made;
-    if (result != VK_SUCCESS) {
-        return callError("vkCreateSwapchainKHR", result);
-    }
+    GLINT_TRY_DO(checkCall("vkCreateSwapchainKHR", result));
     GLINT_TRY_DO(addImages());
     stale_ = false;
     return okStatus();
@@ -222,10 +209,7 @@ Result<bool> Presenter::begin(Frame& frame) {
     VkDevice device = context_.handles().device;
     InFlight& own = inFlight_[slot_];
     if (own.number > completed_) {
-        const VkResult waited = vkWaitForFences(device, 1, &own.done, VK_TRUE, kNoLimit);
-        if (waited != VK_SUCCESS) {
-            return callError("vkWaitForFences", waited);
-        }
+        GLINT_TRY_DO(checkCall("vkWaitForFences", vkWaitForFences(device, 1, &own.done, VK_TRUE, kNoLimit)));
         completed_ = own.number;
     }
     if (stale_) {
@@ -289,10 +273,7 @@ Status Presenter::end(const Frame& frame) {
     VkDevice device = context_.handles().device;
     InFlight& own = inFlight_[slot_];
     vkCmdEndRenderPass(frame.commands);
-    VkResult result = vkEndCommandBuffer(frame.commands);
-    if (result != VK_SUCCESS) {
-        return callError("vkEndCommandBuffer", result);
-    }
+    GLINT_TRY_DO(checkCall("vkEndCommandBuffer", vkEndCommandBuffer(frame.commands)));
     vkResetFences(device, 1, &own.done);
     const VkPipelineStageFlags stage = VK_PIPELINE_STAGE_TRANSFER_BIT;
     VkSubmitInfo submit{};
@@ -304,10 +285,7 @@ Status Presenter::end(const Frame& frame) {
     submit.pCommandBuffers = &own.commands;
     submit.signalSemaphoreCount = 1;
     submit.pSignalSemaphores = &images_[frame.image].drawn;
-    result = vkQueueSubmit(context_.handles().queue, 1, &submit, own.done);
-    if (result != VK_SUCCESS) {
-        return callError("vkQueueSubmit", result);
-    }
+    GLINT_TRY_DO(checkCall("vkQueueSubmit", vkQueueSubmit(context_.handles().queue, 1, &submit, own.done)));
     own.number = ++submitted_;
     VkPresentInfoKHR present{};
     present.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR;
@@ -316,27 +294,170 @@ Status Presenter::end(const Frame& frame) {
     present.swapchainCount = 1;
     present.pSwapchains = &swapchain_;
     present.pImageIndices = &frame.image;
-    result = vkQueuePresentKHR(context_.handles().queue, &present);
+    const VkResult result = vkQueuePresentKHR(context_.handles().queue, &present);
     slot_ = (slot_ + 1) % kFramesInFlight;
     if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR) {
         stale_ = true;
         return okStatus();
     }
-    return result == VK_SUCCESS ? okStatus() : Status(callError("vkQueuePresentKHR", result));
+    return checkCall("vkQueuePresentKHR", result);
 }
 
 Status Presenter::waitForFrames() {
     VkDevice device = context_.handles().device;
     for (const InFlight& frame : inFlight_) {
         if (frame.number > completed_) {
-            const VkResult result = vkWaitForFences(device, 1, &frame.done, VK_TRUE, kNoLimit);
-            if (result != VK_SUCCESS) {
-                return callError("vkWaitForFences", result);
-            }
+            GLINT_TRY_DO(
+                checkCall("vkWaitForFences", vkWaitForFences(device, 1, &frame.done, VK_TRUE, kNoLimit)));
         }
     }
     completed_ = submitted_;
     return okStatus();
+}
+
+// --- Dear ImGui ---
+
+namespace {
+
+void setLook(float scale) {
+    ImGui::StyleColorsDark();
+    ImGuiStyle& style = ImGui::GetStyle();
+    style.WindowRounding = 0.0F;
+    style.FrameRounding = 3.0F;
+    style.GrabRounding = 3.0F;
+    style.TabRounding = 3.0F;
+    style.WindowBorderSize = 0.0F;
+    style.FramePadding = {6.0F, 3.0F};
+    style.ItemSpacing = {8.0F, 5.0F};
+    style.ScrollbarSize = 12.0F;
+    ImVec4* const colors = style.Colors;
+    const ImVec4 accent{0.20F, 0.45F, 0.70F, 1.0F};
+    colors[ImGuiCol_WindowBg] = {0.13F, 0.13F, 0.14F, 1.0F};
+    colors[ImGuiCol_PopupBg] = {0.16F, 0.16F, 0.17F, 0.98F};
+    colors[ImGuiCol_FrameBg] = {0.21F, 0.21F, 0.23F, 1.0F};
+    colors[ImGuiCol_FrameBgHovered] = {0.27F, 0.27F, 0.30F, 1.0F};
+    colors[ImGuiCol_Header] = {0.20F, 0.26F, 0.32F, 1.0F};
+    colors[ImGuiCol_HeaderHovered] = {0.24F, 0.33F, 0.42F, 1.0F};
+    colors[ImGuiCol_HeaderActive] = accent;
+    colors[ImGuiCol_Button] = {0.24F, 0.28F, 0.33F, 1.0F};
+    colors[ImGuiCol_ButtonHovered] = {0.27F, 0.38F, 0.49F, 1.0F};
+    colors[ImGuiCol_ButtonActive] = accent;
+    colors[ImGuiCol_Tab] = {0.18F, 0.20F, 0.23F, 1.0F};
+    colors[ImGuiCol_TabHovered] = {0.27F, 0.38F, 0.49F, 1.0F};
+    colors[ImGuiCol_TabActive] = accent;
+    colors[ImGuiCol_CheckMark] = {0.45F, 0.72F, 1.0F, 1.0F};
+    colors[ImGuiCol_SliderGrab] = {0.25F, 0.44F, 0.64F, 1.0F};
+    colors[ImGuiCol_SliderGrabActive] = {0.30F, 0.54F, 0.80F, 1.0F};
+    style.ScaleAllSizes(scale);
+    ImGui::GetIO().FontGlobalScale = scale;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Interface>> Interface::create(Context& context, GLFWwindow* window,
+                                                     const Presenter& presenter) {
+    std::unique_ptr<Interface> made(new Interface(context));
+    GLINT_TRY_DO(made->start(window, presenter));
+    return made;
+}
+
+Status Interface::start(GLFWwindow* window, const Presenter& presenter) {
+    const DeviceHandles& handles = context_.handles();
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;  // leaves no file where it runs
+    float scale = 1.0F;
+    glfwGetWindowContentScale(window, &scale, nullptr);
+    setLook(std::max(scale, 1.0F));
+    ImGui_ImplGlfw_InitForVulkan(window, true);
+    started_ = true;
+
+    constexpr std::uint32_t kTextures = 16;  // more than Dear ImGui has fonts
+    const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kTextures};
+    VkDescriptorPoolCreateInfo pool{};
+    pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    pool.flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT;
+    pool.maxSets = kTextures;
+    pool.poolSizeCount = 1;
+    pool.pPoolSizes = &size;
+    GLINT_TRY_DO(
+        checkCall("vkCreateDescriptorPool", vkCreateDescriptorPool(handles.device, &pool, nullptr, &pool_)));
+
+    ImGui_ImplVulkan_InitInfo info{};
+    info.Instance = handles.instance;
+    info.PhysicalDevice = handles.physicalDevice;
+    info.Device = handles.device;
+    info.QueueFamily = handles.queueFamily;
+    info.Queue = handles.queue;
+    info.DescriptorPool = pool_;
+    info.MinImageCount = Presenter::kFramesInFlight;
+    // One set of vertex buffers for each frame that may be in flight, and one more to be safe from reuse.
+    info.ImageCount = Presenter::kFramesInFlight + 1;
+    info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
+#if IMGUI_VERSION_NUM >= 19080
+    info.RenderPass = presenter.renderPass();
+    ImGui_ImplVulkan_Init(&info);
+#else
+    ImGui_ImplVulkan_Init(&info, presenter.renderPass());
+#endif
+
+#if IMGUI_VERSION_NUM < 19000
+    // Older backends leave the upload of the font to the program.
+    VkCommandPoolCreateInfo commandPool{};
+    commandPool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
+    commandPool.queueFamilyIndex = handles.queueFamily;
+    VkCommandPool once = VK_NULL_HANDLE;
+    GLINT_TRY_DO(
+        checkCall("vkCreateCommandPool", vkCreateCommandPool(handles.device, &commandPool, nullptr, &once)));
+    VkCommandBufferAllocateInfo allocation{};
+    allocation.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
+    allocation.commandPool = once;
+    allocation.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    allocation.commandBufferCount = 1;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    vkAllocateCommandBuffers(handles.device, &allocation, &commands);
+    VkCommandBufferBeginInfo begin{};
+    begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+    begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    vkBeginCommandBuffer(commands, &begin);
+    ImGui_ImplVulkan_CreateFontsTexture(commands);
+    vkEndCommandBuffer(commands);
+    VkSubmitInfo submit{};
+    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    submit.commandBufferCount = 1;
+    submit.pCommandBuffers = &commands;
+    vkQueueSubmit(handles.queue, 1, &submit, VK_NULL_HANDLE);
+    vkQueueWaitIdle(handles.queue);
+    ImGui_ImplVulkan_DestroyFontUploadObjects();
+    vkDestroyCommandPool(handles.device, once, nullptr);
+#endif
+    return okStatus();
+}
+
+Interface::~Interface() {
+    VkDevice device = context_.handles().device;
+    vkDeviceWaitIdle(device);
+    if (pool_ != VK_NULL_HANDLE) {
+        ImGui_ImplVulkan_Shutdown();
+    }
+    if (started_) {
+        ImGui_ImplGlfw_Shutdown();
+    }
+    ImGui::DestroyContext();
+    vkDestroyDescriptorPool(device, pool_, nullptr);
+}
+
+void Interface::begin() {
+    ImGui_ImplVulkan_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+}
+
+void Interface::end() {
+    ImGui::Render();
+}
+
+void Interface::record(VkCommandBuffer commands) {
+    ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), commands);
 }
 
 }  // namespace glint::view

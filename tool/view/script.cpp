@@ -76,6 +76,13 @@ void Script::act(Act act) {
     steps_.push_back({line_, std::move(act)});
 }
 
+void Script::perform(const std::function<void()>& work) {
+    act([work]() -> Result<bool> {
+        work();
+        return true;
+    });
+}
+
 void Script::frames(std::uint64_t count) {
     auto until = std::make_shared<std::optional<std::uint64_t>>();
     act([this, count, until]() -> Result<bool> {
@@ -85,18 +92,12 @@ void Script::frames(std::uint64_t count) {
 }
 
 void Script::moveTo(double x, double y) {
-    act([this, x, y]() -> Result<bool> {
-        input_.move(x, y);
-        return true;
-    });
+    perform([this, x, y] { input_.move(x, y); });
     frames(kTaken);
 }
 
 void Script::button(unsigned number, bool down) {
-    act([this, number, down]() -> Result<bool> {
-        input_.button(number, down);
-        return true;
-    });
+    perform([this, number, down] { input_.button(number, down); });
     frames(kTaken);
 }
 
@@ -293,10 +294,7 @@ void Script::addText(const std::string& control, const std::string& text, bool i
 }
 
 void Script::addSize(int width, int height) {
-    act([this, width, height]() -> Result<bool> {
-        glfwSetWindowSize(host_.window, width, height);
-        return true;
-    });
+    perform([this, width, height] { glfwSetWindowSize(host_.window, width, height); });
     // Clicks before the window has its size would hit something else.
     waitUntil([this, width, height] {
         int nowWide = 0;
@@ -311,14 +309,13 @@ void Script::addMinimising(bool minimises) {
     if (minimises) {
         frames(kSettle);
     }
-    act([this, minimises]() -> Result<bool> {
+    perform([this, minimises] {
         if (!input_.setMinimised(minimises)) {
             (minimises ? glfwIconifyWindow : glfwRestoreWindow)(host_.window);
         }
         if (!minimises) {
             glfwFocusWindow(host_.window);
         }
-        return true;
     });
     if (!minimises) {
         frames(kSettle);
@@ -397,10 +394,7 @@ bool Script::addOther(const Line& line) {
     } else if (what == "copy" && count == 2) {
         addCopy(words[1], words[2]);
     } else if (what == "drop" && count == 1) {
-        act([this, file = words[1]]() -> Result<bool> {
-            host_.drop(file);
-            return true;
-        });
+        perform([this, file = words[1]] { host_.drop(file); });
         frames(kSettle);
     } else if (what == "picture" && count == 1) {
         addPicture(words[1]);
@@ -411,10 +405,7 @@ bool Script::addOther(const Line& line) {
             return true;
         });
     } else if (what == "quit" && count == 0) {
-        act([this]() -> Result<bool> {
-            glfwSetWindowShouldClose(host_.window, GLFW_TRUE);
-            return true;
-        });
+        perform([this] { glfwSetWindowShouldClose(host_.window, GLFW_TRUE); });
     } else {
         return false;
     }

@@ -12,11 +12,15 @@ Diagnostic callError(const char* call, VkResult result) {
                                                     : "use a smaller window, or another device");
 }
 
+Status checkCall(const char* call, VkResult result) {
+    return result == VK_SUCCESS ? okStatus() : Status(callError(call, result));
+}
+
 namespace {
 
 // Allocates memory of the first type that has all these properties. Vulkan has one for each use here.
-VkResult allocate(const Context& context, const VkMemoryRequirements& needs, VkMemoryPropertyFlags properties,
-                  VkDeviceMemory& memory) {
+Result<VkDeviceMemory> allocate(const Context& context, const VkMemoryRequirements& needs,
+                                VkMemoryPropertyFlags properties) {
     VkPhysicalDeviceMemoryProperties types{};
     vkGetPhysicalDeviceMemoryProperties(context.handles().physicalDevice, &types);
     std::uint32_t type = 0;
@@ -25,82 +29,46 @@ VkResult allocate(const Context& context, const VkMemoryRequirements& needs, VkM
             (types.memoryTypes[type].propertyFlags & properties) != properties)) {
         ++type;
     }
-    VkMemoryAllocateInfo allocation{};
-    allocation.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-    allocation.allocationSize = needs.size;
-    allocation.memoryTypeIndex = type;
-    return vkAllocateMemory(context.handles().device, &allocation, nullptr, &memory);
+    const VkMemoryAllocateInfo allocation{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                          .pNext = nullptr,
+                                          .allocationSize = needs.size,
+                                          .memoryTypeIndex = type};
+    VkDeviceMemory memory = VK_NULL_HANDLE;
+    GLINT_TRY_DO(checkCall("vkAllocateMemory",
+                           vkAllocateMemory(context.handles().device, &allocation, nullptr, &memory)));
+    return memory;
 }
 
 }  // namespace
 
-HostBuffer& HostBuffer::operator=(HostBuffer&& other) noexcept {
-    std::swap(device_, other.device_);
-    std::swap(buffer_, other.buffer_);
-    std::swap(memory_, other.memory_);
-    std::swap(data_, other.data_);
-    std::swap(bytes_, other.bytes_);
-    return *this;
-}
-
-HostBuffer::~HostBuffer() {
-    if (device_ != VK_NULL_HANDLE) {
-        vkDestroyBuffer(device_, buffer_, nullptr);
-        vkFreeMemory(device_, memory_, nullptr);
-    }
-}
-
 Result<HostBuffer> HostBuffer::create(const Context& context, std::size_t bytes) {
+    VkDevice device = context.handles().device;
     HostBuffer made;
-    made.device_ = context.handles().device;
-    made.bytes_ = bytes;
+    made.bytes = bytes;
     VkBufferCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
     info.size = bytes;
     info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
-    VkResult result = vkCreateBuffer(made.device_, &info, nullptr, &made.buffer_);
-    if (result != VK_SUCCESS) {
-        return callError("vkCreateBuffer", result);
-    }
+    GLINT_TRY_DO(checkCall("vkCreateBuffer", vkCreateBuffer(device, &info, nullptr, &made.handle)));
+    made.buffer_ = {device, made.handle};
     VkMemoryRequirements needs{};
-    vkGetBufferMemoryRequirements(made.device_, made.buffer_, &needs);
-    result =
-        allocate(context, needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
-                 made.memory_);
-    if (result == VK_SUCCESS) {
-        result = vkBindBufferMemory(made.device_, made.buffer_, made.memory_, 0);
-    }
+    vkGetBufferMemoryRequirements(device, made.handle, &needs);
+    GLINT_TRY(
+        auto memory,
+        allocate(context, needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT));
+    made.memory_ = {device, memory};
+    GLINT_TRY_DO(checkCall("vkBindBufferMemory", vkBindBufferMemory(device, made.handle, memory, 0)));
     void* data = nullptr;
-    if (result == VK_SUCCESS) {
-        result = vkMapMemory(made.device_, made.memory_, 0, VK_WHOLE_SIZE, 0, &data);
-    }
-    made.data_ = static_cast<std::uint8_t*>(data);
-    return result == VK_SUCCESS ? Result<HostBuffer>(std::move(made)) : callError("vkAllocateMemory", result);
-}
-
-DeviceImage& DeviceImage::operator=(DeviceImage&& other) noexcept {
-    std::swap(image, other.image);
-    std::swap(view, other.view);
-    std::swap(width, other.width);
-    std::swap(height, other.height);
-    std::swap(device_, other.device_);
-    std::swap(memory_, other.memory_);
-    return *this;
-}
-
-DeviceImage::~DeviceImage() {
-    if (device_ != VK_NULL_HANDLE) {
-        vkDestroyImageView(device_, view, nullptr);
-        vkDestroyImage(device_, image, nullptr);
-        vkFreeMemory(device_, memory_, nullptr);
-    }
+    GLINT_TRY_DO(checkCall("vkMapMemory", vkMapMemory(device, memory, 0, VK_WHOLE_SIZE, 0, &data)));
+    made.data = static_cast<std::uint8_t*>(data);
+    return made;
 }
 
 Result<DeviceImage> DeviceImage::create(const Context& context, std::uint32_t width, std::uint32_t height) {
+    VkDevice device = context.handles().device;
     DeviceImage made;
     made.width = width;
     made.height = height;
-    made.device_ = context.handles().device;
     VkImageCreateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
     info.imageType = VK_IMAGE_TYPE_2D;
@@ -111,86 +79,59 @@ Result<DeviceImage> DeviceImage::create(const Context& context, std::uint32_t wi
     info.samples = VK_SAMPLE_COUNT_1_BIT;
     info.usage =
         VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    VkResult result = vkCreateImage(made.device_, &info, nullptr, &made.image);
-    if (result != VK_SUCCESS) {
-        return callError("vkCreateImage", result);
-    }
+    GLINT_TRY_DO(checkCall("vkCreateImage", vkCreateImage(device, &info, nullptr, &made.image)));
+    made.image_ = {device, made.image};
     VkMemoryRequirements needs{};
-    vkGetImageMemoryRequirements(made.device_, made.image, &needs);
-    result = allocate(context, needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, made.memory_);
-    if (result == VK_SUCCESS) {
-        result = vkBindImageMemory(made.device_, made.image, made.memory_, 0);
-    }
-    if (result != VK_SUCCESS) {
-        return callError("vkAllocateMemory", result);
-    }
+    vkGetImageMemoryRequirements(device, made.image, &needs);
+    GLINT_TRY(auto memory, allocate(context, needs, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT));
+    made.memory_ = {device, memory};
+    GLINT_TRY_DO(checkCall("vkBindImageMemory", vkBindImageMemory(device, made.image, memory, 0)));
     VkImageViewCreateInfo viewInfo{};
     viewInfo.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
     viewInfo.image = made.image;
     viewInfo.viewType = VK_IMAGE_VIEW_TYPE_2D;
     viewInfo.format = info.format;
     viewInfo.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    result = vkCreateImageView(made.device_, &viewInfo, nullptr, &made.view);
-    return result == VK_SUCCESS ? Result<DeviceImage>(std::move(made))
-                                : callError("vkCreateImageView", result);
+    GLINT_TRY_DO(checkCall("vkCreateImageView", vkCreateImageView(device, &viewInfo, nullptr, &made.view)));
+    made.view_ = {device, made.view};
+    return made;
 }
 
 Status createCommands(const Context& context, VkCommandPool& pool, VkCommandBuffer& commands) {
+    VkDevice device = context.handles().device;
     VkCommandPoolCreateInfo poolInfo{};
     poolInfo.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
     poolInfo.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
     poolInfo.queueFamilyIndex = context.handles().queueFamily;
-    VkResult result = vkCreateCommandPool(context.handles().device, &poolInfo, nullptr, &pool);
-    if (result != VK_SUCCESS) {
-        return callError("vkCreateCommandPool", result);
-    }
+    GLINT_TRY_DO(checkCall("vkCreateCommandPool", vkCreateCommandPool(device, &poolInfo, nullptr, &pool)));
     VkCommandBufferAllocateInfo info{};
     info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
     info.commandPool = pool;
     info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
     info.commandBufferCount = 1;
-    result = vkAllocateCommandBuffers(context.handles().device, &info, &commands);
-    return result == VK_SUCCESS ? okStatus() : Status(callError("vkAllocateCommandBuffers", result));
+    return checkCall("vkAllocateCommandBuffers", vkAllocateCommandBuffers(device, &info, &commands));
 }
 
 Result<OneTimeCommands> OneTimeCommands::create(const Context& context) {
     OneTimeCommands made;
-    made.device_ = context.handles().device;
-    GLINT_TRY_DO(createCommands(context, made.pool_, made.commands_));
+    VkCommandPool pool = VK_NULL_HANDLE;
+    const Status created = createCommands(context, pool, made.commands_);
+    made.pool_ = {context.handles().device, pool};
+    GLINT_TRY_DO(created);
     VkCommandBufferBeginInfo begin{};
     begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-    const VkResult result = vkBeginCommandBuffer(made.commands_, &begin);
-    if (result != VK_SUCCESS) {
-        return callError("vkBeginCommandBuffer", result);
-    }
+    GLINT_TRY_DO(checkCall("vkBeginCommandBuffer", vkBeginCommandBuffer(made.commands_, &begin)));
     return made;
 }
 
-OneTimeCommands& OneTimeCommands::operator=(OneTimeCommands&& other) noexcept {
-    std::swap(device_, other.device_);
-    std::swap(pool_, other.pool_);
-    std::swap(commands_, other.commands_);
-    return *this;
-}
-
-OneTimeCommands::~OneTimeCommands() {
-    if (pool_ != VK_NULL_HANDLE) {
-        vkDestroyCommandPool(device_, pool_, nullptr);
-    }
-}
-
 Status OneTimeCommands::submit(const Context& context) {
-    VkResult result = vkEndCommandBuffer(commands_);
-    if (result != VK_SUCCESS) {
-        return callError("vkEndCommandBuffer", result);
-    }
+    GLINT_TRY_DO(checkCall("vkEndCommandBuffer", vkEndCommandBuffer(commands_)));
     VkSubmitInfo submit{};
     submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
     submit.commandBufferCount = 1;
     submit.pCommandBuffers = &commands_;
-    result = vkQueueSubmit(context.handles().queue, 1, &submit, VK_NULL_HANDLE);
-    return result == VK_SUCCESS ? okStatus() : Status(callError("vkQueueSubmit", result));
+    return checkCall("vkQueueSubmit", vkQueueSubmit(context.handles().queue, 1, &submit, VK_NULL_HANDLE));
 }
 
 void recordBarrier(VkCommandBuffer commands) {

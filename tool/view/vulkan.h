@@ -15,20 +15,41 @@ namespace glint::view {
 
 // Returns the error "vulkan-call" for a call that failed.
 Diagnostic callError(const char* call, VkResult result);
+Status checkCall(const char* call, VkResult result);
+
+// A handle that the device destroys with its owner.
+template <typename Handle, auto Destroy>
+class Owned {
+public:
+    Owned() = default;
+    Owned(VkDevice device, Handle handle) : device_(device), handle_(handle) {}
+    Owned(const Owned&) = delete;
+    Owned& operator=(const Owned&) = delete;
+    Owned(Owned&& other) noexcept {
+        *this = std::move(other);
+    }
+    Owned& operator=(Owned&& other) noexcept {
+        std::swap(device_, other.device_);
+        std::swap(handle_, other.handle_);
+        return *this;
+    }
+    ~Owned() {
+        if (handle_ != VK_NULL_HANDLE) {
+            Destroy(device_, handle_, nullptr);
+        }
+    }
+
+private:
+    VkDevice device_ = VK_NULL_HANDLE;
+    Handle handle_ = VK_NULL_HANDLE;
+};
+using OwnedMemory = Owned<VkDeviceMemory, vkFreeMemory>;
 
 // An image of RGBA with 8 bits that shaders and copies write and that is copied to the window.
 class DeviceImage {
 public:
     // Leaves the image in the layout UNDEFINED.
     static Result<DeviceImage> create(const Context& context, std::uint32_t width, std::uint32_t height);
-    DeviceImage() = default;
-    DeviceImage(const DeviceImage&) = delete;
-    DeviceImage& operator=(const DeviceImage&) = delete;
-    DeviceImage(DeviceImage&& other) noexcept {
-        *this = std::move(other);
-    }
-    DeviceImage& operator=(DeviceImage&& other) noexcept;
-    ~DeviceImage();
 
     VkImage image = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;
@@ -36,60 +57,34 @@ public:
     std::uint32_t height = 0;  // pixels
 
 private:
-    VkDevice device_ = VK_NULL_HANDLE;
-    VkDeviceMemory memory_ = VK_NULL_HANDLE;
+    OwnedMemory memory_;
+    Owned<VkImage, vkDestroyImage> image_;
+    Owned<VkImageView, vkDestroyImageView> view_;
 };
 
 // A buffer in the host's memory that is copied to the device.
 class HostBuffer {
 public:
     static Result<HostBuffer> create(const Context& context, std::size_t bytes);
-    HostBuffer() = default;
-    HostBuffer(const HostBuffer&) = delete;
-    HostBuffer& operator=(const HostBuffer&) = delete;
-    HostBuffer(HostBuffer&& other) noexcept {
-        *this = std::move(other);
-    }
-    HostBuffer& operator=(HostBuffer&& other) noexcept;
-    ~HostBuffer();
 
-    VkBuffer handle() const {
-        return buffer_;
-    }
-    // Its memory, which the device sees without further calls.
-    std::uint8_t* data() const {
-        return data_;
-    }
-    std::size_t bytes() const {
-        return bytes_;
-    }
+    VkBuffer handle = VK_NULL_HANDLE;
+    std::uint8_t* data = nullptr;  // its memory, which the device sees without further calls
+    std::size_t bytes = 0;
 
 private:
-    VkDevice device_ = VK_NULL_HANDLE;
-    VkBuffer buffer_ = VK_NULL_HANDLE;
-    VkDeviceMemory memory_ = VK_NULL_HANDLE;
-    std::uint8_t* data_ = nullptr;
-    std::size_t bytes_ = 0;
+    OwnedMemory memory_;
+    Owned<VkBuffer, vkDestroyBuffer> buffer_;
 };
 
 // Makes a pool of commands that are short-lived, and its command buffer. The caller destroys `pool`, also
 // after an error.
 Status createCommands(const Context& context, VkCommandPool& pool, VkCommandBuffer& commands);
 
-// A command buffer that is recorded and submitted once.
+// A command buffer that is recorded and submitted once. The device must be done with it when it is destroyed.
 class OneTimeCommands {
 public:
     // Begins to record.
     static Result<OneTimeCommands> create(const Context& context);
-    OneTimeCommands() = default;
-    OneTimeCommands(const OneTimeCommands&) = delete;
-    OneTimeCommands& operator=(const OneTimeCommands&) = delete;
-    OneTimeCommands(OneTimeCommands&& other) noexcept {
-        *this = std::move(other);
-    }
-    OneTimeCommands& operator=(OneTimeCommands&& other) noexcept;
-    // The device must be done with the commands.
-    ~OneTimeCommands();
 
     VkCommandBuffer handle() const {
         return commands_;
@@ -98,8 +93,7 @@ public:
     Status submit(const Context& context);
 
 private:
-    VkDevice device_ = VK_NULL_HANDLE;
-    VkCommandPool pool_ = VK_NULL_HANDLE;
+    Owned<VkCommandPool, vkDestroyCommandPool> pool_;
     VkCommandBuffer commands_ = VK_NULL_HANDLE;
 };
 

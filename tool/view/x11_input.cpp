@@ -1,4 +1,4 @@
-#include "view/x11_input.h"
+#include "view/script.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

@@ -1,6 +1,6 @@
 #include "cache/module_cache.h"
 
-#include "emit/compile_modules.h"
+#include "emit/modules.h"
 #include "spirv/compiler.h"
 #include "support/temporary_folder.h"
 #include "unit/emit/tiny_module.h"

@@ -1,6 +1,5 @@
 // Tests a package as C++ source: a program must get from it the same as from the package's folder.
-#include "emit/package/embed_source.h"
-
+#include "emit/package/header.h"
 #include "sample_scene.h"
 
 #include <glint/package.h>
@@ -21,8 +20,6 @@ namespace fs = std::filesystem;
 constexpr const char* kDump = R"(
 #include "sample_package.h"
 
-#include <fstream>
-#include <string>
 
 int main(int, char** argv) {
     for (const glint::package::EmbeddedFile& file : glint::scene_sample::embeddedPackage()) {

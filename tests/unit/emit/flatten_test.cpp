@@ -1,4 +1,4 @@
-#include "emit/glsl/flatten.h"
+#include "emit/glsl/passes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Tests writing into the working folder, hostile manifests, and several writers at once.
+#include "emit/package/compiled_package.h"
 #include "emit/package/manifest.h"
-#include "emit/package/write.h"
 #include "unit/emit/sample_scene.h"
 #include "unit/emit/text_package.h"
 

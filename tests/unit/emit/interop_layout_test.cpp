@@ -1,8 +1,8 @@
 // Every structure that host and device share must have the same layout in SPIR-V as in C++.
 
+#include "emit/context.h"
 #include "emit/material_layout.h"
-#include "emit/package/interop_layouts.h"
-#include "emit/sources.h"
+#include "emit/package/header.h"
 #include "spirv/reader.h"
 #include "unit/emit/sample_scene.h"
 

@@ -1,4 +1,5 @@
-#include "emit/compile_modules.h"
+#include "emit/modules.h"
+
 #include "emit/context.h"
 #include "unit/emit/sample_scene.h"
 #include "unit/emit/tiny_module.h"

@@ -1,6 +1,5 @@
-#include "emit/glsl/prune.h"
-
 #include "emit/compile.h"
+#include "emit/glsl/passes.h"
 #include "unit/emit/sample_scene.h"
 #include "unit/emit/tiny_module.h"
 

@@ -1,5 +1,4 @@
-#include "emit/sources.h"
-
+#include "emit/context.h"
 #include "support/features.h"
 #include "unit/emit/sample_scene.h"
 

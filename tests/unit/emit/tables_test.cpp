@@ -1,6 +1,6 @@
 #include "emit/package/tables.h"
 
-#include "emit/sources.h"
+#include "emit/context.h"
 #include "gltf/import.h"
 #include "support/features.h"
 #include "unit/emit/sample_scene.h"

@@ -1,8 +1,8 @@
 // A small compute shader as the module of a case.
 #pragma once
 
-#include "emit/compile_modules.h"
-#include "emit/glsl/items.h"
+#include "emit/glsl/text.h"
+#include "emit/modules.h"
 
 #include <cstdint>
 #include <string>

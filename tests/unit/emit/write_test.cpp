@@ -1,5 +1,4 @@
-#include "emit/package/write.h"
-
+#include "emit/package/compiled_package.h"
 #include "emit/package/manifest.h"
 #include "unit/emit/sample_scene.h"
 #include "unit/emit/text_package.h"

@@ -1,6 +1,6 @@
 // Tests what a calibration concludes from its measurements.
+#include "base/fields.h"
 #include "measure/calibration_measure.h"
-#include "measure/report_json.h"
 
 #include <glint/measure/calibration.h>
 

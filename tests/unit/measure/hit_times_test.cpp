@@ -1,5 +1,5 @@
 // Tests which passes count when strategies are compared.
-#include <glint/measure/hit_times.h>
+#include <glint/measure/point.h>
 
 #include <gtest/gtest.h>
 

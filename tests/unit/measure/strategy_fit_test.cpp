@@ -1,7 +1,6 @@
 // Tests the fit behind glint bench --calibrate: it must find the constants of planted devices.
-#include "measure/least_squares.h"
-
-#include <glint/measure/strategy_fit.h>
+#include <glint/measure/device_file.h>
+#include <glint/measure/statistics.h>
 
 #include <gtest/gtest.h>
 

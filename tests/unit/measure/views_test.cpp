@@ -1,6 +1,6 @@
 // Views of values that are given: statistics, colours, legends.
+#include "base/fields.h"
 #include "image/text.h"
-#include "measure/report_json.h"
 
 #include <glint/measure/views.h>
 

@@ -1,5 +1,5 @@
 // Compares interpolation with values computed by hand from glTF 2.0, appendix C.
-#include "session/interpolate.h"
+#include "session/pose.h"
 
 #include <gtest/gtest.h>
 

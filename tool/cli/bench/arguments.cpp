@@ -1,7 +1,5 @@
-#include "cli/bench/arguments.h"
-
 #include "base/text.h"
-#include "cli/bench/denoise_filter.h"
+#include "cli/bench/bench.h"
 #include "cli/options/options.h"
 
 #include <fmt/format.h>
@@ -69,17 +67,12 @@ std::optional<std::vector<std::uint64_t>> parseCounts(const std::string& text, s
 
 void addCounts(CLI::App& command, const std::string& flags, std::string& value, std::uint64_t min,
                std::uint64_t max, const std::string& help) {
-    addText(command, flags, value, "auto|LIST", help)
-        .check(CLI::Validator(
-            [min, max](const std::string& text) {
-                return text == "auto" || parseCounts(text, min, max)
-                           ? std::string()
-                           : fmt::format(
-                                 "\"{}\" is neither auto nor a list of numbers from {} to {}; give one", text,
+    addText(command, flags, value, "auto|LIST", help, [min, max](const std::string& text) {
+        return text == "auto" || parseCounts(text, min, max)
+                   ? std::string()
+                   : fmt::format("\"{}\" is neither auto nor a list of numbers from {} to {}; give one", text,
                                  min, max);
-            },
-            ""))
-        ->group(kGroup);
+    });
 }
 
 bool isTaken(const CLI::Option& option) {
@@ -97,46 +90,37 @@ bool isOfDeviceReport(const CLI::Option& option) {
 }  // namespace
 
 void addCalibrateOptions(CLI::App& command, CalibrateArguments& arguments) {
+    const OptionGroup group(command, kGroup);
     addFlag(command, "--calibrate", arguments.enabled,
-            "time the strategies on generated scenes instead of a\n"
-            "SCENE: which one is fastest on this device, depending on\n"
-            "the numbers of shaders and rays and on the cost of a hit")
-        .group(kGroup);
+            "time the strategies on generated scenes instead of a SCENE: which one is fastest on this "
+            "device, depending on the numbers of shaders and rays and on the cost of a hit");
     addCounts(command, "--calibrate-cases", arguments.caseWords, 1, synthetic::kMaxCases,
-              "numbers of shaders, 1 to 256, separated by commas; auto:\n"
-              "1,4,16,64,256, or 1,16,64 with --quick (default: auto)");
+              "numbers of shaders, 1 to 256, separated by commas; auto: 1,4,16,64,256, or 1,16,64 with "
+              "--quick (default: auto)");
     addCounts(command, "--calibrate-rays", arguments.rayWords, kMinRays, kMaxRays,
-              "numbers of rays, 1024 to 64M (k: thousands, M: millions);\n"
-              "auto: 1M,8M,32M, or 1M,8M with --quick; on a CPU\n"
-              "16k,64k,256k, or 16k,64k with --quick (default: auto)");
+              "numbers of rays, 1024 to 64M (k: thousands, M: millions); auto: 1M,8M,32M, or 1M,8M with "
+              "--quick; on a CPU 16k,64k,256k, or 16k,64k with --quick (default: auto)");
     addChoices(command, "--calibrate-cost", arguments.costs, {"cheap", "expensive"},
                "what shading a hit costs")
-        .type_name("LIST")
-        ->group(kGroup);
+        .type_name("LIST");
     addChoices(command, "--calibrate-coherence", arguments.coherences, {"coherent", "incoherent"},
-               "coherent: rays of a mirror; incoherent: rays of a white\nfloor, which go anywhere")
-        .type_name("LIST")
-        ->group(kGroup);
+               "coherent: rays of a mirror; incoherent: rays of a white floor, which go anywhere")
+        .type_name("LIST");
     addChoice(command, "--calibrate-shares", arguments.shares, {"uniform", "zipf"},
-              "how hits are shared among shaders; zipf: in the\n"
-              "proportions 1, 1/2, 1/3, …")
-        .group(kGroup);
+              "how hits are shared among shaders; zipf: in the proportions 1, 1/2, 1/3, …");
     addInteger(command, "--calibrate-lights", arguments.lights, 0, 64,
-               "point lights that shade each hit; 0: only the sky")
-        .group(kGroup);
+               "point lights that shade each hit; 0: only the sky");
     addFlag(command, "--calibrate-shadows", arguments.shadows,
-            "hits send shadow rays to those lights; needs\n--calibrate-lights")
-        .group(kGroup);
+            "hits send shadow rays to those lights; needs --calibrate-lights");
     addText(
         command, "--pictures", arguments.pictures, "DIR",
-        "with --calibrate: write the smallest picture of each\nscene here, too; existing files are replaced")
-        .group(kGroup);
+        "with --calibrate: write the smallest picture of each scene here, too; existing files are replaced");
+    const OptionGroup report(command, "Device report");
     addOutputFile(
         command, kDeviceReport, arguments.deviceReport, "FILE.json", {".json"},
         "write what Glint's makers need to know of this device: times of the strategies on five generated "
         "scenes and on SCENE, if there is one, and statistics of all pipelines. It has no names of hosts, "
-        "users or files (default: off)")
-        .group("Device report");
+        "users or files (default: off)");
 }
 
 void checkCalibrateOptions(const CLI::App& command, const CalibrateArguments& arguments) {
@@ -220,72 +204,53 @@ measure::Candidate parseCandidate(const std::string& text) {
 }
 
 void addSweepOptions(CLI::App& command, BenchArguments& arguments) {
-    const std::string sweep = "Sweep";
-    addFlag(command, "--quick", arguments.quick,
-            fmt::format("fewer values, pairs and rounds; a less certain reference,\n"
-                        "and {} unless --size is given",
-                        kQuickSize))
-        .group(sweep);
+    const OptionGroup group(command, "Sweep");
+    addFlag(
+        command, "--quick", arguments.quick,
+        fmt::format("fewer values, pairs and rounds; a less certain reference, and {} unless --size is given",
+                    kQuickSize));
     addChoice(command, "--depth", arguments.depth, {"singles", "pairs", "search"},
-              "how far the sweep goes; singles: one setting at a time;\n"
-              "pairs: then the pairs that matter; search: then a search\n"
-              "for the Pareto front")
-        .group(sweep);
+              "how far the sweep goes; singles: one setting at a time; pairs: then the pairs that matter; "
+              "search: then a search for the Pareto front");
     std::vector<std::string> parts = compiler::settingNames();
     parts.emplace_back(kDenoise);
     addChoices(command, "--only", arguments.only, parts,
-               "sweep only these settings, separated by commas (default:\n"
-               "all); denoise: the picture filtered by examples/denoise,\n"
-               "beside one of 64 samples")
-        .type_name("LIST")
-        ->group(sweep);
+               "sweep only these settings, separated by commas (default: all); denoise: the picture filtered "
+               "by examples/denoise, beside one of 64 samples")
+        .type_name("LIST");
     addInteger(command, "--rounds", arguments.rounds, 0, 1000,
-               fmt::format("pictures of each configuration, each with other random\n"
-                           "numbers; 0: {}, or {} with --quick or --calibrate",
-                           kRounds, kQuickRounds))
-        .group(sweep);
+               fmt::format("pictures of each configuration, each with other random numbers; 0: {}, or {} "
+                           "with --quick or --calibrate",
+                           kRounds, kQuickRounds));
     addInteger(command, "--batch", arguments.batch, 1, 64,
-               "configurations on the device at a time, besides the one\n"
-               "with which all are compared")
-        .group(sweep);
+               "configurations on the device at a time, besides the one with which all are compared");
     addTexts(command, "--candidate", arguments.candidateWords, "NAME=DIR",
              "measure this package of the scene, too; may be repeated")
-        .allow_extra_args(false)
-        ->group(sweep);
+        .allow_extra_args(false);
 }
 
 void addErrorOptions(CLI::App& command, BenchArguments& arguments) {
-    const std::string errors = "Errors";
+    const OptionGroup group(command, "Errors");
     addChoice(command, "--metric", arguments.metric, {"relMse", "trimmed", "rmse", "flip"},
-              "the error by which configurations are ordered; trimmed:\n"
-              "relMSE without the worst 0.1 % of pixels, so that\n"
-              "fireflies do not decide")
-        .group(errors);
-    addChoice(command, "--reference", arguments.reference, {"full", "same"},
-              "what errors are measured against; full: all of light\n"
-              "transport, that is unlimited bounces, effects that send\n"
-              "rays wherever light comes from, and so on; same: the\n"
-              "effects and bounces of the default")
-        .group(errors);
+              "the error by which configurations are ordered; trimmed: relMSE without the worst 0.1 % of "
+              "pixels, so that fireflies do not decide");
+    addChoice(
+        command, "--reference", arguments.reference, {"full", "same"},
+        "what errors are measured against; full: all of light transport, that is unlimited bounces, effects "
+        "that send rays wherever light comes from, and so on; same: the effects and bounces of the default");
     addReal(command, "--reference-error", arguments.referenceError, 0.0, 1.0,
-            fmt::format("relative error that the reference itself may have; 0: {},\n"
-                        "or {} with --quick (0 to 1, default: 0)",
-                        kReferenceError, kQuickReferenceError))
-        .group(errors);
+            fmt::format("relative error that the reference itself may have; 0: {}, or {} with --quick (0 to "
+                        "1, default: 0)",
+                        kReferenceError, kQuickReferenceError));
     addInteger(command, "--reference-spp", arguments.referenceSamples, 0, 1 << 24,
-               fmt::format("the most samples per pixel of the reference; 0: {}, or\n"
-                           "{} with --quick",
-                           kReferenceSamples, kQuickReferenceSamples))
-        .group(errors);
-    const std::string advice = "Advice";
+               fmt::format("the most samples per pixel of the reference; 0: {}, or {} with --quick",
+                           kReferenceSamples, kQuickReferenceSamples));
+    const OptionGroup advice(command, "Advice");
     addReal(command, "--budget-ms", arguments.budgetMs, 0.0, 1e9,
-            "write the most exact settings within this time; to\nDIR/settings.json, by the time of a picture "
-            "(0 to "
-            "1e9)")
-        .group(advice);
+            "write the most exact settings within this time; to DIR/settings.json, by the time of a picture "
+            "(0 to 1e9)");
     addReal(command, "--max-error", arguments.maxError, 0.0, 1e9,
-            "write the fastest settings with at most this error; in the\nmetric (0 to 1e9)")
-        .group(advice);
+            "write the fastest settings with at most this error; in the metric (0 to 1e9)");
 }
 
 }  // namespace
@@ -299,10 +264,9 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments) {
     arguments.render.renderer.height = 270;
     arguments.render.samples = 4;
     addText(command, "-o,--output", arguments.output, "DIR",
-            "folder of the results; index.html, bench.json,\n"
-            "settings.json and images/, with --calibrate\n"
-            "calibration.json; those of an earlier run are replaced, and\n"
-            "any other content refused; required but for --device-report");
+            "folder of the results; index.html, bench.json, settings.json and images/, with --calibrate "
+            "calibration.json; those of an earlier run are replaced, and any other content refused; required "
+            "but for --device-report");
     addSceneOptions(command, arguments.render);
     // Without --calibrate, checkCalibrateOptions() requires it.
     command.get_option("SCENE")->required(false)->description(

@@ -1,4 +1,4 @@
-#include "cli/bench/denoise_filter.h"
+#include "cli/bench/bench.h"
 
 // examples/denoise defines it, and links its filter.
 #ifdef GLINT_DENOISE_FILTER

@@ -1,7 +1,7 @@
 // The text that glint bench prints.
-#include "cli/bench/text.h"
-
 #include "base/text.h"
+
+#include "cli/bench/bench.h"
 #include "cli/table.h"
 
 #include <glint/measure/report.h>
@@ -53,8 +53,6 @@ std::string percentText(double share) {
 }
 
 using measure::Interval;
-using Rows = std::vector<std::vector<std::string>>;
-
 std::string timeText(const measure::BenchReport& report, std::size_t point) {
     const measure::Interval time = measure::timeOf(report, point);
     return fmt::format("{:.3g} ({:.3g} to {:.3g})", time.median, time.low, time.high);
@@ -229,8 +227,7 @@ std::string toText(const measure::BenchReport& report) {
 
 std::string toText(const measure::CalibrationReport& report) {
     const std::vector<std::string> names = strategiesOf(report);
-    std::vector<std::vector<std::string>> rows{
-        {"cases", "cost", "hits", "M rays", "hit %", "alike", "instructions"}};
+    Rows rows{{"cases", "cost", "hits", "M rays", "hit %", "alike", "instructions"}};
     for (const std::string& name : names) {
         rows[0].push_back(name == base() ? name + ", ms" : fmt::format("{} / {}", name, base()));
     }
@@ -258,7 +255,7 @@ std::string toText(const measure::CalibrationReport& report) {
 }
 
 std::string describe(const measure::DeviceFile& file) {
-    std::vector<std::vector<std::string>> rows{{"strategy"}};
+    Rows rows{{"strategy"}};
     for (const compiler::CostTermInfo& info : compiler::costTerms()) {
         rows.front().push_back(fmt::format("{}, {}", info.name, info.unit));
     }

@@ -1,12 +1,11 @@
-#include "cli/compile/arguments.h"
-
 #include "base/files.h"
 #include "base/text.h"
+#include "cli/compile/compile.h"
 #include "cli/options/options.h"
 #include "cli/options/setting_options.h"
 #include "emit/compile.h"
-#include "emit/package/embed_source.h"
-#include "emit/package/write.h"
+#include "emit/package/compiled_package.h"
+#include "emit/package/header.h"
 #include "materials/declarations.h"
 #include "resolve/host.h"
 
@@ -43,83 +42,68 @@ std::string complaintAboutFolder(const std::string& text) {
 }
 
 void addShaderOptions(CLI::App& command, CompileArguments& arguments) {
+    const OptionGroup group(command, "Shaders");
     addSettings(command, compiler::kOfCompile, arguments.settings);
     addCalibration(command, arguments.settings);
     addProfileInput(command, arguments.settings);
     addLockOptions(command, arguments.settings.lock, true);
     addHostOption(command, arguments.settings);
     addFlag(command, "--environment-map", arguments.settings.compile.environmentMap,
-            "rays that leave the scene see an environment map, which\n"
-            "every frame then needs, instead of a gradient")
-        .group("Shaders");
+            "rays that leave the scene see an environment map, which every frame then needs, instead of a "
+            "gradient");
     addFlag(command, "--debug-info", arguments.settings.compile.debugInfo,
-            "keep names in the SPIR-V, for debuggers")
-        .group("Shaders");
+            "keep names in the SPIR-V, for debuggers");
 }
 
 // Options for compilation by other processes.
 void addFarmOptions(CLI::App& command, CompileArguments& arguments, CLI::Option& dry) {
-    CLI::Option& plan = addText(command, kPlanOnly, arguments.planOnly.path, "DIR",
-                                "compile nothing: write each module's source into this\n"
-                                "folder, and a build.ninja that compiles them one by one\n"
-                                "and makes the package; an earlier plan is replaced");
-    CLI::Option& launcher = addText(command, kLauncher, arguments.launcher, "COMMAND",
-                                    "with --plan-only: the command that runs each compilation,\n"
-                                    "such as the client of a build farm");
-    CLI::Option& modules = addText(command, kModules, arguments.modules, "DIR",
-                                   "take modules that glint compile-module made instead of\n"
-                                   "compiling; build.ninja uses this");
+    const OptionGroup group(command, "Farm");
+    CLI::Option& plan =
+        addText(command, kPlanOnly, arguments.planOnly.path, "DIR",
+                "compile nothing: write each module's source into this folder, and a build.ninja that "
+                "compiles them one by one and makes the package; an earlier plan is replaced");
+    CLI::Option& launcher = addText(
+        command, kLauncher, arguments.launcher, "COMMAND",
+        "with --plan-only: the command that runs each compilation, such as the client of a build farm");
+    CLI::Option& modules =
+        addText(command, kModules, arguments.modules, "DIR",
+                "take modules that glint compile-module made instead of compiling; build.ninja uses this");
     launcher.needs(&plan);
     plan.excludes(&dry)->excludes(&modules);
     modules.excludes(&dry);
     command.get_option(kWatch)->excludes(&plan)->excludes(&modules);
-    for (CLI::Option* const option : {&plan, &launcher, &modules}) {
-        option->group("Farm");
-    }
 }
 
 void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
+    const OptionGroup group(command, "Output");
     addText(command, "-o,--output", arguments.output, "DIR",
-            "folder of the package; an earlier package is replaced,\n"
-            "and any other content refused (required without --embed\n"
-            "or --dry-run)")
-        .check(CLI::Validator(complaintAboutFolder, ""))
-        ->group("Output");
+            "folder of the package; an earlier package is replaced, and any other content refused (required "
+            "without --embed or --dry-run)",
+            complaintAboutFolder);
     addOutputFile(command, "--embed", arguments.embed, "FILE.cpp", {".cpp", ".cc", ".cxx"},
                   "write the package as a C++ source; a header comes beside it, for programs that ship no "
-                  "files, and -o "
-                  "is then optional")
-        .group("Output");
+                  "files, and -o is then optional");
     addChoices(command, "--emit", arguments.emit, {"glsl", "header", "library", "linkable"},
-               "what else the package contains, separated by commas:\n"
-               "glsl: the shaders' sources; header: C++ tables; library:\n"
-               "shading as GLSL functions, for shaders of your own;\n"
-               "linkable: these functions as SPIR-V, for linkers")
-        .group("Output");
-    CLI::Option& dry =
-        addFlag(command, "--dry-run", arguments.dryRun,
-                "read, check and plan everything as usual; compile nothing\nand write nothing");
-    dry.group("Output");
+               "what else the package contains, separated by commas: glsl: the shaders' sources; header: C++ "
+               "tables; library: shading as GLSL functions, for shaders of your own; linkable: these "
+               "functions as SPIR-V, for linkers");
+    CLI::Option& dry = addFlag(command, "--dry-run", arguments.dryRun,
+                               "read, check and plan everything as usual; compile nothing and write nothing");
     CLI::Option& watch = addFlag(command, kWatch, arguments.watch,
-                                 "compile again whenever an input changes, until Ctrl-C;\n"
-                                 "increments the counter in DIR.stamp after each new package");
-    watch.group("Output")->excludes(&dry);
+                                 "compile again whenever an input changes, until Ctrl-C; increments the "
+                                 "counter in DIR.stamp after each new package");
+    watch.excludes(&dry);
     addFlag(command, "--early", arguments.early,
-            "with --watch: also write an early package that shows an\n"
-            "edit of a pack as a draft")
-        .group("Output")
-        ->needs(&watch);
+            "with --watch: also write an early package that shows an edit of a pack as a draft")
+        .needs(&watch);
     addJobs(command, arguments.settings.compile.jobs);
     addCacheOptions(command, arguments.cache);
     CLI::Option& depfile = addOutputFile(command, "--depfile", arguments.depfile.file, "FILE", {},
                                          "list the files that were read, for Make and Ninja");
-    depfile.group("Output");
     addTexts(command, "--depfile-target", arguments.depfile.targets, "NAME",
-             "target of that list (default: the package's\n"
-             "manifest.json, else the file of --embed); needs --depfile;\n"
-             "may be repeated")
-        .group("Output")
-        ->needs(&depfile)
+             "target of that list (default: the package's manifest.json, else the file of --embed); needs "
+             "--depfile; may be repeated")
+        .needs(&depfile)
         ->allow_extra_args(false);
     addFarmOptions(command, arguments, dry);
 }
@@ -128,7 +112,7 @@ void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
 
 void addCompileOptions(CLI::App& command, CompileArguments& arguments) {
     addTexts(command, "SCENE", arguments.scenes, "FILE",
-             "the scenes, .gltf or .glb; several share the shaders,\nand each has its own tables")
+             "the scenes, .gltf or .glb; several share the shaders, and each has its own tables")
         .required();
     addReadingOptions(command, arguments.settings);
     addSettingsFile(command, arguments.settingsFile);

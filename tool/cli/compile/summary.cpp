@@ -1,8 +1,7 @@
-#include "cli/compile/summary.h"
-
 #include "base/files.h"
 #include "base/json.h"
 #include "cache/store.h"
+#include "cli/compile/compile.h"
 #include "cli/table.h"
 
 #include <fmt/format.h>

@@ -1,11 +1,10 @@
-#include "cli/compile/watch.h"
-
 #include "base/clock.h"
 #include "base/files.h"
 #include "base/input_watch.h"
+#include "cli/compile/compile.h"
 #include "cli/options/options.h"
 #include "cli/options/setting_options.h"
-#include "emit/package/write.h"
+#include "emit/package/compiled_package.h"
 
 #include <glint/package.h>
 

@@ -1,7 +1,6 @@
-#include "cli/explain/text.h"
-
+#include "cli/report.h"
 #include "cli/table.h"
-#include "emit/package/json.h"
+#include "emit/package/manifest.h"
 #include "plan/plan_cost.h"
 
 #include <fmt/format.h>
@@ -14,8 +13,6 @@
 namespace glint::cli {
 
 namespace {
-
-using Rows = std::vector<std::vector<std::string>>;
 
 const compiler::Case& caseOf(const compiler::Build& build, int shaderId) {
     return build.plan.cases[static_cast<std::size_t>(shaderId)];
@@ -275,8 +272,7 @@ std::string strategiesText(const compiler::StrategyAdvice& advice) {
     std::string text = fmt::format("\nStrategies for a frame of {:.3g} million pixels, costs {}{}\n\n",
                                    advice.pixels / 1e6, costs, advice.device);
     if (facts.rays > 0.0) {
-        std::vector<std::vector<std::string>> rows{
-            {"strategy, ms", "all", "launches", "rays", "ordering", "shading", "divergence"}};
+        Rows rows{{"strategy, ms", "all", "launches", "rays", "ordering", "shading", "divergence"}};
         for (const compiler::StrategyEstimate& estimate : advice.choice.estimates) {
             rows.push_back({estimate.strategy, fmt::format("{:.3f}", estimate.ms),
                             sumOf(estimate, {compiler::CostTerm::Launches, compiler::CostTerm::Cases}),
@@ -404,13 +400,12 @@ base::Json materialToJson(const compiler::Build& build, int material) {
             {"animated", changesOf(*build.scenes, material)}};
 }
 
-std::vector<std::vector<std::string>> materialRows(const compiler::Build& build, int material,
-                                                   Detail detail) {
+Rows materialRows(const compiler::Build& build, int material, Detail detail) {
     const std::vector<const compiler::Key*> keys = keysOf(build, material);
     if (keys.empty()) {
         return {};
     }
-    std::vector<std::vector<std::string>> rows;
+    Rows rows;
     for (const compiler::Key* key : keys) {
         const compiler::Case& shader = caseOf(build, key->shaderId);
         rows.push_back({"  key", fmt::format("0x{:016x}", key->mask)});

@@ -1,7 +1,7 @@
 #include "cli/inspect/pipelines.h"
 
 #include "cli/command_line.h"
-#include "cli/render/device_report.h"
+#include "cli/render/report.h"
 #include "cli/table.h"
 
 #include <glint/measure/observer.h>
@@ -83,11 +83,10 @@ std::string describe(const inspect::PipelineReport& report) {
 
 std::string toText(const inspect::PipelineReport& report, const inspect::PipelineReport* other,
                    const std::string& sort, Detail detail) {
-    std::vector<std::vector<std::string>> fields{
-        {"package", report.package},
-        {"device",
-         fmt::format("{} ({}), subgroups of {}", report.device, report.driver, report.subgroupSize)},
-        {"pipelines", fmt::format("{}, by {}", report.pipelines.size(), sort)}};
+    Rows fields{{"package", report.package},
+                {"device",
+                 fmt::format("{} ({}), subgroups of {}", report.device, report.driver, report.subgroupSize)},
+                {"pipelines", fmt::format("{}, by {}", report.pipelines.size(), sort)}};
     if (other != nullptr) {
         fields.push_back({"before →", describe(*other)});
     }
@@ -165,7 +164,7 @@ bool judge(const Console& console, const inspect::PipelineReport& report,
 std::string pipelineTable(const inspect::PipelineReport& report, const inspect::PipelineReport* other,
                           Detail detail) {
     const bool traces = haveTracers(report);
-    std::vector<std::vector<std::string>> rows{{"pipeline"}};
+    Rows rows{{"pipeline"}};
     if (traces) {
         rows.front().emplace_back("tracer");
     }
@@ -181,24 +180,22 @@ std::string pipelineTable(const inspect::PipelineReport& report, const inspect::
 }
 
 void addPipelineReportOptions(CLI::App& command, PackagePipelineArguments& arguments) {
-    constexpr const char* kGroup = "Pipelines";
+    const OptionGroup group(command, "Pipelines");
     CLI::Option* const pipelines =
-        addFlag(command, "--pipelines", arguments.enabled,
-                "make every pipeline of the package on the device, and\nshow what its driver says of them")
-            .group(kGroup);
-    const auto ofPipelines = [&](CLI::Option& option) { option.needs(pipelines)->group(kGroup); };
-    addDeviceChoice(command, arguments.device, arguments.validate, "", kGroup);
+        &addFlag(command, "--pipelines", arguments.enabled,
+                 "make every pipeline of the package on the device, and show what its driver says of them");
+    const auto ofPipelines = [&](CLI::Option& option) { option.needs(pipelines); };
+    addDeviceChoice(command, arguments.device, arguments.validate);
     ofPipelines(*command.get_option("--device"));
     ofPipelines(*command.get_option("--validate"));
     ofPipelines(addChoice(command, "--sort", arguments.sort, sortWords(), "what the list is sorted by"));
-    ofPipelines(addText(command, "--compare", arguments.compare, "FILE|DIR",
-                        "show what was before beside it: a report of --json, or\nanother package (default: "
-                        "nothing)"));
     ofPipelines(
-        addText(command, "--budget", arguments.budget, "FILE",
-                "report an error where a pipeline exceeds a limit of the\nfile (default: no limits)"));
+        addText(command, "--compare", arguments.compare, "FILE|DIR",
+                "show what was before beside it: a report of --json, or another package (default: nothing)"));
+    ofPipelines(addText(command, "--budget", arguments.budget, "FILE",
+                        "report an error where a pipeline exceeds a limit of the file (default: no limits)"));
     ofPipelines(addInteger(command, "--pipeline-threads", arguments.threads, 0, 1024,
-                           "threads that make pipelines; 0: as many as the machine\nruns at once"));
+                           "threads that make pipelines; 0: as many as the machine runs at once"));
 }
 
 Result<int> showPipelines(const Console& console, const Package& package, const std::string& folder,

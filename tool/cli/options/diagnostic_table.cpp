@@ -1,4 +1,4 @@
-#include "cli/options/diagnostic_table.h"
+#include "cli/console.h"
 
 #include <set>
 #include <sstream>

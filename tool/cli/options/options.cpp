@@ -1,7 +1,7 @@
 #include "cli/options/options.h"
 
 #include "base/text.h"
-#include "cli/options/diagnostic_table.h"
+#include "cli/console.h"
 #include "cli/table.h"
 #include "settings/settings.h"
 
@@ -20,8 +20,8 @@ namespace {
 
 // CLI11 shows a check's description beside the option's type. It is empty here, because the help text already
 // says it.
-CLI::Option& check(CLI::Option* option, const std::function<std::string(const std::string&)>& test) {
-    option->check(CLI::Validator(test, ""));
+CLI::Option& check(CLI::Option* option, const Complaint& complaint) {
+    option->check(CLI::Validator(complaint, ""));
     return *option;
 }
 
@@ -53,10 +53,11 @@ CLI::Option& checkChoice(CLI::Option* option, const std::vector<std::string>& ch
 
 }  // namespace
 
-std::string withNote(const std::string& help, const std::string& note) {
-    const std::size_t lineBreak = help.rfind('\n');
-    const std::size_t last = help.size() - (lineBreak == std::string::npos ? 0 : lineBreak + 1);
-    return help + (last + 1 + note.size() > kHelpColumns ? "\n" : " ") + note;
+std::string helpText(const std::string& help, const std::string& note) {
+    const std::string text = wrapped(help, kHelpColumns);
+    const std::size_t lineBreak = text.rfind('\n');
+    const std::size_t last = text.size() - (lineBreak == std::string::npos ? 0 : lineBreak + 1);
+    return note.empty() ? text : text + (last + 1 + note.size() > kHelpColumns ? "\n" : " ") + note;
 }
 
 CLI::App& addCommand(CLI::App& app, const CommandText& text) {
@@ -76,7 +77,7 @@ CLI::Option& addChoice(CLI::App& command, const std::string& flags, const std::s
                                       set(words.front());
                                       return true;
                                   },
-                                  usual.empty() ? help : withNote(help, fmt::format("(default: {})", usual)))
+                                  helpText(help, usual.empty() ? "" : fmt::format("(default: {})", usual)))
                               ->type_name(fmt::format("{}", fmt::join(choices, "|")));
     return checkChoice(option, choices);
 }
@@ -93,7 +94,7 @@ CLI::Option& addChoices(CLI::App& command, const std::string& flags, std::vector
         command
             .add_option(
                 flags, values,
-                values.empty() ? help : withNote(help, fmt::format("(default: {})", fmt::join(values, ","))))
+                helpText(help, values.empty() ? "" : fmt::format("(default: {})", fmt::join(values, ","))))
             ->type_name(fmt::format("{}", fmt::join(choices, ",")))
             ->delimiter(',')
             ->allow_extra_args(false);
@@ -125,14 +126,14 @@ CLI::Option& addInteger(CLI::App& command, const std::string& flags, std::int64_
                         std::int64_t max, const std::string& help) {
     CLI::Option* option =
         command
-            .add_option(flags, value, withNote(help, fmt::format("({} to {}, default: {})", min, max, value)))
+            .add_option(flags, value, helpText(help, fmt::format("({} to {}, default: {})", min, max, value)))
             ->type_name("N");
     return check(option, [min, max](const std::string& text) { return complaintAboutWhole(text, min, max); });
 }
 
 CLI::Option& addReal(CLI::App& command, const std::string& flags, double& value, double min, double max,
                      const std::string& help) {
-    CLI::Option* option = command.add_option(flags, value, help)->type_name("X");
+    CLI::Option* option = command.add_option(flags, value, helpText(help))->type_name("X");
     return check(option, [min, max](const std::string& text) {
         double number = 0.0;
         return compiler::parseReal(text, min, max, number)
@@ -142,15 +143,17 @@ CLI::Option& addReal(CLI::App& command, const std::string& flags, double& value,
 }
 
 CLI::Option& addText(CLI::App& command, const std::string& flags, std::string& value, const std::string& type,
-                     const std::string& help) {
-    CLI::Option* option = command.add_option(flags, value, help)->type_name(type);
-    return check(option,
-                 [](const std::string& text) { return text.empty() ? std::string(kEmpty) : std::string(); });
+                     const std::string& help, const Complaint& complaint) {
+    CLI::Option* option = command.add_option(flags, value, helpText(help))->type_name(type);
+    return check(option, [complaint](const std::string& text) {
+        return text.empty() ? std::string(kEmpty) : complaint ? complaint(text) : std::string();
+    });
 }
 
 CLI::Option& addTexts(CLI::App& command, const std::string& flags, std::vector<std::string>& values,
                       const std::string& type, const std::string& help) {
-    CLI::Option* option = command.add_option(flags, values, help)->type_name(type)->allow_extra_args();
+    CLI::Option* option =
+        command.add_option(flags, values, helpText(help))->type_name(type)->allow_extra_args();
     return check(option,
                  [](const std::string& text) { return text.empty() ? std::string(kEmpty) : std::string(); });
 }
@@ -158,8 +161,7 @@ CLI::Option& addTexts(CLI::App& command, const std::string& flags, std::vector<s
 CLI::Option& addOutputFile(CLI::App& command, const std::string& flags, std::string& value,
                            const std::string& type, const std::vector<std::string>& extensions,
                            const std::string& help) {
-    const std::string whole = wrapped(help + "; an existing file is replaced", kHelpColumns);
-    CLI::Option& option = addText(command, flags, value, type, whole);
+    CLI::Option& option = addText(command, flags, value, type, help + "; an existing file is replaced");
     return extensions.empty() ? option : check(&option, [extensions](const std::string& text) {
         std::string extension = std::filesystem::path(text).extension().string();
         std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -173,8 +175,8 @@ CLI::Option& addOutputFile(CLI::App& command, const std::string& flags, std::str
 }
 
 CLI::Option& addFlag(CLI::App& command, const std::string& flags, bool& value, const std::string& help) {
-    const std::string whole = value ? withNote(help, "(default: on)") : help;
-    return *command.add_flag(switchFlags(flags, "true", "false"), value, whole);
+    return *command.add_flag(switchFlags(flags, "true", "false"), value,
+                             helpText(help, value ? "(default: on)" : ""));
 }
 
 std::string switchFlags(const std::string& flags, const std::string& on, const std::string& off) {
@@ -196,16 +198,11 @@ void addJobs(CLI::App& command, int& jobs) {
           [](const std::string& text) { return complaintAboutWhole(text, 0, kMost); });
 }
 
-void addDeviceChoice(CLI::App& command, std::string& device, bool& validate, const std::string& checks,
-                     const std::string& group) {
-    addText(command, "--device", device, "NAME", "part of the GPU's name (default: the first suitable one)")
-        .group(group);
+void addDeviceChoice(CLI::App& command, std::string& device, bool& validate, const std::string& checks) {
+    addText(command, "--device", device, "NAME", "part of the GPU's name (default: the first suitable one)");
     addFlag(
         command, "--validate", validate,
-        wrapped("run with the Vulkan validation layers, synchronisation included: any message is an error" +
-                    checks,
-                kHelpColumns))
-        .group(group);
+        "run with the Vulkan validation layers, synchronisation included: any message is an error" + checks);
 }
 
 void addWords(const CLI::Option& option, std::vector<std::string>& words) {
@@ -305,22 +302,18 @@ void ReportArguments::check() const {
 }
 
 void addReportOptions(CLI::App& command, ReportArguments& arguments) {
-    const std::string group = "Report";
+    const OptionGroup group(command, "Report");
     if (command.get_option_no_throw("--json") == nullptr) {
-        addFlag(command, "--json", arguments.json, "print the result and all diagnostics as JSON")
-            .group(group);
+        addFlag(command, "--json", arguments.json, "print the result and all diagnostics as JSON");
     }
-    addFlag(command, "-q,--quiet", arguments.quiet, "print only errors").group(group);
-    addFlag(command, "-v,--verbose", arguments.verbose, "print what is read, decided and made, with times")
-        .group(group);
+    addFlag(command, "-q,--quiet", arguments.quiet, "print only errors");
+    addFlag(command, "-v,--verbose", arguments.verbose, "print what is read, decided and made, with times");
     addChoice(command, "--color", arguments.color, {"auto", "always", "never"},
-              "colour of diagnostics; auto: where stderr is a terminal\nand NO_COLOR is not set")
-        .group(group);
+              "colour of diagnostics; auto: where stderr is a terminal and NO_COLOR is not set");
     command
         .add_flag("--werror", arguments.werror,
                   "treat warnings as errors; --werror=ID: only those of this\n"
                   "id; may be repeated")
-        ->group(group)
         ->check(CLI::Validator(
             [](const std::string& id) { return id == kAll ? std::string() : checkId(id, kWarning); }, ""));
     command
@@ -329,7 +322,6 @@ void addReportOptions(CLI::App& command, ReportArguments& arguments) {
                     "-Werror=ID: the same as --werror; may be repeated")
         ->type_name("no-ID|error=ID")
         ->allow_extra_args(false)
-        ->group(group)
         ->check(CLI::Validator(checkWarning, ""));
 }
 

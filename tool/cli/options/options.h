@@ -1,8 +1,8 @@
-// Declares the options of subcommands: choices, ranges and defaults are checked and documented in one place.
+// The layout of help, what is wrong with command lines, and options of subcommands: choices, ranges and
+// defaults are checked and documented in one place.
 #pragma once
 
 #include "cli/console.h"
-#include "cli/options/usage.h"
 
 #include <glint/result.h>
 
@@ -10,22 +10,92 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace glint::cli {
 
+struct Slip {
+    std::string command;  // empty: glint itself
+    std::string message;
+};
+
+// Returns null if there is no command of that name.
+const CLI::App* findCommand(const CLI::App& app, std::string_view name);
+
+// Finds misspelt commands and options, and empty values. For the former CLI11 would complain about something
+// that is missing; for the latter it would take the next argument as the value. `arguments` lack the
+// program's name.
+std::optional<Slip> findSlip(const CLI::App& app, std::span<const char* const> arguments);
+
+// Says in Glint's words what CLI11 found wrong with a command line, and what to do.
+std::string explain(const CLI::ParseError& error, const CLI::App& command);
+
+// The columns of an option's text in the whole help, and the message about an empty value.
+inline constexpr std::size_t kHelpColumns = 58;
+inline constexpr const char* kEmpty = "is empty; give a value";
+
+// The text of a command's help besides its options.
+struct CommandText {
+    std::string name;
+    std::string what{};                   // one sentence without a full stop
+    std::vector<std::string> examples{};  // two, whole command lines
+    std::vector<std::string> usual{};     // the options that most people use, at most ten: "--size"
+};
+
+// Returns what an option's text says first, in one line: before details, defaults and the meanings of values.
+std::string shortText(const CLI::Option& option);
+// Returns "-q,--[no-]quiet", or the name of a positional argument.
+std::string namesOf(const CLI::Option& option);
+
+// The layout of help. --help fits a screen: what the command is for, its usual options in a line each, and
+// examples. --help-all lists every option. Texts of options say which others they need and exclude, so
+// CLI11's notes about these are left out.
+class HelpFormatter : public CLI::Formatter {
+public:
+    explicit HelpFormatter(CommandText text = {});
+    std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override;
+    std::string make_option_name(const CLI::Option* option, bool isPositional) const override;
+    std::string make_option_opts(const CLI::Option* option) const override;
+
+private:
+    std::string shortHelp(const CLI::App& command, const std::string& name) const;
+
+    CommandText text_;
+};
+
+// --- Options of subcommands ---
+
 // The group of options about how a command works, which change nothing in what it writes.
 inline constexpr const char* kWork = "Work";
 
-// The work of a subcommand once its command line is parsed. Returns the exit code; an error is reported.
-using Action = std::function<Result<int>(const Console&)>;
+// While it lives, the options that are added to the command belong to the group of that name.
+class OptionGroup {
+public:
+    OptionGroup(CLI::App& command, const std::string& name)
+        : command_(command), before_(command.option_defaults()->get_group()) {
+        command.option_defaults()->group(name);
+    }
+    ~OptionGroup() {
+        command_.option_defaults()->group(before_);
+    }
+    OptionGroup(const OptionGroup&) = delete;
+    OptionGroup& operator=(const OptionGroup&) = delete;
+
+private:
+    CLI::App& command_;
+    std::string before_;
+};
 
 // Adds a subcommand with its short help.
 CLI::App& addCommand(CLI::App& app, const CommandText& text);
 
-// Appends a note to an option's text: on its last line, or on a new line if that would be too long.
-std::string withNote(const std::string& help, const std::string& note);
+// Returns an option's text in lines of kHelpColumns, with a note on the last line, or on a new line if that
+// would be too long. The functions below do the same with the texts that they get.
+std::string helpText(const std::string& help, const std::string& note = {});
 // Adds an option that takes one of `choices`; the text in `value`, if any, is the default. A misspelt value
 // suggests the nearest choice.
 CLI::Option& addChoice(CLI::App& command, const std::string& flags, std::string& value,
@@ -58,9 +128,11 @@ CLI::Option& addInteger(CLI::App& command, const std::string& flags, std::int64_
 // Adds an option for a number within [min, max].
 CLI::Option& addReal(CLI::App& command, const std::string& flags, double& value, double min, double max,
                      const std::string& help);
-// Adds an option for a path or a name: any text except an empty one.
+// Says what is wrong with a value; empty: nothing is.
+using Complaint = std::function<std::string(const std::string&)>;
+// Adds an option for a path or a name: any text except an empty one, and one that there is a complaint about.
 CLI::Option& addText(CLI::App& command, const std::string& flags, std::string& value, const std::string& type,
-                     const std::string& help);
+                     const std::string& help, const Complaint& complaint = {});
 // Adds an option for one or more texts.
 CLI::Option& addTexts(CLI::App& command, const std::string& flags, std::vector<std::string>& values,
                       const std::string& type, const std::string& help);
@@ -77,8 +149,7 @@ std::string switchFlags(const std::string& flags, const std::string& on, const s
 // Adds --jobs: how many threads work at the same time.
 void addJobs(CLI::App& command, int& jobs);
 // Adds --device and --validate. `checks` is what the latter does besides.
-void addDeviceChoice(CLI::App& command, std::string& device, bool& validate, const std::string& checks = {},
-                     const std::string& group = "Device");
+void addDeviceChoice(CLI::App& command, std::string& device, bool& validate, const std::string& checks = {});
 
 // Appends a parsed option as it would be given again, with one word for each value.
 void addWords(const CLI::Option& option, std::vector<std::string>& words);

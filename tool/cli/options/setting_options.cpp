@@ -6,7 +6,6 @@
 #include "settings/descriptor.h"
 
 #include <glint/measure/settings.h>
-#include <glint/measure/settings_file.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -59,13 +58,12 @@ std::string helpOf(const compiler::Descriptor& row, const compiler::Settings& se
     if (!others.empty()) {
         text += fmt::format("; others: {}", fmt::join(others, ", "));
     }
-    text = wrapped(text, kHelpColumns);
-    if (values.form == compiler::ValueForm::Whole || values.form == compiler::ValueForm::Real) {
-        return withNote(text, fmt::format("({} to {}, default: {})", compiler::boundText(values.min),
-                                          compiler::boundText(values.max), values.text(settings)));
-    }
     const std::string usual = values.text(settings);
-    return isSwitch(row) && usual == "off" ? text : withNote(text, fmt::format("(default: {})", usual));
+    if (values.form == compiler::ValueForm::Whole || values.form == compiler::ValueForm::Real) {
+        return helpText(text, fmt::format("({} to {}, default: {})", compiler::boundText(values.min),
+                                          compiler::boundText(values.max), usual));
+    }
+    return helpText(text, isSwitch(row) && usual == "off" ? "" : fmt::format("(default: {})", usual));
 }
 
 void addSetting(CLI::App& command, const compiler::Descriptor& row, compiler::Settings& settings) {
@@ -208,67 +206,61 @@ void checkProfile(const CLI::App& command, const compiler::Settings& settings) {
 }
 
 void addProfileInput(CLI::App& command, compiler::Settings& settings) {
-    addText(command, "--profile", settings.profile, "FILE",
-            "hits that `glint render --profile FILE` counted, for\n"
-            "--merge profile; --merge auto uses them too")
+    addText(
+        command, "--profile", settings.profile, "FILE",
+        "hits that `glint render --profile FILE` counted, for --merge profile; --merge auto uses them too")
         .group("Shaders");
 }
 
 void addCalibration(CLI::App& command, compiler::Settings& settings) {
+    const OptionGroup group(command, "Shaders");
     addText(command, "--calibration", settings.calibration, "FILE.json",
-            "device.json of `glint bench --calibrate`: what strategies\n"
-            "cost on a device (default: constants that are built in)")
-        .group("Shaders");
+            "device.json of `glint bench --calibrate`: what strategies cost on a device (default: constants "
+            "that are built in)");
     addText(command, "--gpu", settings.gpu, "NAME|FILE",
-            "what the compiler of a GPU makes of the shaders, for\n"
-            "--strategy auto and --merge auto: a name such as navi31,\n"
-            "or a table; device: this one, with --package (default:\n"
-            "nothing)")
-        .group("Shaders");
+            "what the compiler of a GPU makes of the shaders, for --strategy auto and --merge auto: a name "
+            "such as navi31, or a table; device: this one, with --package (default: nothing)");
 }
 
 void addReadingOptions(CLI::App& command, compiler::Settings& settings) {
     addText(command, "--scene", settings.sceneInFile, "NAME|INDEX",
-            "draw this one of the file's scenes; numbers count from 0\n(default: the file's own choice, or "
+            "draw this one of the file's scenes; numbers count from 0 (default: the file's own choice, or "
             "else the first)");
     addText(command, "--variant", settings.variant, "NAME",
-            "use the materials of this variant of the scene\n(KHR_materials_variants; default: none)");
+            "use the materials of this variant of the scene (KHR_materials_variants; default: none)");
     addFlag(command, "--strict-paths", settings.strictPaths,
-            "refuse symbolic links that lead out of the scene's\nfolder: for scenes that strangers made");
+            "refuse symbolic links that lead out of the scene's folder: for scenes that strangers made");
     addTexts(command, "--materials", settings.materials, "DIR",
-             "add the material features and effects that this folder\n"
-             "declares (docs/material_features.md, docs/effects.md);\nmay be repeated")
+             "add the material features and effects that this folder declares (docs/material_features.md, "
+             "docs/effects.md); may be repeated")
         .allow_extra_args(false);
 }
 
 void addHostOption(CLI::App& command, compiler::Settings& settings) {
     addText(command, "--host", settings.compile.host, "DIR",
-            "read geometry, materials, textures, lights and sky by the\n"
-            "functions in this folder's GLSL (docs/host.md)")
+            "read geometry, materials, textures, lights and sky by the functions in this folder's GLSL "
+            "(docs/host.md)")
         .group("Shaders");
 }
 
 void addLockOptions(CLI::App& command, compiler::LockRequest& request, bool isWritten) {
+    const OptionGroup group(command, "Shaders");
     request.isWritten = isWritten;
-    CLI::Option& lock = addText(command, "--lock", request.file, "FILE",
-                                isWritten ? "keep shader IDs from build to build in this file, which\n"
-                                            "is created, and extended by new keys; commit it"
-                                          : "take shader IDs from this file, which glint compile\n"
-                                            "--lock keeps");
-    lock.group("Shaders");
+    CLI::Option& lock =
+        addText(command, "--lock", request.file, "FILE",
+                isWritten ? "keep shader IDs from build to build in this file, which is created, and "
+                            "extended by new keys; commit it"
+                          : "take shader IDs from this file, which glint compile --lock keeps");
     if (!isWritten) {
         return;
     }
     CLI::Option& frozen = addFlag(command, "--locked", request.frozen,
-                                  "fail, and write nothing, if the lock file would change\n(needs --lock)");
+                                  "fail, and write nothing, if the lock file would change (needs --lock)");
     CLI::Option& prune = addFlag(command, "--lock-prune", request.prune,
-                                 "remove keys that no scene has from the lock file, which\n"
-                                 "frees their IDs (needs --lock, excludes --locked)");
+                                 "remove keys that no scene has from the lock file, which frees their IDs "
+                                 "(needs --lock, excludes --locked)");
     frozen.needs(&lock);
     prune.needs(&lock)->excludes(&frozen);
-    for (CLI::Option* option : {&frozen, &prune}) {
-        option->group("Shaders");
-    }
 }
 
 Diagnostic idleWarning(const std::string& where, const std::string& words, const std::string& reason) {
@@ -356,8 +348,7 @@ std::vector<std::string> joinSwitches(const CLI::App& command, const std::vector
 
 void addSettingsFile(CLI::App& command, std::string& file) {
     addText(command, kOption, file, "FILE.json",
-            "read options from this file, such as `glint bench`\n"
-            "writes; options on the command line win")
+            "read options from this file, such as `glint bench` writes; options on the command line win")
         .group("Settings");
 }
 

@@ -1,6 +1,5 @@
-#include "cli/options/usage.h"
-
 #include "base/text.h"
+#include "cli/options/options.h"
 
 #include <algorithm>
 #include <cctype>

@@ -6,12 +6,147 @@
 #include "cli/table.h"
 #include "emit/compile.h"
 #include "image/image_file.h"
+#include "settings/settings.h"
 
 #include <glint/measure/views.h>
 
 #include <fmt/format.h>
 
+#include <numeric>
+
 namespace glint::cli {
+
+// --- Movement ---
+
+namespace {
+
+constexpr std::int64_t kMaxFrame = 1000000;
+constexpr double kMaxSeconds = 1e6;
+
+std::string animationName(const gltf::Scene& scene, std::size_t index) {
+    const std::string& name = scene.animations[index].name;
+    return name.empty() ? std::to_string(index) : name;
+}
+
+std::optional<std::int64_t> parseFrame(std::string_view text) {
+    std::int64_t frame = 0;
+    return compiler::parseWhole(text, 0, kMaxFrame, frame) ? std::optional(frame) : std::nullopt;
+}
+
+Result<std::vector<std::size_t>> chooseAnimations(const gltf::Scene& scene, const std::string& wanted,
+                                                  bool followsTime) {
+    std::vector<std::size_t> all(scene.animations.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    if (all.empty() && followsTime) {
+        return all;
+    }
+    if (all.empty()) {
+        return makeError("animation-missing", scene.path, "has no animation to play",
+                         "leave out --frames and --time");
+    }
+    if (wanted == "all") {
+        return all;
+    }
+    for (const std::size_t index : all) {
+        if (scene.animations[index].name == wanted) {
+            return std::vector{index};
+        }
+    }
+    const std::optional<std::int64_t> number = parseFrame(wanted);
+    if (number && static_cast<std::size_t>(*number) < all.size()) {
+        return std::vector{static_cast<std::size_t>(*number)};
+    }
+    std::vector<std::string> names;
+    names.reserve(all.size() + 1);
+    for (const std::size_t index : all) {
+        names.push_back(animationName(scene, index));
+    }
+    const std::string known = base::enumeration(names);
+    names.emplace_back("all");
+    return makeError("animation-unknown", scene.path,
+                     "has no animation \"" + wanted + "\"" + known + base::suggestion(wanted, names),
+                     "use a name, a number from 0, or all");
+}
+
+}  // namespace
+
+void addMotionOptions(CLI::App& command, MotionArguments& arguments) {
+    const OptionGroup group(command, "Movement");
+    CLI::Option& frames = addText(
+        command, "--frames", arguments.frames, "A:B",
+        "play an animation and write frames A to B, or one frame; each as out.0007.png, in place of an "
+        "existing file",
+        [](const std::string& text) {
+            return parseFrames(text) ? std::string()
+                                     : "\"" + text + "\" is neither a frame such as 7 nor a range such as " +
+                                           "0:23; give one, of 0 to 1000000";
+        });
+    addReal(command, "--fps", arguments.fps, 0.001, 10000.0,
+            "frames per second (0.001 to 10000, default: 24; needs --frames)")
+        .needs(&frames);
+    addMoment(command, arguments, "render one picture");
+    command.get_option("--time")->excludes(&frames);
+    addNamed(command, "--refit", arguments.builds,
+             "how acceleration structures follow; auto: they are refitted, and rebuilt by rule; always: only "
+             "refitted; never: rebuilt in each frame; needs --frames")
+        .needs(&frames);
+}
+
+void addMoment(CLI::App& command, MotionArguments& arguments, const std::string& what) {
+    addText(command, "--time", arguments.time, "SECONDS",
+            what + " at this time of the animation (0 to 1000000, default: the rest pose)",
+            [](const std::string& text) {
+                double seconds = 0.0;
+                return compiler::parseReal(text, 0.0, kMaxSeconds, seconds)
+                           ? std::string()
+                           : "\"" + text + "\" is no number from 0 to 1000000; give one";
+            });
+    addText(command, "--animation", arguments.animation, "NAME|INDEX|all",
+            "which animation plays, by name or number from 0; all: all of them at once (default: 0)");
+}
+
+std::optional<FrameRange> parseFrames(const std::string& text) {
+    const std::size_t colon = text.find(':');
+    const std::string_view all = text;
+    const std::optional<std::int64_t> first = parseFrame(all.substr(0, colon));
+    const std::optional<std::int64_t> last =
+        colon == std::string::npos ? first : parseFrame(all.substr(colon + 1));
+    if (!first || !last || *last < *first) {
+        return std::nullopt;
+    }
+    return FrameRange{*first, *last};
+}
+
+Result<std::optional<Movement>> chooseMovement(const MotionArguments& arguments, const gltf::Scene& scene,
+                                               bool followsTime) {
+    if (arguments.frames.empty() && arguments.time.empty()) {
+        return std::optional<Movement>();
+    }
+    GLINT_TRY(auto animations, chooseAnimations(scene, arguments.animation, followsTime));
+    Movement movement;
+    movement.animations = std::move(animations);
+    if (const std::optional<FrameRange> range = parseFrames(arguments.frames)) {
+        movement.isSequence = true;
+        movement.firstFrame = range->first;
+        for (std::int64_t frame = range->first; frame <= range->last; ++frame) {
+            movement.seconds.push_back(static_cast<double>(frame) / arguments.fps);
+        }
+    } else {
+        double seconds = 0.0;
+        compiler::parseReal(arguments.time, 0.0, kMaxSeconds, seconds);
+        movement.seconds.push_back(seconds);
+    }
+    movement.builds = arguments.builds;
+    return std::optional(std::move(movement));
+}
+
+std::filesystem::path numberedFile(const std::filesystem::path& file, std::int64_t frame) {
+    std::filesystem::path numbered = file;
+    numbered.replace_extension(fmt::format(".{:04}{}", frame, file.extension().string()));
+    return numbered;
+}
+
+// --- The command line ---
 
 namespace {
 
@@ -29,16 +164,13 @@ constexpr const char* kMapIntensity = "--environment-intensity";
 
 void addEnvironmentOptions(CLI::App& command, compiler::Settings& settings) {
     addText(command, kMap, settings.environment, "FILE",
-            "light the scene by this equirectangular map; a .hdr or .exr\n"
-            "file, instead of a gradient")
-        .check(CLI::Validator(
+            "light the scene by this equirectangular map; a .hdr or .exr file, instead of a gradient",
             [](const std::string& text) {
                 const Result<image::RadianceFormat> format = image::radianceFormat(text);
                 return format ? std::string()
                               : "\"" + text + "\" does not end in .hdr or .exr; name such a file";
-            },
-            ""))
-        ->group("Environment");
+            })
+        .group("Environment");
 }
 
 void checkEnvironmentOptions(const CLI::App& command) {
@@ -50,30 +182,26 @@ void checkEnvironmentOptions(const CLI::App& command) {
 }
 
 void addPictureOptions(CLI::App& command, RenderArguments& arguments) {
-    const std::string group = "Picture";
+    const OptionGroup group(command, "Picture");
     addText(command, "--camera", arguments.camera, "NAME|INDEX|auto|PLACE",
-            "a camera of the scene by name or number from 0;\nauto: one that frames everything; PLACE: "
-            "position,\n"
-            "target and vertical field of view in degrees, such as\n1.5,2,3/0,0.5,0/30\n"
-            "(default: the first of the scene, else auto)")
-        .group(group);
+            "a camera of the scene by name or number from 0; auto: one that frames everything; PLACE: "
+            "position, target and vertical field of view in degrees, such as 1.5,2,3/0,0.5,0/30 (default: "
+            "the first of the scene, else auto)");
     addText(command, "--exposure", arguments.exposure, "auto|EV",
-            fmt::format("stops, {0:g} to {1:g}, of PNG files; auto: log-average luminance\n"
-                        "of surfaces to 18 % grey (default: auto)",
-                        -kMaxExposure, kMaxExposure))
-        .check(CLI::Validator(
+            fmt::format("stops, {0:g} to {1:g}, of PNG files; auto: log-average luminance of surfaces to 18 "
+                        "% grey (default: auto)",
+                        -kMaxExposure, kMaxExposure),
             [](const std::string& text) {
                 double stops = 0.0;
                 return text == "auto" || compiler::parseReal(text, -kMaxExposure, kMaxExposure, stops)
                            ? std::string()
                            : fmt::format("\"{}\" is neither auto nor a number from {:g} to {:g}; give one",
                                          text, -kMaxExposure, kMaxExposure);
-            },
-            ""))
-        ->group(group);
+            });
 }
 
 void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
+    const OptionGroup group(command, "Device");
     addDeviceChoice(command, arguments.device, arguments.validate, "; also checks the order of hits");
     addPipelineOptions(command, arguments.pipelines);
     addJobs(command, arguments.compile.jobs);
@@ -83,20 +211,12 @@ void addDeviceOptions(CLI::App& command, RenderArguments& arguments) {
 constexpr const char* kView = "--view";
 constexpr const char* kViewReference = "--view-reference";
 
-// "shader, key, …", over several lines.
-std::string viewNames() {
-    constexpr std::size_t kWidth = 50;
-    std::string text;
-    std::size_t line = 0;
+std::vector<std::string> viewNames() {
+    std::vector<std::string> names;
     for (const measure::ViewInfo& view : measure::viewTable()) {
-        const std::string_view separator = text.empty()                       ? ""
-                                           : line + view.name.size() > kWidth ? ",\n"
-                                                                              : ", ";
-        line = separator == ",\n" ? 0 : line;
-        text += fmt::format("{}{}", separator, view.name);
-        line += view.name.size() + 2;
+        names.emplace_back(view.name);
     }
-    return text;
+    return names;
 }
 
 // Says what is wrong with a text that names no view.
@@ -107,29 +227,24 @@ std::string complaintAboutView(const std::string& text) {
         return fmt::format("\"{}\" is no view, because {} is not about the rays of one effect; use {}", text,
                            name, name);
     }
-    std::vector<std::string> known;
-    for (const measure::ViewInfo& view : measure::viewTable()) {
-        known.emplace_back(view.name);
-    }
-    const std::string suggestion = base::suggestion(name, known);
+    const std::string suggestion = base::suggestion(name, viewNames());
     return fmt::format("\"{}\" is no view{}", text,
                        suggestion.empty() ? "; --help-all lists them" : suggestion);
 }
 
 void addViewOptions(CLI::App& command, RenderArguments& arguments) {
+    const OptionGroup group(command, "Picture");
     addText(command, kView, arguments.view, "NAME",
-            "write a debug picture instead, with a legend below it, and\nits numbers into --stats:\n" +
-                viewNames() + ";\nEFFECT.NAME for the rays of another effect than the first\n(docs/views.md)")
-        .check(CLI::Validator(
+            fmt::format(
+                "write a debug picture instead, with a legend below it, and its numbers into --stats: {}; "
+                "EFFECT.NAME for the rays of another effect than the first (docs/views.md)",
+                base::join(viewNames())),
             [](const std::string& text) {
                 return measure::parseView(text) ? std::string() : complaintAboutView(text);
-            },
-            ""))
-        ->group("Picture");
+            });
     addText(command, kViewReference, arguments.viewReference, "FILE",
-            "the picture that --view difference compares with, .exr or\n.png; an .exr of --spp 1024 is a "
-            "good one")
-        .group("Picture");
+            "the picture that --view difference compares with, .exr or .png; an .exr of --spp 1024 is a good "
+            "one");
 }
 
 // Throws a CLI::ParseError if the line contradicts itself about views.
@@ -168,22 +283,18 @@ void checkDenoising(const RenderArguments& arguments) {
 }
 
 void addRenderReports(CLI::App& command, RenderArguments& arguments) {
-    addOutputFile(command, "--stats", arguments.stats, "FILE.json", {}, "write times and counters as JSON")
-        .group("Report");
+    const OptionGroup group(command, "Report");
+    addOutputFile(command, "--stats", arguments.stats, "FILE.json", {}, "write times and counters as JSON");
     addFlag(command, "--pipeline-statistics", arguments.pipelineStatistics,
-            "report the driver's statistics of each pipeline, such as\n"
-            "registers, spills and instructions")
-        .group("Report");
+            "report the driver's statistics of each pipeline, such as registers, spills and instructions");
     addOutputFile(
         command, "--coverage", arguments.coverage, "FILE.png", {".png"},
         "write how each pixel of the last sample got its reflection; orange: found in screen space; blue: "
-        "by a ray that hit; light blue: by a ray that missed; grey: no ray; black: no surface")
-        .group("Report");
+        "by a ray that hit; light blue: by a ray that missed; grey: no ray; black: no surface");
     addOutputFile(command, "--profile", arguments.profileOutput, "FILE.json", {},
                   "count the hits of every permutation, for --merge profile and auto; needs --strategy " +
                       countingStrategies() +
-                      "; the default of --merge is then none, and no other value works")
-        .group("Report");
+                      "; the default of --merge is then none, and no other value works");
 }
 
 // Hits are counted by case, so every key needs its own case, in a strategy that orders hits. Throws a
@@ -231,10 +342,9 @@ void checkPackageChoice(const CLI::App& command) {
 
 void addPackageOption(CLI::App& command, RenderArguments& arguments, const std::string& further) {
     addText(command, "--package", arguments.package, "DIR",
-            wrapped("use this package of the scene instead of compiling it" + further +
-                        " (excludes --host, --profile, and all settings that are decided for the package: "
-                        "docs/cli.md)",
-                    kHelpColumns))
+            "use this package of the scene instead of compiling it" + further +
+                " (excludes --host, --profile, and all settings that are decided for the package: "
+                "docs/cli.md)")
         .group("Shaders");
 }
 
@@ -270,8 +380,8 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
     addMotionOptions(command, arguments->motion);
     addPackageOption(command, *arguments);
     addFlag(command, "--denoise", arguments->denoise,
-            "remove the noise of each picture; by Open Image Denoise, if\n"
-            "glint was built with it (docs/layers.md)")
+            "remove the noise of each picture; by Open Image Denoise, if glint was built with it "
+            "(docs/layers.md)")
         .group("Picture");
     addViewOptions(command, *arguments);
     addRenderReports(command, *arguments);

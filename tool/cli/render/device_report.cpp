@@ -1,5 +1,4 @@
-#include "cli/render/device_report.h"
-
+#include "cli/render/report.h"
 #include "cli/report.h"
 #include "cli/table.h"
 
@@ -94,7 +93,7 @@ std::string toText(const StartReport& start) {
 }
 
 std::string tableOf(std::span<const PipelineStatistics> pipelines) {
-    std::vector<std::vector<std::string>> rows{{"pipeline", "executable", "subgroup"}};
+    Rows rows{{"pipeline", "executable", "subgroup"}};
     for (const inspect::FactInfo& info : inspect::factTable()) {
         rows.front().emplace_back(info.column);
     }
@@ -139,7 +138,7 @@ base::Fields fieldsOf(const MemoryReport*) {
 }
 
 std::string toText(const MemoryReport& memory) {
-    std::vector<std::vector<std::string>> rows{{"memory", "of", "kind", "use", "bytes"}};
+    Rows rows{{"memory", "of", "kind", "use", "bytes"}};
     for (const auto& [owner, items] :
          {std::pair("frame", &memory.frame), std::pair("scene", &memory.scene)}) {
         for (const MemoryItem& item : *items) {

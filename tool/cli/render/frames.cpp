@@ -1,7 +1,6 @@
 #include "cli/render/frames.h"
 
 #include "base/clock.h"
-#include "cli/render/open_image_denoise.h"
 #include "image/image_file.h"
 #include "image/tone.h"
 

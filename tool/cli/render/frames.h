@@ -2,17 +2,20 @@
 #pragma once
 
 #include "cli/console.h"
-#include "cli/options/motion_options.h"
 #include "cli/render/arguments.h"
 #include "cli/render/report.h"
 #include "gltf/scene.h"
 
+#include <glint/renderer.h>
+#include <glint/result.h>
 #include <glint/session/camera.h>
 #include <glint/session/session.h>
 
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace glint::cli {
 
@@ -35,5 +38,15 @@ struct FrameSetup {
 Status renderFrames(Context& context, std::shared_ptr<const Package> package, const FrameSetup& setup,
                     gltf::Scene& scene, session::SceneViewData data,
                     const std::function<Result<bool>()>& accept, RenderReport& report);
+
+// --- Open Image Denoise, for glint render --denoise. CMake links it where find_package() finds it ---
+
+// Returns the error "denoise-missing" in a build without Open Image Denoise.
+Status checkDenoiser();
+// The layers that it reads beside the picture.
+std::vector<std::string> denoiserLayers();
+// Returns the renderer's last picture without its noise. Waits for the work. Errors: "denoise-missing";
+// "layer-missing" if the package lacks a layer; "denoise-failed" with the library's own words.
+Result<LinearImage> denoised(const LinearImage& picture, Renderer& renderer);
 
 }  // namespace glint::cli

@@ -1,6 +1,5 @@
-#include "cli/render/open_image_denoise.h"
-
 #include "base/files.h"
+#include "cli/render/frames.h"
 
 #ifdef GLINT_OPEN_IMAGE_DENOISE
 #include <OpenImageDenoise/oidn.hpp>

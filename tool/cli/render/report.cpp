@@ -1,9 +1,9 @@
 #include "cli/render/report.h"
 
+#include "base/fields.h"
 #include "cli/report.h"
 #include "cli/table.h"
-#include "emit/package/json.h"
-#include "measure/report_json.h"
+#include "emit/package/manifest.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -35,8 +35,8 @@ constexpr std::string_view nameOf(MotionStatistics::TopLevel action) {
 }
 
 std::string tableOf(const std::vector<FrameReport>& frames) {
-    std::vector<std::vector<std::string>> rows{{"frame", "seconds", "refitted", "rebuilt", "TLAS", "pose ms",
-                                                "deform", "BLAS", "TLAS", "render", "passes"}};
+    Rows rows{{"frame", "seconds", "refitted", "rebuilt", "TLAS", "pose ms", "deform", "BLAS", "TLAS",
+               "render", "passes"}};
     const auto number = [](double value) { return fmt::format("{:.3f}", value); };
     for (const FrameReport& frame : frames) {
         const MotionStatistics& motion = frame.motion;
@@ -377,7 +377,7 @@ TextureReport textureReport(std::span<const ImageView> images) {
 std::string toText(const RenderReport& report, Detail detail) {
     const GpuScene::Statistics& scene = report.sceneStatistics;
     const FrameCounters& counters = report.counters;
-    std::vector<std::vector<std::string>> rows{
+    Rows rows{
         {"image",
          fmt::format("{}, {} x {}, {} spp", filesOf(report), report.width, report.height, report.samples)},
         {"device", fmt::format("{} ({})", report.device, report.driver)},
@@ -435,7 +435,7 @@ std::string toText(const RenderReport& report, Detail detail) {
     if (counters.nonFinite > 0) {
         rows.push_back({"no number", fmt::format("{} samples, taken as black", counters.nonFinite)});
     }
-    std::vector<std::vector<std::string>> passes{{"pass of the last sample", "ms"}};
+    Rows passes{{"pass of the last sample", "ms"}};
     for (const PassTiming& pass : report.passes) {
         passes.push_back({titleOf(pass, report, detail), fmt::format("{:.3f}", pass.milliseconds)});
     }

@@ -1,8 +1,5 @@
-#include "emit/glsl/readable.h"
-
-#include "emit/glsl/items.h"
-#include "emit/glsl/prune.h"
-#include "emit/glsl/unit.h"
+#include "emit/glsl/passes.h"
+#include "emit/glsl/text.h"
 
 #include <fmt/format.h>
 
@@ -81,70 +78,63 @@ struct Conditional {
 class Resolver {
 public:
     // Returns false if the line is to be dropped.
-    bool keep(std::string_view line);
+    bool keep(std::string_view line) {
+        const Directive directive = parseDirective(line);
+        const std::string_view word = directive.word;
+        if (word == "if" || word == "ifdef" || word == "ifndef") {
+            return begin(directive);
+        }
+        if (!open_.empty() && (word == "else" || word == "elif")) {
+            return next(directive);
+        }
+        if (!open_.empty() && word == "endif") {
+            const bool decided = open_.back().decided;
+            open_.pop_back();
+            return !decided && isActive();
+        }
+        if (!isActive()) {
+            return false;
+        }
+        const std::string_view name = nameIn(directive.argument);
+        if (word == "define") {
+            macros_[std::string(name)] = trim(directive.argument.substr(name.size()));
+        } else if (word == "undef") {
+            macros_.erase(std::string(name));
+        }
+        return true;
+    }
 
 private:
     bool isActive() const {
         return std::ranges::all_of(open_, &Conditional::taken);
     }
-    bool begin(const Directive& directive);
-    bool next(const Directive& directive);
+    bool begin(const Directive& directive) {
+        const bool active = isActive();
+        const std::optional<bool> value =
+            active ? evaluate(macros_, directive.word, directive.argument) : std::optional(false);
+        open_.push_back({value.has_value(), value.value_or(true), value.value_or(false)});
+        return active && !value;
+    }
+    bool next(const Directive& directive) {
+        Conditional& current = open_.back();
+        if (!current.decided) {
+            return isActive();
+        }
+        if (current.done) {
+            current.taken = false;
+        } else if (directive.word == "else") {
+            current.taken = true;
+        } else {
+            // After flatten(), an #elif whose #if was decided always has a condition that can be decided too.
+            current.taken = evaluate(macros_, "if", directive.argument).value_or(false);
+        }
+        current.done = current.done || current.taken;
+        return false;
+    }
 
     Macros macros_;
     std::vector<Conditional> open_;
 };
-
-bool Resolver::begin(const Directive& directive) {
-    const bool active = isActive();
-    const std::optional<bool> value =
-        active ? evaluate(macros_, directive.word, directive.argument) : std::optional(false);
-    open_.push_back({value.has_value(), value.value_or(true), value.value_or(false)});
-    return active && !value;
-}
-
-bool Resolver::next(const Directive& directive) {
-    Conditional& current = open_.back();
-    if (!current.decided) {
-        return isActive();
-    }
-    if (current.done) {
-        current.taken = false;
-    } else if (directive.word == "else") {
-        current.taken = true;
-    } else {
-        // After flatten(), an #elif whose #if was decided always has a condition that can be decided too.
-        current.taken = evaluate(macros_, "if", directive.argument).value_or(false);
-    }
-    current.done = current.done || current.taken;
-    return false;
-}
-
-bool Resolver::keep(std::string_view line) {
-    const Directive directive = parseDirective(line);
-    const std::string_view word = directive.word;
-    if (word == "if" || word == "ifdef" || word == "ifndef") {
-        return begin(directive);
-    }
-    if (!open_.empty() && (word == "else" || word == "elif")) {
-        return next(directive);
-    }
-    if (!open_.empty() && word == "endif") {
-        const bool decided = open_.back().decided;
-        open_.pop_back();
-        return !decided && isActive();
-    }
-    if (!isActive()) {
-        return false;
-    }
-    const std::string_view name = nameIn(directive.argument);
-    if (word == "define") {
-        macros_[std::string(name)] = trim(directive.argument.substr(name.size()));
-    } else if (word == "undef") {
-        macros_.erase(std::string(name));
-    }
-    return true;
-}
-
 // A macro whose definition is on one line.
 struct Macro {
     std::vector<std::string> parameters;

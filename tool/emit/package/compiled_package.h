@@ -2,13 +2,15 @@
 #pragma once
 
 #include "base/files.h"
-#include "emit/glsl/unit.h"
+#include "emit/glsl/text.h"
 #include "plan/plan.h"
 #include "spirv/statistics.h"
 
 #include <glint/package_modules.h>
+#include <glint/result.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -61,5 +63,15 @@ struct PackagePlan {
     Plan plan;
     std::vector<PlannedModule> modules;
 };
+
+// Returns the error that writePackage() would have, as far as it can be known before there is a package: the
+// folder holds something else, or takes no files. Leaves nothing behind.
+Status checkPackageFolder(const std::filesystem::path& folder);
+
+// Replaces the contents of `folder` by the package. Files that did not change keep their time stamps, and
+// files of the earlier package that are no longer part of it are removed. tables.bin is written last, so that
+// a reader never sees a mixture that passes its checks. A failure leaves the earlier package whole. It is an
+// error if the folder holds something other than a package.
+Status writePackage(const CompiledPackage& package, const std::filesystem::path& folder);
 
 }  // namespace glint::compiler

@@ -1,7 +1,7 @@
 #include "emit/package/tables.h"
 
+#include "emit/context.h"
 #include "emit/material_code.h"
-#include "emit/sources.h"
 #include "scene/deformed.h"
 
 #include <fmt/format.h>

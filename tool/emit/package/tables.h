@@ -4,7 +4,7 @@
 #include "emit/material_layout.h"
 #include "emit/package/compiled_package.h"
 #include "gltf/scene_list.h"
-#include "settings/compile_settings.h"
+#include "settings/settings.h"
 
 #include <cstdint>
 #include <span>

@@ -1,5 +1,3 @@
-#include "emit/package/write.h"
-
 #include "base/files.h"
 #include "emit/package/compiled_package.h"
 #include "emit/package/manifest.h"
@@ -34,42 +32,6 @@ namespace glint::compiler {
 namespace fs = std::filesystem;
 
 namespace {
-
-// While it lives, other processes that write a package below the same parent wait. On a file system without
-// such locks it does nothing.
-class OutputLock {
-public:
-    // Waits for other processes, but not forever. Error "output-busy".
-    static Result<OutputLock> acquire(const std::filesystem::path& folder);
-    OutputLock(OutputLock&& other) noexcept;
-    OutputLock& operator=(OutputLock&&) = delete;
-    ~OutputLock();
-
-private:
-    explicit OutputLock(int file) : file_(file) {}
-    int file_;  // file of the parent folder, or -1 for none
-};
-
-// A new folder beside the one that it will replace. The destructor removes it with its contents.
-class StagingFolder {
-public:
-    // Error "output-write".
-    static Result<StagingFolder> create(const std::filesystem::path& folder);
-    StagingFolder(StagingFolder&& other) noexcept;
-    StagingFolder& operator=(StagingFolder&&) = delete;
-    ~StagingFolder();
-
-    const std::filesystem::path& path() const {
-        return path_;
-    }
-    // Moves the new folder to the place of `folder`, with the permissions of `folder`, which is removed. On
-    // error "output-write" `folder` is as it was.
-    Status swapInto(const std::filesystem::path& folder);
-
-private:
-    explicit StagingFolder(std::filesystem::path path) : path_(std::move(path)) {}
-    std::filesystem::path path_;
-};
 
 // The siblings of "out" are called ".out.glint-new-PID-N" while staging, and ".out.glint-old-PID-N" between
 // two renames.
@@ -162,33 +124,40 @@ Result<fs::path> resolveOutput(const fs::path& folder) {
 fs::path innerStaging(const fs::path& folder) {
     return folder / folder.filename();
 }
-
-Result<OutputLock> OutputLock::acquire(const fs::path& folder) {
-    using Clock = std::chrono::steady_clock;
-    constexpr std::chrono::seconds kPatience(30);  // Writing a package takes well below a second.
-    constexpr std::chrono::milliseconds kPause(20);
-    const int file = open(folder.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    const Clock::time_point start = Clock::now();
-    while (file >= 0 && flock(file, LOCK_EX | LOCK_NB) != 0 && (errno == EWOULDBLOCK || errno == EINTR)) {
-        if (Clock::now() - start > kPatience) {
-            close(file);
-            return makeError("output-busy", folder.string(),
-                             "another process is writing below its parent folder",
-                             "wait for it, or choose an output folder elsewhere; nothing was changed");
+// While it lives, other processes that write a package below the same parent wait. On a file system without
+// such locks it does nothing.
+class OutputLock {
+public:
+    // Waits for other processes, but not forever. Error "output-busy".
+    static Result<OutputLock> acquire(const fs::path& folder) {
+        using Clock = std::chrono::steady_clock;
+        constexpr std::chrono::seconds kPatience(30);  // Writing a package takes well below a second.
+        constexpr std::chrono::milliseconds kPause(20);
+        const int file = open(folder.parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+        const Clock::time_point start = Clock::now();
+        while (file >= 0 && flock(file, LOCK_EX | LOCK_NB) != 0 && (errno == EWOULDBLOCK || errno == EINTR)) {
+            if (Clock::now() - start > kPatience) {
+                close(file);
+                return makeError("output-busy", folder.string(),
+                                 "another process is writing below its parent folder",
+                                 "wait for it, or choose an output folder elsewhere; nothing was changed");
+            }
+            std::this_thread::sleep_for(kPause);
         }
-        std::this_thread::sleep_for(kPause);
+        return OutputLock(file);
     }
-    return OutputLock(file);
-}
-
-OutputLock::OutputLock(OutputLock&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
-
-OutputLock::~OutputLock() {
-    if (file_ >= 0) {
-        close(file_);
+    OutputLock(OutputLock&& other) noexcept : file_(std::exchange(other.file_, -1)) {}
+    OutputLock& operator=(OutputLock&&) = delete;
+    ~OutputLock() {
+        if (file_ >= 0) {
+            close(file_);
+        }
     }
-}
 
+private:
+    explicit OutputLock(int file) : file_(file) {}
+    int file_;  // file of the parent folder, or -1 for none
+};
 // Cleans up after killed runs in and beside `folder`: brings back a folder that was moved aside and not yet
 // replaced, and removes staging folders. It leaves alone those of processes that still run.
 void recoverInterrupted(const fs::path& folder) {
@@ -206,56 +175,68 @@ void recoverInterrupted(const fs::path& folder) {
         }
     }
 }
-
-Result<StagingFolder> StagingFolder::create(const fs::path& folder) {
-    // Another thread may take the name between the check and the creation.
-    constexpr int kAttempts = 100;
-    std::error_code error;
-    for (int i = 0; i < kAttempts; ++i) {
-        const fs::path path = newSibling(folder, kNewTag);
-        if (fs::create_directory(path, error)) {
-            return StagingFolder(path);
+// A new folder beside the one that it will replace. The destructor removes it with its contents.
+class StagingFolder {
+public:
+    // Error "output-write".
+    static Result<StagingFolder> create(const fs::path& folder) {
+        // Another thread may take the name between the check and the creation.
+        constexpr int kAttempts = 100;
+        std::error_code error;
+        for (int i = 0; i < kAttempts; ++i) {
+            const fs::path path = newSibling(folder, kNewTag);
+            if (fs::create_directory(path, error)) {
+                return StagingFolder(path);
+            }
+            if (error) {
+                break;
+            }
         }
+        return swapError(folder, error ? error.message() : "no free name for a folder beside it");
+    }
+    StagingFolder(StagingFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+    StagingFolder& operator=(StagingFolder&&) = delete;
+    ~StagingFolder() {
+        if (!path_.empty()) {
+            std::error_code ignored;
+            fs::remove_all(path_, ignored);
+        }
+    }
+
+    const fs::path& path() const {
+        return path_;
+    }
+    // Moves the new folder to the place of `folder`, with the permissions of `folder`, which is removed. On
+    // error "output-write" `folder` is as it was.
+    Status swapInto(const fs::path& folder) {
+        std::error_code error;
+        if (!fs::exists(folder, error)) {
+            fs::rename(path_, folder, error);
+            return error ? Status(swapError(folder, error.message())) : okStatus();
+        }
+        fs::permissions(path_, fs::status(folder, error).permissions(), error);
+        if (exchange(path_, folder)) {
+            return okStatus();  // The destructor removes path_, which is now the old folder.
+        }
+        const fs::path old = newSibling(folder, kOldTag);
+        fs::rename(folder, old, error);
         if (error) {
-            break;
+            return swapError(folder, error.message());
         }
-    }
-    return swapError(folder, error ? error.message() : "no free name for a folder beside it");
-}
-
-StagingFolder::StagingFolder(StagingFolder&& other) noexcept : path_(std::exchange(other.path_, {})) {}
-
-StagingFolder::~StagingFolder() {
-    if (!path_.empty()) {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-}
-
-Status StagingFolder::swapInto(const fs::path& folder) {
-    std::error_code error;
-    if (!fs::exists(folder, error)) {
         fs::rename(path_, folder, error);
-        return error ? Status(swapError(folder, error.message())) : okStatus();
+        if (error) {
+            std::error_code ignored;
+            fs::rename(old, folder, ignored);
+            return swapError(folder, error.message());
+        }
+        path_ = old;
+        return okStatus();
     }
-    fs::permissions(path_, fs::status(folder, error).permissions(), error);
-    if (exchange(path_, folder)) {
-        return okStatus();  // The destructor removes path_, which is now the old folder.
-    }
-    const fs::path old = newSibling(folder, kOldTag);
-    fs::rename(folder, old, error);
-    if (error) {
-        return swapError(folder, error.message());
-    }
-    fs::rename(path_, folder, error);
-    if (error) {
-        std::error_code ignored;
-        fs::rename(old, folder, ignored);
-        return swapError(folder, error.message());
-    }
-    path_ = old;
-    return okStatus();
-}
+
+private:
+    explicit StagingFolder(fs::path path) : path_(std::move(path)) {}
+    fs::path path_;
+};
 
 // --- Files of a folder that must itself stay in place: a working folder, a mount point, or one whose parent
 // can't be written ---
@@ -374,11 +355,6 @@ Status replaceInPlace(std::span<const PackageFile* const> arriving, const std::v
 // A manifest is small. A larger file of that name was not made by Glint.
 constexpr std::uint64_t kMaxManifestBytes = 1ULL << 28;
 
-Diagnostic outputError(const fs::path& path, const std::string& why) {
-    return makeError("output-write", path.string(), "can't be written: " + why,
-                     "check the folder, its permissions and the free space; nothing was changed");
-}
-
 using Names = std::set<std::string, std::less<>>;
 
 // Returns the names of the files of the package in `folder`; empty if it holds none.
@@ -410,7 +386,7 @@ Result<Names> inspectFolder(const fs::path& folder) {
     }
     const bool empty = fs::is_empty(folder, error);
     if (error) {
-        return outputError(folder, error.message());
+        return placeError(folder, error.message());
     }
     Names names = packageFiles(folder);
     if (names.empty() && hasTables(folder)) {
@@ -468,13 +444,13 @@ Status stagePackage(const CompiledPackage& package, const fs::path& folder, cons
         std::error_code error;
         fs::create_directories(target.parent_path(), error);
         if (error) {
-            return outputError(target, error.message());
+            return placeError(target, error.message());
         }
         if (holdsBytes(folder / file.name, file.bytes) && !keepFile(folder / file.name, target)) {
             continue;
         }
         if (Status status = base::writeStaged(target, file.bytes); !status) {
-            return outputError(folder / file.name, status.error().message);
+            return placeError(folder / file.name, status.error().message);
         }
     }
     return okStatus();
@@ -512,7 +488,7 @@ Status stageForeign(const Names& earlier, const fs::path& folder, const fs::path
                              "move it elsewhere; nothing was changed");
         }
     }
-    return error ? Status(outputError(folder, error.message())) : okStatus();
+    return error ? Status(placeError(folder, error.message())) : okStatus();
 }
 
 // Returns whether this process works in `folder` or below it. A shell would otherwise be left in a folder

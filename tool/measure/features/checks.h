@@ -1,16 +1,86 @@
-// The checks of one feature. Each returns its outcome, and the place where it came closest to its limit.
+// The scene in which features are checked, a square for each combination of parameters; its evaluation on the
+// device; and the checks of one feature.
 #pragma once
 
-#include "measure/features/combinations.h"
-#include "measure/features/evaluator.h"
-#include "measure/features/hemispheres.h"
+#include "emit/feature_kernel.h"
+#include "gltf/scene.h"
+#include "materials/material_model.h"
+#include "measure/features/integrals.h"
 
+#include <glint/context.h>
+#include <glint/internal/scene_kernel.h>
 #include <glint/measure/check_materials.h>
+#include <glint/session/session.h>
 
 #include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace glint::measure {
+
+// The material on which a feature is checked.
+struct CheckedMaterial {
+    std::uint32_t geometry = 0;  // number of its square, and of its material
+    int base = 0;                // index into kCheckedBases
+    CheckPlace place;            // parameters and base
+};
+
+struct CheckedFeature {
+    const materials::FeatureCode* code = nullptr;
+    std::vector<CheckedMaterial> materials;
+};
+
+// The materials below the features. Their colour is white, so that a gain of energy is visible.
+struct CheckedBase {
+    const char* name;
+    float metallic;
+    float roughness;
+};
+inline constexpr CheckedBase kCheckedBases[] = {{"white dielectric", 0.0F, 1.0F},
+                                                {"white metal", 1.0F, 0.5F}};
+
+struct CheckedScene {
+    gltf::Scene scene;
+    std::vector<CheckedFeature> features;
+    std::vector<std::uint32_t> bases;  // the squares that have a base alone
+};
+
+// Makes a square with normals, tangents, UVs and all declared attributes for up to `combinations`
+// combinations of the parameters of each feature of a pack. Combinations for which the feature changes
+// nothing are left out. Error "check-unreachable" if none is left.
+Result<CheckedScene> makeCheckedScene(const materials::MaterialModel& model, std::uint32_t combinations);
+
+// The values at which a parameter is checked: a usual one, the least and the greatest.
+std::vector<float> checkedValues(const materials::Parameter& parameter);
+
+class FeatureEvaluator {
+public:
+    // Compiles the scene as pictures of it would be, and the kernel. Reports the device. Has the errors of
+    // compilePackage(), Context::createHeadless() and GpuScene::upload().
+    static Result<std::unique_ptr<FeatureEvaluator>> create(const gltf::Scene& scene,
+                                                            const CheckMaterialsOptions& options,
+                                                            const Observer& observer);
+
+    // Returns the number of a layer for FeatureKernelInput::lobe; 0, the whole BSDF, if there is no such
+    // layer.
+    std::uint32_t lobeOf(const std::string& layer) const;
+    // Has the errors of SceneKernel::run().
+    Result<std::vector<compiler::FeatureKernelOutput>> run(
+        std::span<const compiler::FeatureKernelInput> inputs) const;
+    std::string deviceName() const;
+    // Has the errors of checkValidation().
+    Status validate(const Observer& observer) const;
+
+private:
+    FeatureEvaluator() = default;
+
+    std::unique_ptr<Context> context_;
+    session::DeviceScene scene_;
+    std::unique_ptr<SceneKernel> kernel_;
+    std::vector<std::string> layers_;
+};
 
 // One feature on the device.
 struct FeatureOnDevice {

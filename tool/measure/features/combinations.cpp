@@ -1,6 +1,5 @@
-#include "measure/features/combinations.h"
-
 #include "gltf/scene_list.h"
+#include "measure/features/checks.h"
 #include "plan/plan.h"
 
 #include <fmt/format.h>

@@ -26,6 +26,12 @@ function svg(name, attributes = {}, ...children) {
     return fill(document.createElementNS(SVG, name), attributes, children);
 }
 
+// Fills a table with columns by name and rows.
+function fillTable(table, columns, rows) {
+    table.replaceChildren(html("thead", {}, html("tr", {}, columns.map((name) => html("th", {scope: "col"}, name)))), html("tbody", {}, rows));
+    return table;
+}
+
 // Hides a section for which the report has nothing, and its link.
 function hideSection(id) {
     byId(id).hidden = true;

@@ -1,6 +1,6 @@
 // The panels and marks that the window draws over and beside the picture.
 #include "settings/descriptor.h"
-#include "view/look_panel.h"
+#include "view/look.h"
 #include "view/window/window.h"
 
 #define GLFW_INCLUDE_NONE

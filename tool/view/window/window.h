@@ -7,14 +7,10 @@
 #include "view/camera_control.h"
 #include "view/controls.h"
 #include "view/display.h"
-#include "view/interface.h"
 #include "view/look.h"
-#include "view/passes_panel.h"
-#include "view/pick.h"
 #include "view/picture.h"
 #include "view/presenter.h"
 #include "view/script.h"
-#include "view/settings_panel.h"
 
 #include <glint/package.h>
 
@@ -82,7 +78,7 @@ private:
         return *sides_[edited_];
     }
 
-    // --- builds.cpp ---
+    // --- results.cpp: builds ---
     // `changed`: files.
     void order(std::size_t side, std::span<const std::string> changed = {});
     void pollFiles();
@@ -102,7 +98,7 @@ private:
     Status followLook();
     void finishSamples();
 
-    // --- motion.cpp ---
+    // --- frames.cpp: the camera, and the moment of animations ---
     CameraView cameraView() const;
     double distanceToMiddle(const CameraView& view) const;
     void startCamera();
@@ -123,7 +119,7 @@ private:
     void nextCamera();
     void chooseLook(const Look& look);
 
-    // --- results.cpp ---
+    // --- results.cpp: measurements and files ---
     void measureExposure();
     Status writeShot(const std::string& file, const Look& shown, const LinearImage& image);
     void saveScreenshot();

@@ -4,14 +4,17 @@
 #include "gltf/scene.h"
 #include "resolve/resolve.h"
 
-#include <glint/measure/hit_times.h>
+#include <glint/context.h>
 #include <glint/measure/observer.h>
-#include <glint/measure/picture_filter.h>
+#include <glint/measure/point.h>
 #include <glint/measure/settings.h>
+#include <glint/renderer.h>
+#include <glint/result.h>
 #include <glint/session/session.h>
 #include <glint/session/textures.h>
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -22,6 +25,32 @@
 #include <vector>
 
 namespace glint::measure {
+
+// Filters the pictures of one renderer.
+class PictureFilter {
+public:
+    PictureFilter() = default;
+    virtual ~PictureFilter() = default;
+    PictureFilter(const PictureFilter&) = delete;
+    PictureFilter& operator=(const PictureFilter&) = delete;
+
+    // Filters the renderer's last picture, with the history that it keeps of earlier ones.
+    virtual Result<LinearImage> filter() = 0;
+    // Device time of the last filter(), milliseconds.
+    virtual double milliseconds() const = 0;
+    // Forgets the earlier pictures.
+    virtual void restart() = 0;
+};
+
+struct FilterMaker {
+    std::vector<std::string> layers;       // layers that a package needs
+    std::vector<std::string> imageLayers;  // layers that are read if an effect of the package has them
+    // Makes the filter of a renderer with pictures of that size, which have `samples` samples a pixel.
+    std::function<Result<std::unique_ptr<PictureFilter>>(const Context& context, const Renderer& renderer,
+                                                         std::uint32_t width, std::uint32_t height,
+                                                         std::uint32_t samples)>
+        make;
+};
 
 // One picture: all samples of a frame.
 struct Exposure {

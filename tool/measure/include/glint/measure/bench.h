@@ -8,7 +8,6 @@
 
 #include <glint/measure/bed.h>
 #include <glint/measure/observer.h>
-#include <glint/measure/picture_filter.h>
 #include <glint/measure/report.h>
 
 #include <cstdint>

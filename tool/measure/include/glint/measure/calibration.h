@@ -2,8 +2,9 @@
 // command line.
 #pragma once
 
+#include "settings/settings.h"
+
 #include <glint/context.h>
-#include <glint/measure/calibration_report.h>
 #include <glint/measure/device_file.h>
 #include <glint/measure/observer.h>
 #include <glint/result.h>

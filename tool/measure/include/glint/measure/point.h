@@ -3,7 +3,6 @@
 
 #include "image/compare.h"
 
-#include <glint/measure/hit_times.h>
 #include <glint/measure/settings.h>
 #include <glint/measure/statistics.h>
 #include <glint/renderer.h>
@@ -11,11 +10,30 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace glint::measure {
+
+// Milliseconds from the list of rays to their shaded hits.
+struct HitTimes {
+    double dispatch = 0.0;  // makes the indirect arguments of the list of rays
+    double trace = 0.0;   // traces rays and writes hit records, in strategies with a pass of its own for that
+    double order = 0.0;   // sorts those records by bucket
+    double shade = 0.0;   // shades hits; strategies that order none also trace here
+    double shadow = 0.0;  // traces deferred shadow rays, and dispatches them
+
+    double sum() const {
+        return dispatch + trace + order + shade + shadow;
+    }
+    HitTimes& operator+=(const HitTimes& other);
+    HitTimes& operator/=(double count);
+};
+
+// Adds up all passes of a sample (Timing::Passes).
+HitTimes hitTimesOf(std::span<const PassTiming> passes);
 
 // The error by which points are ordered, a member of ImageErrors.
 enum class ErrorMetric { RelMse, Trimmed, Rmse, Flip };

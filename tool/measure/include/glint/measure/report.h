@@ -1,6 +1,7 @@
 // The results of a bench, and the files that show them.
 #pragma once
 
+#include "base/fields_fwd.h"
 #include "gltf/import.h"
 
 #include <glint/measure/machine.h>
@@ -140,6 +141,7 @@ struct BenchReport {
     ErrorParts errorParts;
     std::optional<BenchAdvice> advice;
 };
+base::Fields fieldsOf(const BenchReport*);
 
 // Returns the description of the reference: "all of light transport (--bounces unlimited ...)".
 std::string describeReference(const BenchReport& report);

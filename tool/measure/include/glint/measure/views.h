@@ -6,6 +6,7 @@
 // layers.
 #pragma once
 
+#include "base/fields_fwd.h"
 #include "image/text.h"
 #include "materials/material_model.h"
 
@@ -44,10 +45,10 @@ struct ViewInfo {
     // The layers that it reads. The value of "distance" is that of the source of light which the view is
     // about.
     std::vector<std::string_view> layers;
+    void (*evaluate)(const ViewInput& input, ViewValues& values) = nullptr;
     bool readsReference = false;  // it compares with another picture
     // A further layer that it reads of every source of light that has it; empty if there is none.
     std::string_view everySource{};
-    void (*evaluate)(const ViewInput& input, ViewValues& values) = nullptr;
 };
 
 // All rows, in the order in which --help lists them.
@@ -131,6 +132,7 @@ struct View {
     image::DisplayImage picture;  // of the size of the frame; nothing is drawn over it
     ViewStatistics statistics;
 };
+base::Fields fieldsOf(const View*);
 
 // Reads the layers of the renderer's last recording into `input`, waits for the device, and colours the
 // pixels. Sizes and layers of `input` are filled in. `range` fixes the scale, which otherwise is that of the
@@ -148,5 +150,16 @@ View colorView(const ViewChoice& choice, const ViewInput& input,
 image::DisplayImage makeLegend(const View& view, std::uint32_t width);
 // Returns the picture with the legend below it.
 image::DisplayImage withLegend(const View& view);
+
+// Reads a layer of the renderer's last recording, waits for the device, and shows it:
+// - one number a pixel by the colours of quantities, from the least to the greatest; values that stand for
+//   none are grey
+// - numbers of things, such as shader IDs, by the colours of categories
+// - light as the picture is shown at `exposure`, in stops, and albedo without exposure
+// - vectors as red, green and blue, from the least to the greatest value of all channels; where some are
+//   below 0, grey is 0
+// The statistics are those of all channels. `name` is PackageLayer::name; View::choice has the layer's name
+// and source, and describes the layer. Errors: those of Renderer::readLayer().
+Result<View> makeLayerView(std::string_view name, Renderer& renderer, double exposure);
 
 }  // namespace glint::measure

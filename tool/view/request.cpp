@@ -1,4 +1,4 @@
-#include "view/shot_command.h"
+#include "view/request.h"
 
 #include "settings/descriptor.h"
 

@@ -1,11 +1,15 @@
-// The command line of glint bench.
+// The parts of glint bench: its command line, a filter that it measures, and its text.
 #pragma once
 
 #include "cli/cache.h"
 #include "cli/render/arguments.h"
 #include "synthetic/cases_scene.h"
 
+#include <glint/measure/bed.h>
 #include <glint/measure/bench.h>
+#include <glint/measure/calibration.h>
+#include <glint/measure/device_file.h>
+#include <glint/measure/report.h>
 
 #include <CLI/CLI.hpp>
 
@@ -53,5 +57,16 @@ void addBenchOptions(CLI::App& command, BenchArguments& arguments);
 // Fills in the members that follow from the parsed `command`. Throws a CLI::ParseError if options contradict
 // each other.
 void settleBench(const CLI::App& command, BenchArguments& arguments);
+
+// Null in a build without the examples.
+const measure::FilterMaker* exampleFilter();
+
+// --- Results for people ---
+
+std::string toText(const measure::BenchReport& report);
+// Returns a table in Markdown.
+std::string toText(const measure::CalibrationReport& report);
+// Describes the constants, how far estimates are off, and the cost of choosing by them.
+std::string describe(const measure::DeviceFile& file);
 
 }  // namespace glint::cli
