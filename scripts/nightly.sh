@@ -15,13 +15,14 @@ Sets up, builds, and runs all parts, or those that are named:
             test_combinations with every strategy, tracer, merge policy, placement of
             shadows, ordering and binning, where scripts/test.sh takes every pair of values;
             other tests of pictures with each strategy and each tracer, where scripts/test.sh
-            gives each strategy one tracer; test_strategies_agree with every merge policy for
-            every scene; test_half and test_library with the gallery; convergence with every kind
-             of light; a scene at every decade of place and scale; the orderings with more numbers of
-             buckets and other subgroup sizes; 10,000 random scenes, others each day, with every
-             strategy; twice to three times as many materials in test_furnace and test_sampling; a
-             fault at every call that writes; the runtime as a subdirectory of another project, built
-             and run. All with lavapipe's LLVM passes, which scripts/test.sh leaves out
+            gives each strategy one tracer, and with rooms of all lobes; test_strategies_agree
+            with every merge policy for every scene; test_half and test_library with the gallery;
+            convergence with every kind of light; a scene at every decade of place and scale; the
+            orderings with more numbers of buckets and other subgroup sizes; 10,000 random scenes,
+            others each day, with every strategy; twice to three times as many materials in
+            test_furnace and test_sampling; a fault at every call that writes; four times as many
+            damaged files; the runtime as a subdirectory of another project, built and run. All
+            with lavapipe's LLVM passes, which scripts/test.sh leaves out
   timing    the tests that follow files, clocks and a window: ten times by themselves, and ten times
             beside programs that take every core
   sanitize  scripts/sanitize.sh --all
@@ -76,7 +77,9 @@ for part in "${parts[@]}"; do
         sweep)
             whole=(test_combinations test_strategies_agree test_half test_library test_live_edit test_emissive_lights
                 test_opacity test_ordering test_furnace test_sampling test_cli_robustness test_cli_build test_paths
-                test_convergence test_effects test_shadow_through test_packs test_sky_light test_sized_lights test_random_scenes)
+                test_convergence test_effects test_shadow_through test_packs test_sky_light test_sized_lights
+                test_random_scenes test_narrow_frame test_layers test_views test_oracle_effects test_oracle_scenes
+                gltf_fuzz_test)
             build "${whole[@]}" glint
             for program in "${whole[@]}"; do
                 GLINT_NIGHTLY=1 GLINT_RANDOM_FIRST="$(date +%Y%m%d)0000" "build/release/tests/$program"

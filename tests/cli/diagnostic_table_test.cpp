@@ -4,12 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <sstream>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace glint {
@@ -54,32 +58,53 @@ const std::vector<std::string>& sources() {
     return kSources;
 }
 
-// The code that makes a diagnostic, up to the opening quote of its id, and the severity that it gives.
+// The code that makes a diagnostic, up to the literal of its id, and the severity that it gives.
 struct Maker {
-    const char* pattern;
+    std::string_view code;
     std::uint8_t severity;
+    bool first = true;  // whether the id is the first argument, else it is the first literal
 };
 
 constexpr Maker kMakers[] = {
-    {R"(\b(?:makeError|error|errorAt)\(\s*)", cli::kError},
-    {R"(\bSchemaError\{\s*)", cli::kError},
-    {R"(\bcheckBudget\([^"]*)", cli::kError},
-    {R"(\b(?:makeWarning|warn)\(\s*)", cli::kWarning},
-    {R"(\bnote\(\s*)", cli::kNote},
-    {R"(Severity::Error,\s*)", cli::kError},
-    {R"(Severity::Warning,\s*)", cli::kWarning},
-    {R"(Severity::Note,\s*)", cli::kNote},
+    {"makeError(", cli::kError},
+    {"error(", cli::kError},
+    {"errorAt(", cli::kError},
+    {"SchemaError{", cli::kError},
+    {"checkBudget(", cli::kError, false},
+    {"makeWarning(", cli::kWarning},
+    {"warn(", cli::kWarning},
+    {"note(", cli::kNote},
+    {"Severity::Error,", cli::kError},
+    {"Severity::Warning,", cli::kWarning},
+    {"Severity::Note,", cli::kNote},
 };
+
+// Returns the id in a literal that starts at `at`, or an empty one.
+std::string idAt(const std::string& text, std::size_t at) {
+    const std::size_t end = at < text.size() && text[at] == '"' ? text.find('"', at + 1) : std::string::npos;
+    std::string id = end == std::string::npos ? "" : text.substr(at + 1, end - at - 1);
+    const bool isId =
+        id.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") == std::string::npos && id > "a";
+    return isId ? id : "";
+}
 
 // Returns the ids in literals at the places above, with their severities.
 const std::map<std::string, std::uint8_t>& madeIds() {
     static const std::map<std::string, std::uint8_t> kIds = [] {
         std::map<std::string, std::uint8_t> ids;
         for (const Maker& maker : kMakers) {
-            const std::regex pattern(std::string(maker.pattern) + R"("([a-z][a-z0-9-]*)\")");
             for (const std::string& text : sources()) {
-                for (std::sregex_iterator it(text.begin(), text.end(), pattern), end; it != end; ++it) {
-                    ids[(*it)[1].str()] |= maker.severity;
+                for (std::size_t at = text.find(maker.code); at != std::string::npos;
+                     at = text.find(maker.code, at + 1)) {
+                    const bool isWord =
+                        at == 0 ||
+                        (std::isalnum(static_cast<unsigned char>(text[at - 1])) == 0 && text[at - 1] != '_');
+                    const std::size_t behind = at + maker.code.size();
+                    const std::string id = idAt(
+                        text, maker.first ? text.find_first_not_of(" \n", behind) : text.find('"', behind));
+                    if (isWord && !id.empty()) {
+                        ids[id] |= maker.severity;
+                    }
                 }
             }
         }

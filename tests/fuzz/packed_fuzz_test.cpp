@@ -1,6 +1,7 @@
 // Damages compressed geometry and images, so that decoders see bytes that their encoders never wrote.
 #include "fuzz/mutations.h"
 #include "support/models.h"
+#include "support/nightly.h"
 #include "unit/gltf/packed_scenes.h"
 #include "unit/gltf/png_writer.h"
 
@@ -19,8 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMutationsPerScene = 1500;
-constexpr int kMutationsPerModel = 150;
+// By day a third.
+const int kMutationsPerScene = nightly() ? 1500 : 500;
+const int kMutationsPerModel = nightly() ? 150 : 50;
 const fs::path kModels = modelsFolder() / "features";
 
 GltfBuilder widePngScene() {

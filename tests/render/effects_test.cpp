@@ -122,7 +122,7 @@ TEST(AllEffects, BandsAndFramesWithoutAMeanChangeNothing) {
 }
 
 TEST(AllEffects, AskForTheResourcesThatTheirFramesNeed) {
-    const gltf::Scene scene = roomOfMaterials();
+    const gltf::Scene scene = roomOfFewMaterials();
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     settings.plan.merge = compiler::MergePolicy::All;
@@ -152,7 +152,7 @@ TEST(AllEffects, AskForTheResourcesThatTheirFramesNeed) {
 }
 
 TEST(AllEffects, OfCompactVerticesAreNearlyTheSame) {
-    const gltf::Scene scene = roomOfMaterials();
+    const gltf::Scene scene = roomOfFewMaterials();
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     settings.plan.merge = compiler::MergePolicy::All;
@@ -217,7 +217,7 @@ TEST(AllEffects, AnswerDeferredShadowsAndPackedRecords) {
 
 // If effects are off at run time, the picture is that of a package without them.
 TEST(AllEffects, OffIsAsIfTheyWereNotThere) {
-    const gltf::Scene scene = roomOfMaterials();
+    const gltf::Scene scene = roomOfFewMaterials();
     const RenderSetup setup = smallSetup(scene);
     compiler::CompileSettings settings = allEffects();
     settings.strategies = package::kStrategyUber;

@@ -113,10 +113,14 @@ LinearImage LoadedScene::render(RendererOptions options, const RenderSetup& setu
     options.width = setup.width;
     options.height = setup.height;
     options.countsLight = options.countsLight || setup.countsLight;
-    const std::unique_ptr<Renderer> renderer = makeRenderer(options);
-    LinearImage image = renderer ? drawn(*renderer, setup.frame, setup.samples) : LinearImage{};
+    if (!renderer_ || options_ != options) {
+        renderer_.reset();
+        renderer_ = makeRenderer(options);
+        options_ = options;
+    }
+    LinearImage image = renderer_ ? drawn(*renderer_, setup.frame, setup.samples) : LinearImage{};
     if (counters != nullptr && !image.pixels.empty()) {
-        Result<FrameCounters> counted = renderer->counters();
+        Result<FrameCounters> counted = renderer_->counters();
         if (!counted) {
             ADD_FAILURE() << toString(counted.error());
             return {};

@@ -64,7 +64,8 @@ public:
     std::unique_ptr<Renderer> makeRenderer(const RendererOptions& options) const {
         return testing::makeRenderer(package(), gpuScene(), options);
     }
-    // Renders an image. If that fails, the test fails and the image has no size. `counters` may be null.
+    // Renders an image. If that fails, the test fails and the image has no size. `counters` may be null. Keeps
+    // the renderer for further images with the same options, because making one takes longer than most images.
     LinearImage render(package::Strategy strategy, const RenderSetup& setup,
                        FrameCounters* counters = nullptr) const;
     // The size is that of the setup.
@@ -77,6 +78,8 @@ private:
 
     compiler::CompiledPackage compiled_;
     session::DeviceScene device_;
+    mutable std::unique_ptr<Renderer> renderer_;  // the last one of render()
+    mutable RendererOptions options_;             // of renderer_
 };
 
 // A scene on the device that moves.

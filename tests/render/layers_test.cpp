@@ -81,6 +81,7 @@ TEST(Layers, DemodulatedLightTimesAlbedoGivesThePicture) {
 TEST(Layers, BouncesAddUpToTheLightOfTheirEffect) {
     const gltf::Scene scene = hallBehindGlass();
     compiler::CompileSettings settings = everyLayer();
+    settings.plan.merge = compiler::MergePolicy::All;
     settings.maxBounces = 6;
     const std::uint32_t bounces = package::kMostLayerBounces;
     forEachWay(scene, settings, [&](const LoadedScene& loaded, const Way& way) {

@@ -154,7 +154,7 @@ TEST(PackedSamples, SayHowPixelsFoundLight) {
 
 // The march reads the weights of other pixels, and moves the starts of rays.
 TEST(PackedSamples, MarchOverTheScreenAsFullOnesDo) {
-    const gltf::Scene scene = roomOfMaterials();
+    const gltf::Scene scene = roomOfFewMaterials();
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyVisibility;
     settings.plan.merge = compiler::MergePolicy::All;

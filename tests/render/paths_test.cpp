@@ -116,7 +116,7 @@ TEST(Paths, EveryStrategyAndTracerGivesTheSamePicture) {
 
 // Without the light of sky and emissive triangles, and with both as lights.
 TEST(Paths, OrderingsBinningsAndBatchesGiveTheSamePicture) {
-    const gltf::Scene scene = roomOfMaterials();
+    const gltf::Scene scene = roomOfFewMaterials();
     RenderSetup setup = pathSetup(scene, 24, 16, 2);
     for (const bool lights : {false, true}) {
         if (!lights && !test::nightly()) {
@@ -158,7 +158,7 @@ TEST(Paths, OrderingsBinningsAndBatchesGiveTheSamePicture) {
 // A package for one bounce has nothing of paths, and one for more makes the same picture if it is asked for
 // one.
 TEST(Paths, OneBounceIsThePictureWithoutPaths) {
-    const gltf::Scene scene = roomOfMaterials();
+    const gltf::Scene scene = roomOfFewMaterials();
     const LoadedScene plain(scene, pathSettings(1));
     const LoadedScene paths(scene, pathSettings(4));
     ASSERT_TRUE(plain.ok() && paths.ok());
@@ -182,7 +182,7 @@ TEST(Paths, OneBounceIsThePictureWithoutPaths) {
 }
 
 TEST(Paths, MoreBouncesThanThePackageHasAreAnError) {
-    const gltf::Scene scene = roomOfMaterials();
+    const gltf::Scene scene = roomOfFewMaterials();
     const LoadedScene plain(scene, pathSettings(1));
     ASSERT_TRUE(plain.ok());
     RendererOptions options = pathOptions(2);

@@ -109,19 +109,24 @@ TEST_P(StrategiesAgreeTested, WithAlphaMasks) {
 }
 
 std::vector<std::string> scenePaths() {
+    const fs::path models = test::modelsFolder();
     std::vector<std::string> paths;
     if (test::nightly()) {
-        // These two take two fifths of the time of all. By day the tests of the command compare pictures of
-        // the gallery, which has transformed textures, too.
+        // By day the tests of the command compare pictures of the gallery, which has transformed textures,
+        // too. Other scenes below have the features of the rest.
         paths.emplace_back(GLINT_GALLERY_SCENE);
-        paths.push_back(
-            (test::modelsFolder() / "features/TextureTransformMultiTest/TextureTransformMultiTest.glb")
-                .string());
+        for (const char* name : {"features/AnisotropyStrengthTest/AnisotropyStrengthTest.gltf",
+                                 "features/TextureTransformMultiTest/TextureTransformMultiTest.glb",
+                                 "features/TransmissionRoughnessTest/TransmissionRoughnessTest.glb",
+                                 "features/box-textured-separate-webp/box-textured-with-fallback.gltf",
+                                 "large/2CylinderEngine/2CylinderEngine.glb",
+                                 "large/MetalRoughSpheresNoTextures/MetalRoughSpheresNoTextures.glb",
+                                 "large/ReciprocatingSaw/ReciprocatingSaw.glb"}) {
+            paths.push_back((models / name).string());
+        }
     }
-    const fs::path models = test::modelsFolder();
     for (const char* name : {"features/AlphaBlendModeTest/AlphaBlendModeTest.gltf",
                              "features/AnisotropyBarnLamp-ktx2/AnisotropyBarnLamp.gltf",
-                             "features/AnisotropyStrengthTest/AnisotropyStrengthTest.gltf",
                              "features/Avocado-draco/Avocado.gltf",
                              "features/ClearCoatTest/ClearCoatTest.gltf",
                              "features/DiffuseTransmissionTest-rebuilt/DiffuseTransmissionTest-rebuilt.gltf",
@@ -136,15 +141,10 @@ std::vector<std::string> scenePaths() {
                              "features/SimpleSkin/SimpleSkin.gltf",
                              "features/SimpleSparseAccessor/SimpleSparseAccessor.gltf",
                              "features/SpecularTest/SpecularTest.glb",
-                             "features/TransmissionRoughnessTest/TransmissionRoughnessTest.glb",
                              "features/box-textured-separate-webp/box-textured-separate.gltf",
-                             "features/box-textured-separate-webp/box-textured-with-fallback.gltf",
                              "features/dispersion-test/dispersion-test.glb",
                              "features/pirate/pirate.glb",
-                             "large/2CylinderEngine/2CylinderEngine.glb",
                              "large/BrainStem/BrainStem.glb",
-                             "large/MetalRoughSpheresNoTextures/MetalRoughSpheresNoTextures.glb",
-                             "large/ReciprocatingSaw/ReciprocatingSaw.glb",
                              "large/VC/VC.glb"}) {
         paths.push_back((models / name).string());
     }
