@@ -4,6 +4,7 @@
 #include "context/resources.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace glint {
 namespace {
@@ -45,10 +46,7 @@ void fillView(const gpu::FrameConstants& constants, gpu::vec4 (&rows)[4]) {
 
 Result<std::unique_ptr<MotionHistory>> MotionHistory::create(const GpuScene::State& scene) {
     std::unique_ptr<MotionHistory> history(new MotionHistory(scene));
-    const bool moves = scene.motion != nullptr || scene.editor != nullptr;
-    if (moves) {
-        GLINT_TRY_DO(history->makeRoom());
-    }
+    GLINT_TRY_DO(history->makeRoom());
     if (scene.motion != nullptr && !scene.deformed.addresses.empty()) {
         GLINT_TRY_DO(history->createVertices());
     }
@@ -56,11 +54,12 @@ Result<std::unique_ptr<MotionHistory>> MotionHistory::create(const GpuScene::Sta
 }
 
 Status MotionHistory::makeRoom() {
-    GLINT_TRY(auto buffer, createBuffer(scene_->context, pool_, scene_->instances.bytes, kHistoryUsage));
-    if (instances_.handle.get() != VK_NULL_HANDLE) {
-        outgrown_.push_back(std::move(instances_));
+    const bool moves = scene_->motion != nullptr || scene_->editor != nullptr;
+    if (!moves || instances_.bytes >= scene_->instances.bytes) {
+        return okStatus();
     }
-    instances_ = std::move(buffer);
+    GLINT_TRY(auto buffer, createBuffer(scene_->context, pool_, scene_->instances.bytes, kHistoryUsage));
+    outgrown_.add(std::exchange(instances_, std::move(buffer)));
     hasInstances_ = false;
     return okStatus();
 }
@@ -119,21 +118,18 @@ void MotionHistory::recordTable(VkCommandBuffer commands) {
     newTable_.clear();
 }
 
-Status MotionHistory::fill(gpu::FrameConstants& constants) {
+void MotionHistory::fill(gpu::FrameConstants& constants) {
     fillView(constants, next_.rows);
-    if (instances_.handle.get() != VK_NULL_HANDLE && instances_.bytes < scene_->instances.bytes) {
-        GLINT_TRY_DO(makeRoom());
-    }
     std::ranges::copy(view_ ? view_->rows : next_.rows, constants.previousView);
     constants.previousInstances = hasInstances_ ? instances_.address : scene_->instances.address;
     const bool hasVertices = hasInstances_ && table_.handle.get() != VK_NULL_HANDLE;
     constants.previousVertices = hasVertices ? table_.address : 0;
     constants.hasPreviousVertices = hasVertices ? 1 : 0;
-    return okStatus();
 }
 
-void MotionHistory::record(VkCommandBuffer commands) {
+void MotionHistory::record(VkCommandBuffer commands, std::uint64_t recording) {
     view_ = next_;
+    outgrown_.close(recording);
     if (instances_.handle.get() == VK_NULL_HANDLE) {
         return;
     }
@@ -150,8 +146,9 @@ void MotionHistory::record(VkCommandBuffer commands) {
 
 void MotionHistory::addMemory(std::vector<MemoryItem>& items) const {
     addTo(items, "instances of the frame before", instances_);
-    for (const Buffer& buffer : outgrown_) {
-        addTo(items, "instances of the frame before", buffer);
+    if (outgrown_.bytes() > 0) {
+        addTo(items, {"instances of the frame before", MemoryUse::Device, false, outgrown_.count(),
+                      outgrown_.bytes()});
     }
     addTo(items, "vertices of the frame before", vertices_);
     addTo(items, "vertices of the frame before", table_);

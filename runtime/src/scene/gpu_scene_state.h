@@ -18,12 +18,14 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace glint {
 
+class Renderer;
 struct SceneMotion;
 
 // The place of a geometry record's positions.
@@ -59,8 +61,8 @@ struct ScenePackage {
         std::vector<std::uint8_t> inputs;
     };
 
-    std::uint64_t number = 0;  // of replacements so far
-    std::string scene;         // name in the package
+    std::uint64_t records = 0;  // recordsHash()
+    std::string scene;          // name in the package
     std::vector<package::PrimitiveEntry> entries;
     std::vector<std::uint32_t> entryOf;          // by geometry record: index into `entries`
     std::vector<std::uint32_t> entryOfUploaded;  // by SceneView::primitives
@@ -90,7 +92,10 @@ struct GpuScene::State {
     std::unique_ptr<Compaction> compaction;  // null if there is nothing more to compact
     std::unique_ptr<SceneUpload> upload;     // null when the device has completed it
     ScenePackage package;                    // the package that draws the scene
-    std::array<double, 3> origin{};          // SceneView::origin, or that of the last MotionView
+    // The renderers of the scene, which add and remove themselves. They replace its package together.
+    std::vector<Renderer*> renderers;
+    std::mutex renderersMutex;
+    std::array<double, 3> origin{};  // SceneView::origin, or that of the last MotionView
     std::vector<GpuPrimitive> primitives;
     DeformedBuffers deformed;
     std::map<std::uint32_t, DeviceMicromap> micromaps;  // by index into SceneView::primitives

@@ -179,21 +179,6 @@ void orderPlaced(SceneMotion& motion, const InstanceOrder& order, std::span<cons
     motion.placed = permuted<VkAccelerationStructureInstanceKHR>(motion.placed, places);
 }
 
-void beginLabel(const Context::State& context, VkCommandBuffer commands, const char* name) {
-    if (context.vk.CmdBeginDebugUtilsLabelEXT != nullptr) {
-        VkDebugUtilsLabelEXT label{};
-        label.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
-        label.pLabelName = name;
-        context.vk.CmdBeginDebugUtilsLabelEXT(commands, &label);
-    }
-}
-
-void endLabel(const Context::State& context, VkCommandBuffer commands) {
-    if (context.vk.CmdEndDebugUtilsLabelEXT != nullptr) {
-        context.vk.CmdEndDebugUtilsLabelEXT(commands);
-    }
-}
-
 template <typename Record>
 void recordStretch(const GpuScene::State& state, VkCommandBuffer commands, std::uint32_t stretch,
                    const char* name, const Record& record) {

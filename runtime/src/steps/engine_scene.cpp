@@ -6,6 +6,7 @@
 #include "data/materials.h"
 #include "data/scene_checks.h"
 #include "interop/frame.h"
+#include "package/package.h"
 #include "scene/gpu_scene_state.h"
 
 #include <algorithm>
@@ -193,12 +194,13 @@ void recordContents(const EngineScene::State& state, VkCommandBuffer commands, c
 
 Result<std::unique_ptr<EngineScene>> EngineScene::record(Context& context, const Package& package,
                                                          const EngineSceneView& scene,
-                                                         VkCommandBuffer commands, std::uint64_t frame) {
+                                                         VkCommandBuffer commands, std::uint64_t frame) try {
     if (scene.packageScene >= package.sceneCount()) {
         return makeError("scene-package", "",
                          "the package has no scene " + std::to_string(scene.packageScene),
                          "give an index below Package::sceneCount()");
     }
+    GLINT_TRY_DO(checkDevice(package, context.handles()));
     const PackageScene known = package.scene(scene.packageScene);
     GLINT_TRY(auto geometries, makeGeometries(known, scene));
     GLINT_TRY(auto instances, makeInstances(scene.instances));
@@ -215,6 +217,7 @@ Result<std::unique_ptr<EngineScene>> EngineScene::record(Context& context, const
     state->placed.assign(scene.instances.begin(), scene.instances.end());
     state->lightCount = state->lightCapacity = static_cast<std::uint32_t>(lights.size());
     state->recordsBy = scene.recordsBy;
+    state->records = recordsHash(package, known);
     state->upload = std::make_unique<StagedCopies>(context.state());
     const std::vector<std::uint32_t> firstRecords(scene.firstRecords.begin(), scene.firstRecords.end());
     for (const Status& status :
@@ -232,12 +235,14 @@ Result<std::unique_ptr<EngineScene>> EngineScene::record(Context& context, const
                         state->materials.address,  state->lights.address,    state->firstRecords.address};
     return std::unique_ptr<EngineScene>(new EngineScene(std::move(state)));
 }
+GLINT_CATCH
 
 Result<std::unique_ptr<EngineScene>> EngineScene::create(Context& context, const Package& package,
-                                                         const EngineSceneView& scene) {
+                                                         const EngineSceneView& scene) try {
     return makeOnce(context.state(),
                     [&](VkCommandBuffer commands) { return record(context, package, scene, commands, 0); });
 }
+GLINT_CATCH
 
 void EngineScene::complete(std::uint64_t frame) {
     if (state_->upload && state_->upload->frame <= frame) {
@@ -245,7 +250,7 @@ void EngineScene::complete(std::uint64_t frame) {
     }
 }
 
-Result<std::unique_ptr<EngineScene>> EngineScene::share(Context& context, GpuScene& scene) {
+Result<std::unique_ptr<EngineScene>> EngineScene::share(Context& context, GpuScene& scene) try {
     const GpuScene::State& given = scene.state();
     if (given.editor != nullptr) {
         return makeError("scene-edit-share", "",
@@ -257,16 +262,18 @@ Result<std::unique_ptr<EngineScene>> EngineScene::share(Context& context, GpuSce
                         given.materials.address,  given.lights.address,    0};
     state->shaderIds = given.shaderIds;
     state->lightCount = given.lightCount;
-    state->shared = true;
+    state->shared = &given;
+    state->records = given.package.records;
     return std::unique_ptr<EngineScene>(new EngineScene(std::move(state)));
 }
+GLINT_CATCH
 
 EngineScene::EngineScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
 EngineScene::~EngineScene() = default;
 
 Status EngineScene::update(VkCommandBuffer commands, std::span<const std::array<float, 12>> instances,
-                           std::span<const LightView> lights, const std::array<double, 3>& originMoved) {
-    if (state_->shared) {
+                           std::span<const LightView> lights, const std::array<double, 3>& originMoved) try {
+    if (state_->shared != nullptr) {
         return makeError("engine-scene", "", "the scene is that of a GpuScene", "use GpuScene::update()");
     }
     if (instances.size() != state_->placed.size() || lights.size() > state_->lightCapacity) {
@@ -298,6 +305,7 @@ Status EngineScene::update(VkCommandBuffer commands, std::span<const std::array<
     state_->lightCount = static_cast<std::uint32_t>(lightRecords.size());
     return okStatus();
 }
+GLINT_CATCH
 
 VkDeviceAddress EngineScene::materials() const {
     return state_->addresses.materials;

@@ -151,6 +151,16 @@ PackageSpec makeDeviceSpec() {
     return makeWithModules([](const std::string& name) { return readTestShader(name); });
 }
 
+PackageSpec makeOtherSpec() {
+    PackageSpec spec = makeDeviceSpec();
+    spec.caseCount = 2;
+    spec.cases.push_back({0, 0, "Other"});
+    spec.modules.push_back(
+        {{package::roleNamed("ShadeCase"), 1, 0}, "shade_case.comp.spv", readTestShader("shade_case.comp")});
+    spec.primitives[0].shaderId = 1;
+    return spec;
+}
+
 std::vector<std::uint32_t> readTestShader(const std::string& name) {
     std::ifstream stream(std::filesystem::path(GLINT_TEST_SHADERS) / (name + ".spv"), std::ios::binary);
     const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
@@ -197,6 +207,7 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     header.tracers = spec.tracers;
     header.alpha = spec.alpha;
     header.precision = spec.precision;
+    header.environmentMap = spec.environmentMap ? 1 : 0;
     header.caseCount = spec.caseCount;
     header.maxBounces = 1;
     header.interopHash = spec.interopHash;
