@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <system_error>
+#include <utility>
 
 namespace glint::test {
 
@@ -155,8 +156,11 @@ PackageSpec makeOtherSpec() {
     PackageSpec spec = makeDeviceSpec();
     spec.caseCount = 2;
     spec.cases.push_back({0, 0, "Other"});
-    spec.modules.push_back(
-        {{package::roleNamed("ShadeCase"), 1, 0}, "shade_case.comp.spv", readTestShader("shade_case.comp")});
+    const auto first = std::ranges::find(spec.modules, package::roleNamed("ShadeCase"),
+                                         [](const ModuleSpec& module) { return module.key.role; });
+    ModuleSpec second = *first;
+    second.key.index = 1;
+    spec.modules.insert(first + 1, std::move(second));
     spec.primitives[0].shaderId = 1;
     return spec;
 }
