@@ -184,7 +184,7 @@ public:
     // Writes `text` to `file`, and returns once the whole package is in use. `run` is that of the
     // compiler.
     Result<Edit> follow(const fs::path& file, const std::string& text, std::size_t run,
-                        PackageReplacement& replaced) {
+                        Renderer::Replacement& replaced) {
         const fs::path temporary = file.string() + ".edited";
         GLINT_TRY_DO(base::writeFile(temporary, text));
         start_ = base::Clock::now();
@@ -209,7 +209,7 @@ public:
 
 private:
     // Waits for the next package and its first picture.
-    Result<Times> showNext(std::shared_ptr<const Package>& package, PackageReplacement& replaced) {
+    Result<Times> showNext(std::shared_ptr<const Package>& package, Renderer::Replacement& replaced) {
         Times times{};
         base::Clock::time_point begin;
         while (!package) {
@@ -361,7 +361,7 @@ Status measure(const Arguments& arguments) {
         return makeError("live-edit", arguments.file, "the file lacks the text of --from");
     }
     std::vector<Edit> edits;
-    PackageReplacement replaced;
+    Renderer::Replacement replaced;
     Follower follower(compiler, packages, *renderer, frame);
     Status result = okStatus();
     for (int round = 0; round < arguments.rounds && result; ++round) {

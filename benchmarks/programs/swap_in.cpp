@@ -132,7 +132,7 @@ Status replace(Renderer& renderer, const Bed& bed, Course& course) {
     base::Clock::time_point begin = start;
     while (course.replacing.size() < kMostFrames) {
         GLINT_TRY_DO(drawFrame(renderer, bed, begin, course.replacing));
-        const ReplacementProgress progress = renderer.replacementProgress();
+        const Renderer::ReplacementProgress progress = renderer.replacementProgress();
         if (progress.error) {
             return *progress.error;
         }

@@ -252,7 +252,7 @@ TEST_F(EarlyPackage, TheEditIsADraftUntilTheWholePackageIsInUse) {
         expectSameImage(draw(*renderer), old, "before");
         EXPECT_FALSE(renderer->replacementProgress().early);
 
-        const Result<PackageReplacement> replaced = renderer->replacePackage(version(1).early);
+        const Result<Renderer::Replacement> replaced = renderer->replacePackage(version(1).early);
         ASSERT_TRUE(replaced) << toString(replaced.error());
         EXPECT_EQ(replaced->pipelinesMade, 1U);
         EXPECT_EQ(replaced->buffersMade, 0U);
@@ -342,7 +342,7 @@ TEST_F(EarlyPackage, IsNotShownByARendererWithoutDrafts) {
     Renderer* const renderer = start(*version(0).whole, options);
     ASSERT_NE(renderer, nullptr);
     const LinearImage old = draw(*renderer);
-    const Result<PackageReplacement> replaced = renderer->replacePackage(version(1).early);
+    const Result<Renderer::Replacement> replaced = renderer->replacePackage(version(1).early);
     ASSERT_TRUE(replaced);
     EXPECT_EQ(replaced->pipelinesMade, 0U);
     expectSameImage(draw(*renderer), old, "the early package");

@@ -100,9 +100,11 @@ public:
             return std::uniform_int_distribution<std::size_t>(0, count - 1)(random);
         };
         const std::size_t chosen = number(instances_.size());
+        // No two instances lie in each other: the order of triangles would decide which is seen.
+        const float place = 100.0F * static_cast<float>(random()) / static_cast<float>(std::mt19937::max());
         switch (number(5)) {
             case 0:
-                add(number(data_.instances.size()), static_cast<float>(number(100)));
+                add(number(data_.instances.size()), place);
                 break;
             case 1:
                 remove(chosen);
@@ -111,7 +113,7 @@ public:
                 show(instances_[chosen], number(2) == 0);
                 break;
             case 3:
-                move(instances_[chosen], static_cast<float>(number(100)));
+                move(instances_[chosen], place);
                 break;
             default:
                 change(instances_[chosen], number(data_.instances.size()));

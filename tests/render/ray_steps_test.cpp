@@ -119,7 +119,7 @@ public:
     // Records the steps and waits. `apart` records them one by one, with the count on the device.
     template <typename Answer>
     std::vector<Answer> answers(RayStepsOptions options, const FrameOptions& frame, bool apart,
-                                RayStepsCounters* counters = nullptr) {
+                                RaySteps::Counters* counters = nullptr) {
         options.layout = layout_.get();
         options.pushStages = kStages;
         options.maxRays = static_cast<std::uint32_t>(slots_);
@@ -261,7 +261,7 @@ TEST(RaySteps, AnswerAHostsRaysAsARendererDoes) {
             options.strategy = way.strategy;
             options.tracer = way.tracer;
             options.checkOrder = true;
-            RayStepsCounters counters;
+            RaySteps::Counters counters;
             const auto answers = host.answers<EngineRadiance>(
                 options, setup.frame, way.strategy == package::kStrategyVisibility, &counters);
             ASSERT_EQ(answers.size(), known.answers.size());

@@ -41,7 +41,7 @@ TEST_F(ReplacePackageScene, ErrorsKeepThePackageBefore) {
     ASSERT_NE(renderer, nullptr);
     const LinearImage old = draw(*renderer);
     const auto expectError = [&](const std::shared_ptr<const Package>& package, const char* id) {
-        const Result<PackageReplacement> replaced = renderer->replacePackage(package);
+        const Result<Renderer::Replacement> replaced = renderer->replacePackage(package);
         ASSERT_FALSE(replaced) << id;
         EXPECT_EQ(replaced.error().id, id) << toString(replaced.error());
         EXPECT_FALSE(renderer->replacementProgress().pending) << id;
@@ -84,7 +84,7 @@ TEST_F(ReplacePackageScene, AFallbackLeavesEmissiveTrianglesAsTheyAre) {
     const std::unique_ptr<Renderer> renderer =
         makeRenderer(*original, *scene, optionsOf(package::kStrategyVisibility));
     ASSERT_NE(renderer, nullptr);
-    const Result<PackageReplacement> replaced = renderer->replacePackage(extended);
+    const Result<Renderer::Replacement> replaced = renderer->replacePackage(extended);
     EXPECT_TRUE(replaced) << toString(replaced.error());
     expectNoValidationMessages();
 }
@@ -147,7 +147,7 @@ TEST_F(ReplacePackageScene, TheAlphaOfDecidedTrianglesStays) {
             const std::shared_ptr<const Package> package = packageOf(edited, uber);
             const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
             ASSERT_TRUE(package != nullptr && renderer != nullptr);
-            const Result<PackageReplacement> replaced = renderer->replacePackage(package);
+            const Result<Renderer::Replacement> replaced = renderer->replacePackage(package);
             if (!isDecided || !edit.isRefused) {
                 EXPECT_TRUE(replaced) << edit.what << ": " << toString(replaced.error());
                 continue;
@@ -169,7 +169,7 @@ TEST_F(ReplacePackageScene, AnEditableSceneKeepsItsPackage) {
     const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
     ASSERT_NE(renderer, nullptr);
     const LinearImage old = draw(*renderer);
-    const Result<PackageReplacement> replaced = renderer->replacePackage(original);
+    const Result<Renderer::Replacement> replaced = renderer->replacePackage(original);
     ASSERT_FALSE(replaced);
     EXPECT_EQ(replaced.error().id, "scene-package");
     expectEqualImage(draw(*renderer), old, "after the error");

@@ -87,7 +87,7 @@ TEST_F(ReplacePackage, ThePictureIsThatOfTheOldPackageAndThenOfTheNewOne) {
         expectEqualImage(draw(*renderer), old, name + ", before");
 
         renderer->state().pipelines.adoptedAtOnce = 0;
-        const Result<PackageReplacement> replaced = renderer->replacePackage(*edited_);
+        const Result<Renderer::Replacement> replaced = renderer->replacePackage(*edited_);
         ASSERT_TRUE(replaced) << name << ": " << toString(replaced.error());
         EXPECT_GT(replaced->pipelinesKept, 0U) << name;
         EXPECT_GT(replaced->pipelinesMade, 0U) << name;
@@ -234,7 +234,7 @@ TEST_F(ReplacePackage, OnlyPipelinesThatChangedAreMade) {
     ASSERT_NE(renderer, nullptr);
     const std::uint32_t pipelines = renderer->footprint().pipelines;
 
-    const Result<PackageReplacement> values = renderer->replacePackage(repainted);
+    const Result<Renderer::Replacement> values = renderer->replacePackage(repainted);
     ASSERT_TRUE(values) << toString(values.error());
     EXPECT_EQ(values->pipelinesMade, 0U) << "values of materials are in no shader";
     EXPECT_EQ(values->pipelinesKept, pipelines);
@@ -242,7 +242,7 @@ TEST_F(ReplacePackage, OnlyPipelinesThatChangedAreMade) {
     EXPECT_EQ(values->buffersMade, 0U);
     expectEqualImage(draw(*renderer), fresh(repaintedRoom(), *repainted, options), "another colour");
 
-    const Result<PackageReplacement> key = renderer->replacePackage(edited);
+    const Result<Renderer::Replacement> key = renderer->replacePackage(edited);
     ASSERT_TRUE(key) << toString(key.error());
     // The case of the material with sheen is the only one whose SPIR-V is new.
     std::vector<std::uint32_t> fresh;
@@ -276,10 +276,10 @@ TEST_F(ReplacePackage, ALaterPackageTakesThePlaceOfOneThatWaits) {
     ASSERT_NE(renderer, nullptr);
     renderer->waitForPipelines();
     const LinearImage old = draw(*renderer);
-    const Result<PackageReplacement> first = renderer->replacePackage(*edited_);
+    const Result<Renderer::Replacement> first = renderer->replacePackage(*edited_);
     ASSERT_TRUE(first);
     renderer->waitForPipelines();
-    const Result<PackageReplacement> again = renderer->replacePackage(*edited_);
+    const Result<Renderer::Replacement> again = renderer->replacePackage(*edited_);
     ASSERT_TRUE(again);
     EXPECT_EQ(again->pipelinesMade, 0U);
     EXPECT_EQ(again->pipelinesKept, first->pipelinesKept + first->pipelinesMade);

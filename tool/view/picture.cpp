@@ -105,7 +105,7 @@ Result<bool> Picture::replace(Build& build, const RendererOptions& options) {
     if (!isSameScene(build)) {
         return false;
     }
-    const Result<PackageReplacement> replaced = device_.renderer->replacePackage(build.package);
+    const Result<Renderer::Replacement> replaced = device_.renderer->replacePackage(build.package);
     if (!replaced) {
         return false;  // the scene is uploaded anew; if that fails, too, its error says why
     }

@@ -1,4 +1,9 @@
 // The Vulkan device that Glint works on. It is the caller's, or a headless device that Glint makes.
+//
+// Threads: functions without a comment of their own may be called from any thread at any time, do not wait
+// for the device and submit nothing. Objects of one Context may be used on several threads at once, each
+// object on one thread at a time. All submissions go to DeviceHandles::queue under HostServices::lockQueue;
+// functions that submit say so.
 #pragma once
 
 #include <glint/package_format.h>
@@ -8,12 +13,16 @@
 #include <vulkan/vulkan_core.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace glint {
+
+// Makes the error "vulkan-call" of a call of Vulkan that failed, with ErrorKind and code.
+Diagnostic vulkanError(const char* call, VkResult result);
 
 // The side that reads and writes a resource's memory.
 enum class MemoryUse : std::uint32_t {
@@ -63,6 +72,55 @@ struct DeviceHandles {
     std::uint32_t tracers = package::kTracerRayQuery;
 };
 
+// Services of the caller's, which must live as long as the Context. Each may be left out, and Glint then does
+// that work itself. Glint uses what is given for everything. There is no place for a descriptor pool: each
+// set has a pool of exactly its size, and there is one set a scene and one a renderer.
+//
+// The functions may be called from any thread, several at once, and must not throw or call Glint.
+struct HostServices {
+    // A request for the memory of one buffer or image.
+    struct MemoryRequest {
+        VkMemoryRequirements requirements{};
+        MemoryUse use = MemoryUse::Device;
+        VkMemoryPropertyFlags required = 0;   // of the memory's type
+        VkMemoryPropertyFlags preferred = 0;  // beside those
+        VkMemoryAllocateFlags flags = 0;      // of the VkDeviceMemory
+        bool isImage = false;                 // with optimal tiling; see bufferImageGranularity
+        const char* name = "";                // what it is for, with HostServices::namePrefix
+    };
+
+    // A range of device memory.
+    struct MemoryRange {
+        VkDeviceMemory memory = VK_NULL_HANDLE;
+        VkDeviceSize offset = 0;
+        std::uint32_t type = 0;      // of the memory
+        void* allocation = nullptr;  // for the allocator's own use
+    };
+
+    // Give and take back device memory; all three or none. Without memory the result is an error of Vulkan's;
+    // VK_ERROR_OUT_OF_DEVICE_MEMORY says that no heap that fits has any left. `mapMemory` sets the address
+    // of a range whose MemoryUse is not Device, which stays valid until it is freed.
+    std::function<VkResult(const MemoryRequest& request, MemoryRange& range)> allocateMemory;
+    std::function<void(const MemoryRange& range)> freeMemory;
+    std::function<VkResult(const MemoryRange& range, void*& mapped)> mapMemory;
+    // Is given to each function of Vulkan that makes or destroys an object.
+    const VkAllocationCallbacks* allocation = nullptr;
+    // All pipelines are made with it. The caller fills, saves and destroys it.
+    VkPipelineCache pipelineCache = VK_NULL_HANDLE;
+    // Enclose each submission to DeviceHandles::queue; both or none. Programs that submit to the queue from
+    // other threads need them.
+    std::function<void()> lockQueue;
+    std::function<void()> unlockQueue;
+    // Runs a job later on another thread. It makes a pipeline in the background or destroys replaced ones,
+    // which may take seconds. All jobs must run or be destroyed before the Context is destroyed.
+    std::function<void(std::function<void()> job)> runJob;
+    // Stands before the names of objects and of labels in command buffers, with DeviceHandles::debugUtils.
+    std::string namePrefix = "glint ";
+    // Is told what no function returns: failures in the background, and memory taken from another heap than
+    // the preferred one.
+    std::function<void(const Diagnostic& message)> message;
+};
+
 enum class Validation { Off, On, Synchronization };
 
 struct HeadlessOptions {
@@ -97,14 +155,6 @@ struct HeadlessOptions {
 // Returns the package::Tracer bits that a device can be created with. 0 means that Glint does not run on it.
 std::uint32_t deviceTracers(VkPhysicalDevice device);
 
-// Has the layout of VkPhysicalDeviceRayTracingPositionFetchFeaturesKHR, which Vulkan headers before 1.3.249
-// lack.
-struct PositionFetchFeatures {
-    VkStructureType sType;
-    void* pNext;
-    VkBool32 rayTracingPositionFetch;
-};
-
 // The extensions and features that a device must be created with for Glint to use it. Chain `features.pNext`
 // into VkDeviceCreateInfo. Some of the features are needed by some modules only; leaveOutLacking() clears
 // those that a device lacks. The structure points into static memory and into itself, so it can be neither
@@ -123,6 +173,13 @@ struct DeviceRequirements {
     // such a module name it and the feature.
     void leaveOutLacking(VkPhysicalDevice device);
 
+    // Has the layout of VkPhysicalDeviceRayTracingPositionFetchFeaturesKHR, which Vulkan headers
+    // before 1.3.249 lack.
+    struct PositionFetchFeatures {
+        VkStructureType sType;
+        void* pNext;
+        VkBool32 rayTracingPositionFetch;
+    };
     static constexpr std::uint32_t kApiVersion = VK_API_VERSION_1_3;
     std::vector<const char*> extensions;
     VkPhysicalDeviceFeatures2 features;  // head of the chain of the structures below
@@ -144,13 +201,16 @@ std::vector<std::string> missingRequirements(VkPhysicalDevice device);
 
 class Context {
 public:
-    // Uses the caller's device. Errors: "context-handles", "context-queue", "device-features" (it names each
-    // feature or extension that the physical device lacks), and those of loading Vulkan's functions.
-    static Result<std::unique_ptr<Context>> adopt(const DeviceHandles& handles);
+    // Uses the caller's device. Errors: "context-handles", "context-queue", "context-services" (an incomplete
+    // service), "device-features" (it names each feature or extension that the physical device lacks), and
+    // those of loading Vulkan's functions.
+    static Result<std::unique_ptr<Context>> adopt(const DeviceHandles& handles,
+                                                  const HostServices& services = {});
     // Makes an instance, a device and a queue. Makes no surface. Errors: "validation-layer",
     // "device-missing", "device-features", and those of the loader and of Vulkan's calls.
     static Result<std::unique_ptr<Context>> createHeadless(const HeadlessOptions& options = {});
 
+    // Everything that was made with the Context must be destroyed before. Waits for jobs of the background.
     ~Context();
     Context(const Context&) = delete;
     Context& operator=(const Context&) = delete;
@@ -169,11 +229,13 @@ public:
     std::vector<std::string> validationMessages() const;
 
     // Returns the driver's cache of the pipelines made so far. Another run on the same device and driver can
-    // pass it to addPipelineCache(), and then makes these pipelines faster. Error "vulkan-call".
+    // pass it to addPipelineCache(), and then makes these pipelines faster. With HostServices::pipelineCache
+    // it is the data of that cache. Error "vulkan-call".
     Result<std::vector<std::uint8_t>> pipelineCacheData() const;
-    // Adds the data that pipelineCacheData() returned in an earlier run. No Renderer or GpuScene may be
-    // created at the same time. The data is not trusted: error "pipeline-cache" if it is damaged or belongs
-    // to another device or driver. An error leaves the cache unchanged.
+    // Adds the data that pipelineCacheData() returned in an earlier run. Pipelines that are being made
+    // meanwhile do without it. The data is not trusted: error "pipeline-cache" if it is damaged or belongs
+    // to another device or driver, or if the cache is HostServices::pipelineCache, which only its owner may
+    // change. An error leaves the cache unchanged.
     Status addPipelineCache(std::span<const std::uint8_t> data);
     // Returns a name that identifies the device and the driver, for the file that keeps the data. It consists
     // of hexadecimal digits and hyphens.

@@ -19,8 +19,8 @@ struct EnvironmentOptions {
     bool sampled = false;
 };
 
-// An environment is made once. The frames of any number of renderers can share it, and it may be destroyed
-// before they are. The Context must outlive it.
+// Environments may be made and destroyed on any thread. An environment is made once. The frames of any number
+// of renderers can share it, and it may be destroyed before they are. The Context must outlive it.
 class Environment {
 public:
     // Filters the image on the host, and records the upload of the result. Nothing waits for the device. The
@@ -36,7 +36,8 @@ public:
                                                        VkCommandBuffer commands, std::uint64_t frame);
     // Says that the device has completed all commands of frames up to `frame`, and frees the staging memory.
     void complete(std::uint64_t frame);
-    // Records the same into a command buffer of its own, submits it and waits for the device.
+    // Records the same into a command buffer of its own, submits it to DeviceHandles::queue under
+    // HostServices::lockQueue, and waits for the device.
     static Result<std::unique_ptr<Environment>> create(Context& context, const LinearImage& image,
                                                        const EnvironmentOptions& options = {});
     ~Environment();

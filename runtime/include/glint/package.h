@@ -1,4 +1,6 @@
-// A compiled package, read and checked. It needs no Vulkan device.
+// A compiled package, read and checked. It needs no Vulkan device. A package does not change, so any number
+// of threads may use it at once. load() and poll() wait for files. A PackageWatch is used by one thread at a
+// time.
 #pragma once
 
 #include <glint/embedded_file.h>

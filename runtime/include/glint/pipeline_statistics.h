@@ -52,10 +52,11 @@ struct PackagePipeline {
 };
 
 // Makes each pipeline that renderers of the package can have on the device, with every strategy, tracer and
-// ordering of both, and destroys it again. Needs no scene, and submits nothing. A package with the steps of a
-// host gets a layout with the descriptors that its modules declare. `threads` is as
-// RendererOptions::pipelineThreads. Errors: "device-tracer" and others of Renderer::create() if the device
-// runs no strategy of the package, "vulkan-call".
+// ordering of both, and destroys it again. May be called from any thread; it takes as long as the driver
+// needs. Needs no scene, and submits nothing. A package with the steps of a host gets a layout with the
+// descriptors that its modules declare. `threads` is as RendererOptions::pipelineThreads. Errors:
+// "device-tracer" and others of Renderer::create() if the device runs no strategy of the package,
+// "vulkan-call".
 Result<std::vector<PackagePipeline>> makePackagePipelines(Context& context, const Package& package,
                                                           std::uint32_t threads = 0);
 

@@ -1,4 +1,10 @@
 // The passes that shade a scene on the device with a package's shaders.
+//
+// Threads: a scene, its renderers and its editor are used by one thread at a time; different scenes may be
+// used on different threads at once. Renderers may be created and destroyed on other threads meanwhile,
+// unless a package waits to replace theirs. Functions do not wait for the device and submit nothing unless
+// they say so. Those that submit use DeviceHandles::queue, locked by HostServices::lockQueue for the
+// submission alone.
 #pragma once
 
 #include <glint/context.h>
@@ -111,16 +117,46 @@ struct LayerImage {
 // outlive it.
 class Renderer {
 public:
-    // Makes all pipelines, images and buffers. Submits nothing. Errors: "renderer-options" (not
-    // exactly one strategy, tracer or ordering), "package-strategy", "package-tracer" and "package-bounces"
-    // (the package lacks it), "package-fallback" (see RendererOptions::backgroundPipelines), "device-tracer"
-    // and "device-ordering" (the device lacks it), "pipeline-statistics", "render-size" (no pixels, or more
-    // than the device supports), and those of memory and Vulkan's calls.
+    // Makes all pipelines, images and buffers, which takes as long as the driver needs. The scene must have
+    // been made with `package`, or have it from replacePackage(), else the error is "scene-package". Further
+    // errors: "renderer-options" (not exactly one strategy, tracer or ordering), "package-strategy",
+    // "package-tracer" and "package-bounces" (the package lacks it), "package-fallback" (see
+    // RendererOptions::backgroundPipelines), "device-tracer" and "device-ordering" (the device lacks it),
+    // "pipeline-statistics", "render-size" (no pixels, or more than the device supports), and those of memory
+    // and Vulkan's calls.
     static Result<std::unique_ptr<Renderer>> create(Context& context, const Package& package, GpuScene& scene,
                                                     const RendererOptions& options);
     ~Renderer();
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
+
+    // The pipelines and buffers that Renderer::replacePackage() keeps, and those that it makes.
+    struct Replacement {
+        // Pipelines that the new package has in common with the earlier one: their SPIR-V is the same.
+        std::uint32_t pipelinesKept = 0;
+        // Pipelines that are made, in the call or in the background.
+        std::uint32_t pipelinesMade = 0;
+        // The shader IDs, in the new package, of the cases with a pipeline of their own that is made. Only
+        // strategies with a dispatch for each case have such pipelines.
+        std::vector<std::uint32_t> casesMade;
+        // Buffers of the frame that have the size that the new package needs, and those that are made.
+        std::uint32_t buffersKept = 0;
+        std::uint32_t buffersMade = 0;
+    };
+
+    // The progress of the last replacement.
+    struct ReplacementProgress {
+        std::uint64_t inUse = 0;    // replacements that recordings have begun to use
+        bool pending = false;       // a package waits; recordings use the old one
+        bool ready = false;         // the next recording uses the package that waits
+        std::uint32_t missing = 0;  // pipelines that it still waits for
+        // Recordings use an early package (PackageShape::early): they show the surfaces with edited features
+        // as drafts, and all else as before the edit. The whole package follows.
+        bool early = false;
+        // Why the last replacement was given up; recordings continue with the old package. The next
+        // replacePackage() clears it.
+        std::optional<Diagnostic> error{};
+    };
 
     // Switches to another package of the same scene: one that was compiled again after a material, a pack's
     // GLSL or a setting changed. Waits neither for the queue nor for frames in flight. It keeps pipelines
@@ -133,15 +169,16 @@ public:
     // An early package (PackageShape::early) is taken over in the same way. It needs one small pipeline, and
     // shows the edit as a draft until the whole package, which is given as soon as it is there, is ready.
     //
-    // The options stay those of create(). A package that waits gives way to one that is given later. If two
-    // renderers share a GpuScene, the other one's recordings then fail with "package-replaced". Call this on
-    // the thread that records. `package` must not be null; the renderer keeps it as long as it is needed.
+    // The options stay those of create(). A package that waits gives way to one that is given later.
+    // Renderers that share a GpuScene switch together: this makes what each of them needs, and the first
+    // recording of any of them after that switches all. Its commands must come before those of their later
+    // recordings. `package` must not be null; the renderers keep it as long as it is needed.
     //
     // With an error nothing changes. Errors: those of create() for package and options; "scene-package" (the
     // scene has another name, or vertices, textures or acceleration structures that do not suit the package,
     // so that it has to be uploaded anew), "position-fetch", "half-precision"; "package-frame" (its frames
     // have other images). An error of making pipelines in the background is in replacementProgress().
-    Result<PackageReplacement> replacePackage(std::shared_ptr<const Package> package);
+    Result<Replacement> replacePackage(std::shared_ptr<const Package> package);
     ReplacementProgress replacementProgress() const;
 
     // Replaced pipelines and buffers are kept until no frame uses them. recordings() returns how many
@@ -157,8 +194,10 @@ public:
     // pass. Recordings of a renderer share its buffers, so they must run one after the other. On one queue
     // the barrier at their beginning ensures that. counters() returns those of the last recording. After the
     // commands ran, output() holds the mean over samples 0..sampleIndex. The commands of the first recording
-    // prepare images and tables for all that follow, so they must be submitted. Errors: "camera", "sky",
-    // "frame-options", "environment-missing", "environment-unread".
+    // prepare images and tables for all that follow, so they must be submitted. FrameOptions::environment may
+    // change and the one before may be destroyed while frames are in flight; finished() frees it. With an
+    // error nothing is recorded. Errors: "camera", "sky", "frame-options", "environment-missing",
+    // "environment-unread", and those of memory and Vulkan's calls.
     Status record(VkCommandBuffer commands, const FrameOptions& frame);
 
     // The accumulated linear image. After the first recording its layout is GENERAL; a compute shader writes
@@ -175,8 +214,8 @@ public:
     // (RendererOptions::draft) leaves them as they are. Motion leads to the previous frame: the picture that
     // this renderer began before this one.
     std::vector<LayerImage> layers() const;
-    // Reads a layer of the last recording back and waits for the device. Errors: "layer-missing" if the
-    // package lacks it, "frame-not-recorded".
+    // Reads a layer of the last recording back: submits, and waits for the device. Errors: "layer-missing" if
+    // the package lacks it, "frame-not-recorded".
     Result<LayerValues> readLayer(std::string_view name);
 
     // Records and submits samples [0, sampleCount) of the frame, waits for the device and reads the picture
@@ -194,18 +233,18 @@ public:
     // it. FrameOptions::timing of that recording says which times there are.
     Result<std::vector<PassTiming>> timings();
     Result<FrameCounters> counters();
-    // Says for each pixel how it got the light of an effect that sends rays, row by row from the top. Waits
-    // for the device. Errors: "effect-missing" if the package lacks the effect, "frame-options" if the frame
-    // was lit in several bands.
+    // Says for each pixel how it got the light of an effect that sends rays, row by row from the top.
+    // Submits, and waits for the device. Errors: "effect-missing" if the package lacks the effect,
+    // "frame-options" if the frame was lit in several bands.
     Result<std::vector<PixelPath>> readCoverage(package::Effect effect);
     // Says for each pixel whether it sees a surface in the last sample: 1 for a surface, 0 for the sky; row
-    // by row from the top. Waits for the device.
+    // by row from the top. Submits, and waits for the device.
     Result<std::vector<std::uint8_t>> readSurfaces();
     // Returns the surface that a pixel sees in the last sample, or no value if it sees the sky. (0, 0) is the
-    // pixel at the top left. Edits since that sample count. Waits for the device. Error "render-size" for a
-    // pixel outside of the picture.
+    // pixel at the top left. Edits since that sample count. Submits, and waits for the device. Error
+    // "render-size" for a pixel outside of the picture.
     Result<std::optional<SurfacePlace>> readPlace(std::uint32_t x, std::uint32_t y);
-    // Reads output() back. Waits for the device.
+    // Reads output() back: submits, and waits for the device.
     Result<LinearImage> readOutput();
 
     // Returns the tracer and the ordering that the renderer uses, also where RendererOptions left the choice
@@ -235,7 +274,8 @@ public:
     PipelineMaking pipelineMaking() const;
     // With RendererOptions::backgroundPipelines, record() uses the pipelines that were made by then.
     // pipelineProgress() says how many are made. The other function waits until the last one is made, also of
-    // a package that waits to replace this one. Without that option no pipeline is missing.
+    // a package that waits to replace this one. Without that option no pipeline is missing. Both may be
+    // called from any thread while the renderer is not recorded.
     PipelineProgress pipelineProgress() const;
     void waitForPipelines();
     // Returns the driver's report about each pipeline. Errors: "pipeline-statistics" without

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +18,16 @@ namespace glint {
 
 enum class Severity { Note, Warning, Error };
 
+// The kinds of errors that programs treat in a way of their own. Compare Diagnostic::kind; nothing else tells
+// them apart.
+enum class ErrorKind : std::uint8_t {
+    Other,
+    DeviceLost,       // destroy everything that was made with the device, and the device, and make them anew
+    OutOfHostMemory,  // nothing has changed; free memory and try again
+    OutOfDeviceMemory,  // the same, after every heap that fits was tried
+    SurfaceLost,        // make the window's surface and swapchain anew
+};
+
 // One message to the user. It names the fault, its place and a remedy.
 struct Diagnostic {
     Severity severity = Severity::Error;
@@ -24,6 +35,8 @@ struct Diagnostic {
     std::string where;    // file, file#/json/pointer or file:line; empty when there is no place
     std::string message;  // one sentence, no final full stop
     std::string hint;     // advice for the user; may be empty
+    ErrorKind kind = ErrorKind::Other;
+    std::int32_t code = 0;  // the VkResult of the call that failed; 0 if there is none
 };
 
 // Formats as "scene.gltf#/materials/3: error: message; hint [id]".
@@ -97,11 +110,19 @@ inline Status okStatus() {
 }
 
 inline Diagnostic makeError(std::string id, std::string where, std::string message, std::string hint = {}) {
-    return {Severity::Error, std::move(id), std::move(where), std::move(message), std::move(hint)};
+    return {.severity = Severity::Error,
+            .id = std::move(id),
+            .where = std::move(where),
+            .message = std::move(message),
+            .hint = std::move(hint)};
 }
 
 inline Diagnostic makeWarning(std::string id, std::string where, std::string message, std::string hint = {}) {
-    return {Severity::Warning, std::move(id), std::move(where), std::move(message), std::move(hint)};
+    return {.severity = Severity::Warning,
+            .id = std::move(id),
+            .where = std::move(where),
+            .message = std::move(message),
+            .hint = std::move(hint)};
 }
 
 }  // namespace glint

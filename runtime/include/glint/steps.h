@@ -1,6 +1,10 @@
 // Traces, orders and shades the rays of a host, in the host's command buffer, with the host's bindings, over
 // a scene that the host keeps on the device by itself: its vertex buffers, acceleration structures, textures
 // and samplers stay where they are. docs/engine.md shows how to use it.
+//
+// Threads: an EngineScene and its RaySteps are used by one thread at a time; different ones may be used on
+// different threads at once. Functions do not wait for the device and submit nothing, except
+// EngineScene::create().
 #pragma once
 
 #include <glint/context.h>
@@ -86,21 +90,24 @@ class EngineScene {
 public:
     // Makes the records, and records their upload. Nothing waits for the device. The requirements of
     // `commands` and `frame`, and when the scene may be used and destroyed, are as in GpuScene::record(). The
-    // spans are not kept. Errors: "scene-package" (the package has no such scene or primitive),
-    // "engine-scene" (a number is out of range, an attribute that a key needs is missing, or a transform is
-    // not finite), "scene-light", and those of memory and Vulkan's calls.
+    // spans are not kept. Errors: "position-fetch" and "half-precision" (the device was created without what
+    // the package needs), "scene-package" (the package has no such scene or primitive), "engine-scene" (a
+    // number is out of range, an attribute that a key needs is missing, or a transform is not finite),
+    // "scene-light", and those of memory and Vulkan's calls.
     static Result<std::unique_ptr<EngineScene>> record(Context& context, const Package& package,
                                                        const EngineSceneView& scene, VkCommandBuffer commands,
                                                        std::uint64_t frame);
     // Says that the device has completed all commands of frames up to `frame`, and frees the staging memory.
     void complete(std::uint64_t frame);
-    // Records the same into a command buffer of its own, submits it and waits for the device.
+    // Records the same into a command buffer of its own, submits it to DeviceHandles::queue under
+    // HostServices::lockQueue, and waits for the device.
     static Result<std::unique_ptr<EngineScene>> create(Context& context, const Package& package,
                                                        const EngineSceneView& scene);
     // The records of a scene that Glint has uploaded, for a host that brings rays of its own and no scene
     // yet. The GpuScene must outlive it. It is updated and edited by its own functions; steps that are
-    // recorded afterwards read it as it is then. Rays are relative to its SceneView::origin. The host binds
-    // GpuScene::descriptorSet().
+    // recorded afterwards read it as it is then. If a Renderer replaces the scene's package,
+    // RaySteps::begin() fails with "package-replaced". Rays are relative to its SceneView::origin. The host
+    // binds GpuScene::descriptorSet().
     static Result<std::unique_ptr<EngineScene>> share(Context& context, GpuScene& scene);
     ~EngineScene();
     EngineScene(const EngineScene&) = delete;
@@ -202,21 +209,12 @@ struct RayBatch {
     // The light for rays that leave the scene, with HitAnswer::Radiance.
     SkyView sky{};
     // With a package that reads an environment map. The host binds Environment's image at
-    // Bindings::environment.
+    // Bindings::environment, and keeps it until the device has completed the batch.
     const Environment* environment = nullptr;
     float environmentRotation = 0.0F;  // radians, as in FrameOptions
     float environmentIntensity = 1.0F;
     float time = 0.0F;  // seconds that materials of packs may follow
     Timing timing = Timing::Frame;
-};
-
-// The counters of a batch.
-struct RayStepsCounters {
-    std::uint32_t rays = 0;
-    std::uint32_t shadowRays = 0;             // deferred ones
-    std::uint32_t unknownShader = 0;          // hits whose shader ID no case has, without a fallback
-    std::uint32_t orderErrors = 0;            // with RayStepsOptions::checkOrder
-    std::vector<std::uint32_t> bucketCounts;  // misses, then hits by shader ID; filled if hits are ordered
 };
 
 // The pipelines and buffers that shade a host's rays. Context, EngineScene and the layout must outlive it. It
@@ -231,7 +229,9 @@ class RaySteps {
 public:
     static constexpr std::uint32_t kPushBytes = 24;
 
-    // Errors: "package-passes" (the package draws frames), "renderer-options", "package-strategy",
+    // Makes all pipelines and buffers, which takes as long as the driver needs. Errors: "package-passes" (the
+    // package draws frames), "scene-package" (the scene was made with another package), "module-features"
+    // (the device was created without what a module needs), "renderer-options", "package-strategy",
     // "package-tracer", "device-tracer", "device-ordering", "ray-steps" (no rays, no layout, or more rays
     // than the device can dispatch), and those of memory and Vulkan's calls.
     static Result<std::unique_ptr<RaySteps>> create(Context& context, const Package& package,
@@ -242,7 +242,8 @@ public:
 
     // Starts a batch: waits for all earlier commands that write memory, and sets the constants. The values
     // are stored in the command buffer. Batches share buffers, so on several queues the host orders them
-    // itself. Errors: "ray-steps", "sky", "environment-missing", "environment-unread".
+    // itself. With an error nothing is recorded. Errors: "ray-steps", "sky", "environment-missing",
+    // "environment-unread", "package-replaced", and those of memory and Vulkan's calls.
     Status begin(VkCommandBuffer commands, const RayBatch& batch);
     // Traces the rays. Strategies that order no hits trace and shade in one pass, in shade(), so with them
     // this and order() do nothing.
@@ -254,8 +255,18 @@ public:
     // Records all of these steps.
     Status record(VkCommandBuffer commands, const RayBatch& batch);
 
+    // The counters of a batch.
+    struct Counters {
+        std::uint32_t rays = 0;
+        std::uint32_t shadowRays = 0;     // deferred ones
+        std::uint32_t unknownShader = 0;  // hits whose shader ID no case has, without a fallback
+        std::uint32_t orderErrors = 0;    // with RayStepsOptions::checkOrder
+        std::vector<std::uint32_t>
+            bucketCounts;  // misses, then hits by shader ID; filled if hits are ordered
+    };
+
     // The results of the last batch, which the device must have completed. Error "frame-not-recorded".
-    Result<RayStepsCounters> counters();
+    Result<Counters> counters();
     Result<std::vector<PassTiming>> timings();
 
     package::Tracer tracer() const;

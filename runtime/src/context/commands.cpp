@@ -3,6 +3,7 @@
 #include "context/vulkan_table.h"
 
 #include <limits>
+#include <string>
 
 namespace glint {
 
@@ -24,6 +25,8 @@ Result<CommandRunner> CommandRunner::create(Context::State& context) {
     if (result != VK_SUCCESS) {
         return vulkanError("vkAllocateCommandBuffers", result);
     }
+    nameObject(context, VK_OBJECT_TYPE_COMMAND_BUFFER, reinterpret_cast<std::uint64_t>(runner.commands_),
+               "commands");
 
     VkFenceCreateInfo fenceInfo{};
     fenceInfo.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
@@ -61,7 +64,10 @@ Status CommandRunner::submitAndWait() {
     submit.commandBufferInfoCount = 1;
     submit.pCommandBufferInfos = &commands;
     const VkFence fence = fence_.get();
-    result = vk.QueueSubmit2(context_->handles.queue, 1, &submit, fence);
+    {
+        const QueueLock lock(*context_);
+        result = vk.QueueSubmit2(context_->handles.queue, 1, &submit, fence);
+    }
     if (result != VK_SUCCESS) {
         return vulkanError("vkQueueSubmit2", result);
     }
@@ -119,6 +125,22 @@ void recordTransition(const Context::State& context, VkCommandBuffer commands,
     info.imageMemoryBarrierCount = 1;
     info.pImageMemoryBarriers = &barrier;
     context.vk.CmdPipelineBarrier2(commands, &info);
+}
+
+void beginLabel(const Context::State& context, VkCommandBuffer commands, std::string_view name) {
+    if (context.vk.CmdBeginDebugUtilsLabelEXT != nullptr) {
+        const std::string text = context.services.namePrefix + std::string(name);
+        VkDebugUtilsLabelEXT label{};
+        label.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
+        label.pLabelName = text.c_str();
+        context.vk.CmdBeginDebugUtilsLabelEXT(commands, &label);
+    }
+}
+
+void endLabel(const Context::State& context, VkCommandBuffer commands) {
+    if (context.vk.CmdEndDebugUtilsLabelEXT != nullptr) {
+        context.vk.CmdEndDebugUtilsLabelEXT(commands);
+    }
 }
 
 namespace {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -85,6 +86,10 @@ struct ImageTransition {
 
 void recordTransition(const Context::State& context, VkCommandBuffer commands,
                       const ImageTransition& transition);
+
+// Begin and end a label around commands, with DeviceHandles::debugUtils.
+void beginLabel(const Context::State& context, VkCommandBuffer commands, std::string_view name);
+void endLabel(const Context::State& context, VkCommandBuffer commands);
 
 class Timer {
 public:

@@ -21,8 +21,11 @@ std::vector<std::string> ValidationLog::messages() const {
 
 Context::State::~State() {
     if (handles.device != VK_NULL_HANDLE) {
-        if (pipelineCache != VK_NULL_HANDLE) {
-            vk.DestroyPipelineCache(handles.device, pipelineCache, nullptr);
+        if (services.pipelineCache == VK_NULL_HANDLE && pipelineCache != VK_NULL_HANDLE) {
+            replacedCaches.push_back(pipelineCache);
+        }
+        for (VkPipelineCache cache : replacedCaches) {
+            vk.DestroyPipelineCache(handles.device, cache, services.allocation);
         }
         if (ownsDevice && vk.DestroyDevice != nullptr) {
             vk.DestroyDevice(handles.device, nullptr);
@@ -33,6 +36,22 @@ Context::State::~State() {
             instance.DestroyDebugUtilsMessengerEXT(handles.instance, messenger, nullptr);
         }
         instance.DestroyInstance(handles.instance, nullptr);
+    }
+}
+
+QueueLock::QueueLock(Context::State& context) : context_(context) {
+    if (context_.services.lockQueue) {
+        context_.services.lockQueue();
+    } else {
+        context_.queueMutex.lock();
+    }
+}
+
+QueueLock::~QueueLock() {
+    if (context_.services.unlockQueue) {
+        context_.services.unlockQueue();
+    } else {
+        context_.queueMutex.unlock();
     }
 }
 
@@ -173,29 +192,71 @@ Status checkHandles(const DeviceHandles& handles) {
     return okStatus();
 }
 
+Status checkServices(const HostServices& services) {
+    const bool allocates[] = {services.allocateMemory != nullptr, services.freeMemory != nullptr,
+                              services.mapMemory != nullptr};
+    const bool locks[] = {services.lockQueue != nullptr, services.unlockQueue != nullptr};
+    if (std::ranges::count(allocates, true) % std::ssize(allocates) != 0 || locks[0] != locks[1]) {
+        return makeError("context-services", "", "HostServices has a part of an allocator or of a lock",
+                         "give all functions of a service, or none");
+    }
+    return okStatus();
+}
+
 }  // namespace
 
+// A device that has one of these extensions has its feature too (Vulkan 1.3 specification, "Feature
+// Requirements").
+Status checkClaims(const DeviceHandles& handles, const DeviceReport& report) {
+    if (const std::vector<std::string> missing = missingFrom(report); !missing.empty()) {
+        return makeError("device-features", "", "the device lacks " + joinNames(missing),
+                         "update the driver or use another device");
+    }
+    if (const std::uint32_t absent = handles.tracers & ~tracersOf(report); absent != 0) {
+        return makeError("device-features", "",
+                         "DeviceHandles::tracers has " + tracerNames(absent) + ", which the device lacks",
+                         "create the device with some of deviceTracers()");
+    }
+    const auto has = [&](const char* extension) { return hasExtension(report, extension); };
+    const struct {
+        const char* member;
+        bool claimed;
+        const char* feature;
+        bool present;
+    } claims[] = {
+        {"positionFetch", handles.positionFetch, kPositionFetchExtension, has(kPositionFetchExtension)},
+        {"shaderFloat16", handles.shaderFloat16, "shaderFloat16",
+         report.features.vulkan12.shaderFloat16 == VK_TRUE},
+        {"shaderClock", handles.shaderClock, VK_KHR_SHADER_CLOCK_EXTENSION_NAME,
+         has(VK_KHR_SHADER_CLOCK_EXTENSION_NAME)},
+        {"opacityMicromaps", handles.opacityMicromaps, VK_EXT_OPACITY_MICROMAP_EXTENSION_NAME,
+         has(VK_EXT_OPACITY_MICROMAP_EXTENSION_NAME)},
+        {"pipelineStatistics", handles.pipelineStatistics,
+         VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME,
+         has(VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME)},
+        {"samplerAnisotropy", handles.samplerAnisotropy, "samplerAnisotropy",
+         report.features.features.features.samplerAnisotropy == VK_TRUE}};
+    for (const auto& claim : claims) {
+        if (claim.claimed && !claim.present) {
+            return makeError("device-features", "",
+                             std::string("DeviceHandles::") + claim.member +
+                                 " is set, and the device lacks " + claim.feature,
+                             "leave it false");
+        }
+    }
+    return okStatus();
+}
+
 Status finishContext(Context::State& state) {
-    GLINT_TRY(state.vk, loadDeviceTable(state.instance, state.handles.device, state.handles.debugUtils));
-    if ((state.handles.tracers & package::kTracerRayPipeline) != 0) {
-        GLINT_TRY_DO(loadRayPipelineFunctions(state.instance, state.handles.device, state.vk));
-    }
-    if (state.handles.pipelineStatistics) {
-        GLINT_TRY_DO(loadPipelineStatisticsFunctions(state.instance, state.handles.device, state.vk));
-    }
-    if (state.handles.opacityMicromaps) {
-        GLINT_TRY_DO(loadMicromapFunctions(state.instance, state.handles.device, state.vk));
-    }
+    GLINT_TRY(state.vk, loadDeviceTable(state.instance, state.handles));
     queryLimits(state);
     GLINT_TRY_DO(queryReport(state));
     GLINT_TRY_DO(checkQueueFamily(state));
-    VkPipelineCacheCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
-    const VkResult result =
-        state.vk.CreatePipelineCache(state.handles.device, &info, nullptr, &state.pipelineCache);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreatePipelineCache", result);
+    if (state.services.pipelineCache != VK_NULL_HANDLE) {
+        state.pipelineCache = state.services.pipelineCache;
+        return okStatus();
     }
+    GLINT_TRY(state.pipelineCache, createPipelineCache(state, {}));
     return okStatus();
 }
 
@@ -207,43 +268,24 @@ VkShaderStageFlags passStages(const Context::State& state) {
     return VK_SHADER_STAGE_COMPUTE_BIT | (rayPipeline ? kRayStages : 0U);
 }
 
-Result<std::unique_ptr<Context>> Context::adopt(const DeviceHandles& handles) {
+Result<std::unique_ptr<Context>> Context::adopt(const DeviceHandles& handles,
+                                                const HostServices& services) try {
     GLINT_TRY_DO(checkHandles(handles));
-    auto state = std::make_unique<State>();
-    DeviceHandles complete = handles;
-    if (complete.getInstanceProcAddr == nullptr) {
+    GLINT_TRY_DO(checkServices(services));
+    auto state = std::make_unique<State>(services);
+    state->handles = handles;
+    if (handles.getInstanceProcAddr == nullptr) {
         GLINT_TRY(state->library, VulkanLibrary::open());
-        complete.getInstanceProcAddr = state->library->getInstanceProcAddr();
+        state->handles.getInstanceProcAddr = state->library->getInstanceProcAddr();
     }
-    GLINT_TRY(state->instance, loadInstanceTable(complete.getInstanceProcAddr, complete.instance));
-    state->handles = complete;
+    GLINT_TRY(state->instance, loadInstanceTable(state->handles.getInstanceProcAddr, handles.instance));
     DeviceReport report;
-    GLINT_TRY_DO(queryDevice(state->instance, complete.physicalDevice, report));
-    if (const std::vector<std::string> missing = missingFrom(report); !missing.empty()) {
-        return makeError("device-features", "", "the device lacks " + joinNames(missing),
-                         "update the driver or use another device");
-    }
-    if (const std::uint32_t absent = complete.tracers & ~tracersOf(report); absent != 0) {
-        return makeError("device-features", "",
-                         "DeviceHandles::tracers has " + tracerNames(absent) + ", which the device lacks",
-                         "create the device with some of deviceTracers()");
-    }
-    if (complete.opacityMicromaps && !hasExtension(report, VK_EXT_OPACITY_MICROMAP_EXTENSION_NAME)) {
-        return makeError("device-features", "",
-                         "DeviceHandles::opacityMicromaps is set, and the device lacks "
-                         "VK_EXT_opacity_micromap",
-                         "leave it false");
-    }
-    constexpr const char* kStatistics = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;
-    if (complete.pipelineStatistics && !hasExtension(report, kStatistics)) {
-        return makeError(
-            "device-features", "",
-            std::string("DeviceHandles::pipelineStatistics is set, and the device lacks ") + kStatistics,
-            "leave it false");
-    }
+    GLINT_TRY_DO(queryDevice(state->instance, handles.physicalDevice, report));
+    GLINT_TRY_DO(checkClaims(handles, report));
     GLINT_TRY_DO(finishContext(*state));
     return std::unique_ptr<Context>(new Context(std::move(state)));
 }
+GLINT_CATCH
 
 Context::Context(std::unique_ptr<State> state) : state_(std::move(state)) {}
 

@@ -2,6 +2,7 @@
 // of it.
 #pragma once
 
+#include "context/parallel.h"
 #include "context/vulkan_table.h"
 
 #include <glint/context.h>
@@ -12,11 +13,13 @@
 #include <vulkan/vulkan_core.h>
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace glint {
@@ -43,6 +46,10 @@ std::vector<std::uint8_t> wrapPipelineCache(const PipelineCacheOwner& owner,
 // another owner.
 Result<std::span<const std::uint8_t>> unwrapPipelineCache(const PipelineCacheOwner& owner,
                                                           std::span<const std::uint8_t> wrapped);
+
+// Makes a cache with the data of an earlier one, which may be empty. The caller destroys it. Error
+// "vulkan-call".
+Result<VkPipelineCache> createPipelineCache(const Context::State& state, std::span<const std::uint8_t> data);
 
 // --- The part of a Context that the runtime's own sources see ---
 
@@ -87,7 +94,7 @@ struct LeafBox;
 using LeafOrder = std::vector<std::uint32_t> (*)(std::span<const LeafBox> leaves, std::uint32_t threads);
 
 struct Context::State {
-    State() = default;
+    explicit State(HostServices given = {}) : services(std::move(given)), jobs(services) {}
     ~State();
     State(const State&) = delete;
     State& operator=(const State&) = delete;
@@ -105,8 +112,26 @@ struct Context::State {
     LeafOrder leafOrder = nullptr;  // null: halvingOrder()
     // The features of the device that modules may use: moduleFeatures().
     std::vector<std::string> features;
-    // The renderers of this context share this cache.
-    VkPipelineCache pipelineCache = VK_NULL_HANDLE;
+    HostServices services;
+    // All pipelines are made with this cache. Threads may still use those that addPipelineCache() has
+    // replaced, so they live as long as the context.
+    std::atomic<VkPipelineCache> pipelineCache{VK_NULL_HANDLE};
+    std::mutex cacheMutex;
+    std::vector<VkPipelineCache> replacedCaches;
+    std::mutex queueMutex;  // without HostServices::lockQueue
+    Jobs jobs;              // the last, so that its threads end first
+};
+
+// Locks the queue as long as it lives.
+class QueueLock {
+public:
+    explicit QueueLock(Context::State& context);
+    ~QueueLock();
+    QueueLock(const QueueLock&) = delete;
+    QueueLock& operator=(const QueueLock&) = delete;
+
+private:
+    Context::State& context_;
 };
 
 // Fills the fields that follow from the handles: device functions, limits, pipeline cache.
@@ -149,6 +174,9 @@ std::vector<std::string> moduleFeatures(const DeviceReport& report, const Device
 std::uint32_t tracersOf(const DeviceReport& report);
 
 bool hasExtension(const DeviceReport& report, const char* name);
+
+// Compares what the handles say is enabled with the device. Error "device-features".
+Status checkClaims(const DeviceHandles& handles, const DeviceReport& report);
 
 // Clears every feature of `report`.
 void clearFeatures(DeviceReport& report);

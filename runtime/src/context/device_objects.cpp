@@ -1,8 +1,23 @@
 #include "context/device_objects.h"
 
+#include <string>
 #include <vector>
 
 namespace glint {
+
+void nameObject(const Context::State& context, VkObjectType type, std::uint64_t handle,
+                std::string_view name) {
+    if (context.vk.SetDebugUtilsObjectNameEXT == nullptr) {
+        return;
+    }
+    const std::string text = context.services.namePrefix + std::string(name);
+    const VkDebugUtilsObjectNameInfoEXT info{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
+                                             .pNext = nullptr,
+                                             .objectType = type,
+                                             .objectHandle = handle,
+                                             .pObjectName = text.c_str()};
+    context.vk.SetDebugUtilsObjectNameEXT(context.handles.device, &info);
+}
 
 Result<UniqueSetLayout> createSetLayout(Context::State& context,
                                         std::span<const VkDescriptorSetLayoutBinding> bindings,
@@ -55,6 +70,7 @@ Result<DescriptorSet> createSet(Context::State& context, VkDescriptorSetLayout l
     if (result != VK_SUCCESS) {
         return vulkanError("vkAllocateDescriptorSets", result);
     }
+    nameObject(context, VK_OBJECT_TYPE_DESCRIPTOR_SET, (std::uint64_t)made.set, "set");  // NOLINT: pointer
     return made;
 }
 

@@ -6,15 +6,22 @@
 
 #include <glint/result.h>
 
+#include <cstdint>
 #include <span>
+#include <string_view>
 #include <utility>
 
 namespace glint {
 
+// Names an object of Vulkan for debuggers, with DeviceHandles::debugUtils. Requires no lock.
+void nameObject(const Context::State& context, VkObjectType type, std::uint64_t handle,
+                std::string_view name);
+
 // A device object that the function `Destroy` of the table destroys. The Context must outlive it.
-template <typename Handle, auto Destroy>
+template <typename Handle, auto Destroy, VkObjectType Type>
 class DeviceHandle {
 public:
+    static constexpr VkObjectType kType = Type;
     DeviceHandle() = default;
     DeviceHandle(Context::State& context, Handle handle) : context_(&context), handle_(handle) {}
     ~DeviceHandle() {
@@ -40,7 +47,7 @@ public:
 private:
     void reset() {
         if (handle_ != VK_NULL_HANDLE) {
-            (context_->vk.*Destroy)(context_->handles.device, handle_, nullptr);
+            (context_->vk.*Destroy)(context_->handles.device, handle_, context_->services.allocation);
             handle_ = VK_NULL_HANDLE;
         }
     }
@@ -50,36 +57,46 @@ private:
 };
 
 // Makes a device object with a function of the table that creates one, such as `context.vk.CreateSampler`.
-// `name` is that function's name in Vulkan, for the error.
+// `call` is that function's name in Vulkan, for the error, and `name` the object's for debuggers.
 template <typename Unique, typename Info, typename Handle>
 Result<Unique> createHandle(Context::State& context,
                             VkResult(VKAPI_PTR* create)(VkDevice, const Info*, const VkAllocationCallbacks*,
                                                         Handle*),
-                            const char* name, const Info& info) {
+                            const char* call, const Info& info, std::string_view name = {}) {
     Handle handle = VK_NULL_HANDLE;
-    const VkResult result = create(context.handles.device, &info, nullptr, &handle);
+    const VkResult result = create(context.handles.device, &info, context.services.allocation, &handle);
     if (result != VK_SUCCESS) {
-        return vulkanError(name, result);
+        return vulkanError(call, result);
     }
-    return Unique(context, handle);
+    Unique made(context, handle);
+    constexpr std::string_view kCreate = "vkCreate";
+    nameObject(context, Unique::kType, (std::uint64_t)handle,  // NOLINT: a pointer, or a number
+               name.empty() ? std::string_view(call).substr(kCreate.size()) : name);
+    return made;
 }
 
-using UniqueBuffer = DeviceHandle<VkBuffer, &DeviceTable::DestroyBuffer>;
-using UniqueImage = DeviceHandle<VkImage, &DeviceTable::DestroyImage>;
-using UniqueImageView = DeviceHandle<VkImageView, &DeviceTable::DestroyImageView>;
-using UniqueSampler = DeviceHandle<VkSampler, &DeviceTable::DestroySampler>;
-using UniqueMemory = DeviceHandle<VkDeviceMemory, &DeviceTable::FreeMemory>;
-using UniqueSetLayout = DeviceHandle<VkDescriptorSetLayout, &DeviceTable::DestroyDescriptorSetLayout>;
-using UniqueDescriptorPool = DeviceHandle<VkDescriptorPool, &DeviceTable::DestroyDescriptorPool>;
-using UniqueShaderModule = DeviceHandle<VkShaderModule, &DeviceTable::DestroyShaderModule>;
-using UniquePipelineLayout = DeviceHandle<VkPipelineLayout, &DeviceTable::DestroyPipelineLayout>;
-using UniquePipeline = DeviceHandle<VkPipeline, &DeviceTable::DestroyPipeline>;
-using UniqueCommandPool = DeviceHandle<VkCommandPool, &DeviceTable::DestroyCommandPool>;
-using UniqueFence = DeviceHandle<VkFence, &DeviceTable::DestroyFence>;
-using UniqueQueryPool = DeviceHandle<VkQueryPool, &DeviceTable::DestroyQueryPool>;
+using UniqueBuffer = DeviceHandle<VkBuffer, &DeviceTable::DestroyBuffer, VK_OBJECT_TYPE_BUFFER>;
+using UniqueImage = DeviceHandle<VkImage, &DeviceTable::DestroyImage, VK_OBJECT_TYPE_IMAGE>;
+using UniqueImageView = DeviceHandle<VkImageView, &DeviceTable::DestroyImageView, VK_OBJECT_TYPE_IMAGE_VIEW>;
+using UniqueSampler = DeviceHandle<VkSampler, &DeviceTable::DestroySampler, VK_OBJECT_TYPE_SAMPLER>;
+using UniqueSetLayout = DeviceHandle<VkDescriptorSetLayout, &DeviceTable::DestroyDescriptorSetLayout,
+                                     VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT>;
+using UniqueDescriptorPool =
+    DeviceHandle<VkDescriptorPool, &DeviceTable::DestroyDescriptorPool, VK_OBJECT_TYPE_DESCRIPTOR_POOL>;
+using UniqueShaderModule =
+    DeviceHandle<VkShaderModule, &DeviceTable::DestroyShaderModule, VK_OBJECT_TYPE_SHADER_MODULE>;
+using UniquePipelineLayout =
+    DeviceHandle<VkPipelineLayout, &DeviceTable::DestroyPipelineLayout, VK_OBJECT_TYPE_PIPELINE_LAYOUT>;
+using UniquePipeline = DeviceHandle<VkPipeline, &DeviceTable::DestroyPipeline, VK_OBJECT_TYPE_PIPELINE>;
+using UniqueCommandPool =
+    DeviceHandle<VkCommandPool, &DeviceTable::DestroyCommandPool, VK_OBJECT_TYPE_COMMAND_POOL>;
+using UniqueFence = DeviceHandle<VkFence, &DeviceTable::DestroyFence, VK_OBJECT_TYPE_FENCE>;
+using UniqueQueryPool = DeviceHandle<VkQueryPool, &DeviceTable::DestroyQueryPool, VK_OBJECT_TYPE_QUERY_POOL>;
 using UniqueAccelerationStructure =
-    DeviceHandle<VkAccelerationStructureKHR, &DeviceTable::DestroyAccelerationStructureKHR>;
-using UniqueMicromap = DeviceHandle<VkMicromapEXT, &DeviceTable::DestroyMicromapEXT>;
+    DeviceHandle<VkAccelerationStructureKHR, &DeviceTable::DestroyAccelerationStructureKHR,
+                 VK_OBJECT_TYPE_ACCELERATION_STRUCTURE_KHR>;
+using UniqueMicromap =
+    DeviceHandle<VkMicromapEXT, &DeviceTable::DestroyMicromapEXT, VK_OBJECT_TYPE_MICROMAP_EXT>;
 
 // `flags` are those of each binding, or empty. Errors: "vulkan-call".
 Result<UniqueSetLayout> createSetLayout(Context::State& context,

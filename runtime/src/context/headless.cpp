@@ -262,7 +262,7 @@ Status createDevice(Context::State& state, std::span<const std::string> further)
 
 }  // namespace
 
-Result<std::unique_ptr<Context>> Context::createHeadless(const HeadlessOptions& options) {
+Result<std::unique_ptr<Context>> Context::createHeadless(const HeadlessOptions& options) try {
     auto state = std::make_unique<State>();
     GLINT_TRY(state->library, VulkanLibrary::open());
     state->handles.getInstanceProcAddr = state->library->getInstanceProcAddr();
@@ -288,5 +288,6 @@ Result<std::unique_ptr<Context>> Context::createHeadless(const HeadlessOptions& 
     GLINT_TRY_DO(createDevice(*state, options.deviceExtensions));
     return std::unique_ptr<Context>(new Context(std::move(state)));
 }
+GLINT_CATCH
 
 }  // namespace glint

@@ -1,4 +1,5 @@
 #include "context/context.h"
+#include "context/device_objects.h"
 #include "context/vulkan_table.h"
 
 #include <xxhash.h>
@@ -103,50 +104,92 @@ Result<std::span<const std::uint8_t>> unwrapPipelineCache(const PipelineCacheOwn
     return data;
 }
 
-Result<std::vector<std::uint8_t>> Context::pipelineCacheData() const {
-    const DeviceTable& vk = state_->vk;
-    const VkDevice device = state_->handles.device;
+Result<VkPipelineCache> createPipelineCache(const Context::State& state, std::span<const std::uint8_t> data) {
+    const VkPipelineCacheCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
+                                         .pNext = nullptr,
+                                         .flags = 0,
+                                         .initialDataSize = data.size(),
+                                         .pInitialData = data.data()};
+    VkPipelineCache cache = VK_NULL_HANDLE;
+    const VkResult result =
+        state.vk.CreatePipelineCache(state.handles.device, &info, state.services.allocation, &cache);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkCreatePipelineCache", result);
+    }
+    nameObject(state, VK_OBJECT_TYPE_PIPELINE_CACHE, (std::uint64_t)cache,  // NOLINT: pointer or number
+               "pipeline cache");
+    return cache;
+}
+
+namespace {
+
+Result<std::vector<std::uint8_t>> readCache(const Context::State& state, VkPipelineCache cache) {
     std::vector<std::uint8_t> data;
     VkResult result = VK_INCOMPLETE;
     // Other threads may add to the cache between the two calls.
     while (result == VK_INCOMPLETE) {
         std::size_t bytes = 0;
-        result = vk.GetPipelineCacheData(device, state_->pipelineCache, &bytes, nullptr);
+        result = state.vk.GetPipelineCacheData(state.handles.device, cache, &bytes, nullptr);
         if (result == VK_SUCCESS) {
             data.resize(bytes);
-            result = vk.GetPipelineCacheData(device, state_->pipelineCache, &bytes, data.data());
+            result = state.vk.GetPipelineCacheData(state.handles.device, cache, &bytes, data.data());
             data.resize(bytes);
         }
     }
     if (result != VK_SUCCESS) {
         return vulkanError("vkGetPipelineCacheData", result);
     }
-    return wrapPipelineCache(state_->limits.cacheOwner, data);
+    return data;
 }
 
-Status Context::addPipelineCache(std::span<const std::uint8_t> data) {
-    GLINT_TRY(const auto known, unwrapPipelineCache(state_->limits.cacheOwner, data));
-    const DeviceTable& vk = state_->vk;
-    const VkDevice device = state_->handles.device;
-    VkPipelineCacheCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO;
-    info.initialDataSize = known.size();
-    info.pInitialData = known.data();
-    VkPipelineCache added = VK_NULL_HANDLE;
-    VkResult result = vk.CreatePipelineCache(device, &info, nullptr, &added);
+// Makes a cache of the data and of everything that the context's caches have so far. Threads may use those
+// meanwhile. Requires the lock of caches.
+Result<VkPipelineCache> mergeCaches(const Context::State& state, std::span<const std::uint8_t> data) {
+    GLINT_TRY(const auto merged, createPipelineCache(state, data));
+    std::vector<VkPipelineCache> sources = state.replacedCaches;
+    sources.push_back(state.pipelineCache);
+    const VkResult result = state.vk.MergePipelineCaches(
+        state.handles.device, merged, static_cast<std::uint32_t>(sources.size()), sources.data());
     if (result != VK_SUCCESS) {
-        return vulkanError("vkCreatePipelineCache", result);
-    }
-    // The existing cache is merged into the added one, which is usually larger.
-    result = vk.MergePipelineCaches(device, added, 1, &state_->pipelineCache);
-    if (result != VK_SUCCESS) {
-        vk.DestroyPipelineCache(device, added, nullptr);
+        state.vk.DestroyPipelineCache(state.handles.device, merged, state.services.allocation);
         return vulkanError("vkMergePipelineCaches", result);
     }
-    vk.DestroyPipelineCache(device, state_->pipelineCache, nullptr);
-    state_->pipelineCache = added;
+    return merged;
+}
+
+}  // namespace
+
+Result<std::vector<std::uint8_t>> Context::pipelineCacheData() const try {
+    const std::lock_guard lock(state_->cacheMutex);
+    Result<std::vector<std::uint8_t>> data = std::vector<std::uint8_t>();
+    if (state_->replacedCaches.empty()) {
+        data = readCache(*state_, state_->pipelineCache);
+    } else {
+        // Pipelines may have gone to a cache that was being replaced.
+        GLINT_TRY(const auto merged, mergeCaches(*state_, {}));
+        data = readCache(*state_, merged);
+        state_->vk.DestroyPipelineCache(state_->handles.device, merged, state_->services.allocation);
+    }
+    if (!data) {
+        return data.error();
+    }
+    return wrapPipelineCache(state_->limits.cacheOwner, *data);
+}
+GLINT_CATCH
+
+Status Context::addPipelineCache(std::span<const std::uint8_t> data) try {
+    GLINT_TRY(const auto known, unwrapPipelineCache(state_->limits.cacheOwner, data));
+    if (state_->services.pipelineCache != VK_NULL_HANDLE) {
+        return makeError("pipeline-cache", "", "the pipeline cache is the caller's own",
+                         "create HostServices::pipelineCache with the data");
+    }
+    const std::lock_guard lock(state_->cacheMutex);
+    state_->replacedCaches.reserve(state_->replacedCaches.size() + 1);
+    GLINT_TRY(const auto merged, mergeCaches(*state_, known));
+    state_->replacedCaches.push_back(state_->pipelineCache.exchange(merged));
     return okStatus();
 }
+GLINT_CATCH
 
 std::string Context::pipelineCacheName() const {
     return nameOf(state_->limits.cacheOwner);

@@ -3,7 +3,6 @@
 #include "context/vulkan_table.h"
 
 #include <algorithm>
-#include <optional>
 #include <string>
 #include <utility>
 
@@ -34,17 +33,39 @@ VkMemoryPropertyFlags preferredFlags(MemoryUse use) {
     return 0;
 }
 
-std::optional<std::uint32_t> chooseType(const VkPhysicalDeviceMemoryProperties& memory,
-                                        std::uint32_t typeBits, VkMemoryPropertyFlags flags) {
+// Returns the types of memory that fit, those with the preferred flags first.
+std::vector<std::uint32_t> suitableTypes(const VkPhysicalDeviceMemoryProperties& memory,
+                                         std::uint32_t typeBits, MemoryUse use) {
+    // Memory with other flags needs features, or special resources.
+    constexpr VkMemoryPropertyFlags kOrdinary =
+        VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+        VK_MEMORY_PROPERTY_HOST_COHERENT_BIT | VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+    std::vector<std::uint32_t> types;
     for (std::uint32_t type = 0; type < memory.memoryTypeCount; ++type) {
-        if ((typeBits >> type & 1U) != 0 && (memory.memoryTypes[type].propertyFlags & flags) == flags) {
-            return type;
+        const VkMemoryPropertyFlags flags = memory.memoryTypes[type].propertyFlags;
+        if ((typeBits >> type & 1U) != 0 && (flags & ~kOrdinary) == 0 &&
+            (flags & requiredFlags(use)) == requiredFlags(use)) {
+            types.push_back(type);
         }
     }
-    return std::nullopt;
+    std::ranges::stable_partition(types, [&](std::uint32_t type) {
+        return (memory.memoryTypes[type].propertyFlags & preferredFlags(use)) == preferredFlags(use);
+    });
+    return types;
 }
 
 }  // namespace
+
+DeviceMemory::~DeviceMemory() {
+    if (context_ == nullptr) {
+        return;
+    }
+    if (context_->services.freeMemory) {
+        context_->services.freeMemory(range_);
+    } else {
+        context_->vk.FreeMemory(context_->handles.device, range_.memory, context_->services.allocation);
+    }
+}
 
 bool SharedMemory::take(const VkMemoryRequirements& requirements, Allocation& taken) {
     const VkDeviceSize offset = alignUp(begin, requirements.alignment);
@@ -61,8 +82,51 @@ bool SharedMemory::take(const VkMemoryRequirements& requirements, Allocation& ta
     return true;
 }
 
-Result<MemoryPool::Block> MemoryPool::makeBlock(std::uint32_t type, Tiling tiling, VkDeviceSize bytes,
-                                                bool map) {
+Result<MemoryPool::Block*> MemoryPool::addBlock(const HostServices::MemoryRange& range, Tiling tiling,
+                                                VkDeviceSize bytes, MemoryUse use) {
+    Block block;
+    block.memory = DeviceMemory(*context_, range);
+    block.tiling = tiling;
+    block.bytes = bytes;
+    block.free.push_back({0, bytes});
+    if (use != MemoryUse::Device) {
+        void* mapped = nullptr;
+        const VkResult result = context_->services.mapMemory
+                                    ? context_->services.mapMemory(range, mapped)
+                                    : context_->vk.MapMemory(context_->handles.device, range.memory, 0,
+                                                             VK_WHOLE_SIZE, 0, &mapped);
+        if (result != VK_SUCCESS) {
+            return vulkanError("vkMapMemory", result);
+        }
+        block.mapped = static_cast<std::uint8_t*>(mapped);
+    }
+    blocks_.push_back(std::move(block));
+    return &blocks_.back();
+}
+
+Result<MemoryPool::Block*> MemoryPool::askHost(const VkMemoryRequirements& requirements, MemoryUse use,
+                                               Tiling tiling) {
+    const std::string name = context_->services.namePrefix + name_;
+    // The depth image shares its memory with buffers, which have addresses.
+    const HostServices::MemoryRequest request{
+        .requirements = requirements,
+        .use = use,
+        .required = requiredFlags(use),
+        .preferred = preferredFlags(use),
+        .flags =
+            tiling == Tiling::Optimal ? 0U : VkMemoryAllocateFlags{VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT},
+        .isImage = tiling != Tiling::Linear,
+        .name = name.c_str()};
+    HostServices::MemoryRange range;
+    const VkResult result = context_->services.allocateMemory(request, range);
+    if (result != VK_SUCCESS) {
+        return vulkanError("HostServices::allocateMemory", result);
+    }
+    return addBlock(range, tiling, requirements.size, use);
+}
+
+Result<MemoryPool::Block*> MemoryPool::makeBlock(std::uint32_t type, Tiling tiling, VkDeviceSize bytes,
+                                                 MemoryUse use) {
     if (bytes > context_->limits.maxAllocationBytes) {
         return makeError("memory-size", "",
                          "a resource of " + std::to_string(bytes) + " bytes is above the device's limit of " +
@@ -81,68 +145,89 @@ Result<MemoryPool::Block> MemoryPool::makeBlock(std::uint32_t type, Tiling tilin
     info.pNext = tiling == Tiling::Optimal ? nullptr : &flags;
     info.allocationSize = bytes;
     info.memoryTypeIndex = type;
-    Block block;
-    GLINT_TRY(block.memory,
-              createHandle<UniqueMemory>(*context_, context_->vk.AllocateMemory, "vkAllocateMemory", info));
-    block.type = type;
-    block.tiling = tiling;
-    block.bytes = bytes;
-    block.free.push_back({0, bytes});
-    if (map) {
-        void* mapped = nullptr;
-        const VkResult result = context_->vk.MapMemory(context_->handles.device, block.memory.get(), 0,
-                                                       VK_WHOLE_SIZE, 0, &mapped);
-        if (result != VK_SUCCESS) {
-            return vulkanError("vkMapMemory", result);
-        }
-        block.mapped = static_cast<std::uint8_t*>(mapped);
+    HostServices::MemoryRange range{.type = type};
+    const VkResult result = context_->vk.AllocateMemory(context_->handles.device, &info,
+                                                        context_->services.allocation, &range.memory);
+    if (result != VK_SUCCESS) {
+        return vulkanError("vkAllocateMemory", result);
     }
-    return block;
+    nameObject(*context_, VK_OBJECT_TYPE_DEVICE_MEMORY,
+               (std::uint64_t)range.memory,  // NOLINT: may be a number
+               name_);
+    return addBlock(range, tiling, bytes, use);
+}
+
+Result<MemoryPool::Block*> MemoryPool::findBlock(std::uint32_t type, const VkMemoryRequirements& requirements,
+                                                 MemoryUse use, Tiling tiling) {
+    // Linear and optimal resources never share a block, which satisfies bufferImageGranularity.
+    const auto block = std::ranges::find_if(blocks_, [&](Block& candidate) {
+        const bool reachable = use == MemoryUse::Device || candidate.mapped != nullptr;
+        return candidate.memory.range().type == type && candidate.tiling == tiling && reachable &&
+               candidate.findRoom(requirements) != candidate.free.end();
+    });
+    if (block != blocks_.end()) {
+        return &*block;
+    }
+    // A block takes at most an eighth of the heap, so that one block does not fill a small heap.
+    const VkPhysicalDeviceMemoryProperties& memory = context_->limits.memory;
+    const VkDeviceSize heap = memory.memoryHeaps[memory.memoryTypes[type].heapIndex].size;
+    VkDeviceSize taken = kFirstBlockBytes;
+    for (const Block& other : blocks_) {
+        taken += other.memory.range().type == type && other.tiling == tiling ? other.bytes : 0;
+    }
+    // Few resources share memory, so these blocks are no larger than they need to be.
+    const VkDeviceSize usual = tiling == Tiling::Shared ? 0 : std::min({kBlockBytes, heap / 8, taken});
+    Result<Block*> made = makeBlock(type, tiling, std::max(usual, requirements.size), use);
+    if (!made && made.error().kind == ErrorKind::OutOfDeviceMemory && usual > requirements.size) {
+        made = makeBlock(type, tiling, requirements.size, use);
+    }
+    return made;
 }
 
 Result<Allocation> MemoryPool::allocate(const VkMemoryRequirements& requirements, MemoryUse use,
                                         Tiling tiling) {
-    const VkPhysicalDeviceMemoryProperties& memory = context_->limits.memory;
-    std::optional<std::uint32_t> type =
-        chooseType(memory, requirements.memoryTypeBits, requiredFlags(use) | preferredFlags(use));
-    if (!type) {
-        type = chooseType(memory, requirements.memoryTypeBits, requiredFlags(use));
-    }
-    if (!type) {
-        return makeError("memory-type", "", "the device has no memory of the kind that a resource needs",
-                         "update the driver or use another device");
-    }
-    // Linear and optimal resources never share a block, which satisfies bufferImageGranularity.
-    auto block = std::ranges::find_if(blocks_, [&](Block& candidate) {
-        const bool reachable = use == MemoryUse::Device || candidate.mapped != nullptr;
-        return candidate.type == *type && candidate.tiling == tiling && reachable &&
-               candidate.findRoom(requirements) != candidate.free.end();
-    });
-    if (block == blocks_.end()) {
-        // A block takes at most an eighth of the heap, so that one block does not fill a small heap.
-        const VkDeviceSize heap = memory.memoryHeaps[memory.memoryTypes[*type].heapIndex].size;
-        VkDeviceSize taken = kFirstBlockBytes;
-        for (const Block& other : blocks_) {
-            taken += other.type == *type && other.tiling == tiling ? other.bytes : 0;
+    Result<Block*> found =
+        makeError("memory-type", "", "the device has no memory of the kind that a resource needs",
+                  "update the driver or use another device");
+    if (context_->services.allocateMemory) {
+        found = askHost(requirements, use, tiling);
+    } else {
+        const VkPhysicalDeviceMemoryProperties& memory = context_->limits.memory;
+        std::uint32_t fullHeaps = 0;
+        for (const std::uint32_t type : suitableTypes(memory, requirements.memoryTypeBits, use)) {
+            const std::uint32_t heap = 1U << memory.memoryTypes[type].heapIndex;
+            if ((fullHeaps & heap) != 0) {
+                continue;
+            }
+            found = findBlock(type, requirements, use, tiling);
+            if (found || found.error().kind != ErrorKind::OutOfDeviceMemory) {
+                break;
+            }
+            fullHeaps |= heap;
         }
-        // Few resources share memory, so these blocks are no larger than they need to be.
-        const VkDeviceSize usual = tiling == Tiling::Shared ? 0 : std::min({kBlockBytes, heap / 8, taken});
-        GLINT_TRY(auto made,
-                  makeBlock(*type, tiling, std::max(usual, requirements.size), use != MemoryUse::Device));
-        blocks_.push_back(std::move(made));
-        block = blocks_.end() - 1;
+        if (found && fullHeaps != 0) {
+            context_->jobs.report(makeWarning("memory-heap", name_,
+                                              "the heap for this memory is full, and another one is used",
+                                              "use a smaller scene, smaller textures or a smaller image"));
+        }
     }
+    if (!found) {
+        return found.error();
+    }
+    Block& block = **found;
+    const HostServices::MemoryRange& range = block.memory.range();
     Allocation allocation;
-    allocation.memory = block->memory.get();
-    allocation.type = block->type;
-    const auto room = block->findRoom(requirements);
+    allocation.memory = range.memory;
+    allocation.type = range.type;
+    const auto room = block.findRoom(requirements);
+    const VkDeviceSize inBlock = alignUp(room->begin, requirements.alignment);
     allocation.begin = room->begin;
-    allocation.offset = alignUp(room->begin, requirements.alignment);
-    allocation.bytes = allocation.offset + requirements.size - allocation.begin;
-    allocation.mapped = block->mapped == nullptr ? nullptr : block->mapped + allocation.offset;
+    allocation.offset = range.offset + inBlock;
+    allocation.bytes = inBlock + requirements.size - allocation.begin;
+    allocation.mapped = block.mapped == nullptr ? nullptr : block.mapped + inBlock;
     room->begin += allocation.bytes;
     if (room->begin == room->end) {
-        block->free.erase(room);
+        block.free.erase(room);
     }
     return allocation;
 }
@@ -155,8 +240,11 @@ std::vector<MemoryPool::Range>::iterator MemoryPool::Block::findRoom(
 }
 
 void MemoryPool::release(const Allocation& allocation) {
-    const auto block = std::ranges::find_if(
-        blocks_, [&](const Block& candidate) { return candidate.memory.get() == allocation.memory; });
+    const auto block = std::ranges::find_if(blocks_, [&](const Block& candidate) {
+        const HostServices::MemoryRange& range = candidate.memory.range();
+        return range.memory == allocation.memory && allocation.offset >= range.offset &&
+               allocation.offset < range.offset + candidate.bytes;
+    });
     if (block == blocks_.end() || allocation.bytes == 0) {
         return;
     }
@@ -198,8 +286,8 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
     info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
     info.size = buffer.bytes;
     info.usage = usage | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
-    GLINT_TRY(buffer.handle,
-              createHandle<UniqueBuffer>(context, context.vk.CreateBuffer, "vkCreateBuffer", info));
+    GLINT_TRY(buffer.handle, createHandle<UniqueBuffer>(context, context.vk.CreateBuffer, "vkCreateBuffer",
+                                                        info, pool.name()));
 
     const VkDevice device = context.handles.device;
     const VkBuffer handle = buffer.handle.get();
@@ -256,8 +344,8 @@ Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const
     create.samples = VK_SAMPLE_COUNT_1_BIT;
     create.tiling = VK_IMAGE_TILING_OPTIMAL;
     create.usage = info.usage;
-    GLINT_TRY(image.handle,
-              createHandle<UniqueImage>(context, context.vk.CreateImage, "vkCreateImage", create));
+    GLINT_TRY(image.handle, createHandle<UniqueImage>(context, context.vk.CreateImage, "vkCreateImage",
+                                                      create, pool.name()));
 
     const VkDevice device = context.handles.device;
     const VkImage handle = image.handle.get();

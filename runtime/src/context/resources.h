@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace glint {
@@ -40,18 +41,48 @@ struct SharedMemory {
     bool take(const VkMemoryRequirements& requirements, Allocation& taken);
 };
 
+// Device memory of HostServices or of Vulkan.
+class DeviceMemory {
+public:
+    DeviceMemory() = default;
+    DeviceMemory(Context::State& context, const HostServices::MemoryRange& range)
+        : context_(&context), range_(range) {}
+    ~DeviceMemory();
+    DeviceMemory(DeviceMemory&& other) noexcept
+        : context_(std::exchange(other.context_, nullptr)), range_(other.range_) {}
+    DeviceMemory& operator=(DeviceMemory&& other) noexcept {
+        std::swap(context_, other.context_);
+        std::swap(range_, other.range_);
+        return *this;
+    }
+    DeviceMemory(const DeviceMemory&) = delete;
+    DeviceMemory& operator=(const DeviceMemory&) = delete;
+
+    const HostServices::MemoryRange& range() const {
+        return range_;
+    }
+
+private:
+    Context::State* context_ = nullptr;  // null: there is no memory
+    HostServices::MemoryRange range_;
+};
+
 // Hands out memory, and frees all of it when it is destroyed. The resources that live in it must be destroyed
 // before.
 class MemoryPool {
 public:
-    explicit MemoryPool(Context::State& context) : context_(&context) {}
+    // `name` is that of its resources for debuggers, and must outlive it.
+    explicit MemoryPool(Context::State& context, const char* name = "scene")
+        : context_(&context), name_(name) {}
     MemoryPool(MemoryPool&&) noexcept = default;
     MemoryPool& operator=(MemoryPool&&) noexcept = default;
     ~MemoryPool() = default;
     MemoryPool(const MemoryPool&) = delete;
     MemoryPool& operator=(const MemoryPool&) = delete;
 
-    // Errors: "memory-type", "memory-size" (above the device's limit), "memory-count", "vulkan-call".
+    // Takes memory of the preferred kind, or if there is none left, of any kind that fits. Errors:
+    // "memory-type", "memory-size" (above the device's limit), "memory-count", "vulkan-call"; nothing has
+    // changed then.
     Result<Allocation> allocate(const VkMemoryRequirements& requirements, MemoryUse use, Tiling tiling);
 
     // Takes back memory that no resource uses any more. A block without a resource is freed. An allocation
@@ -61,14 +92,17 @@ public:
     // Returns the size of all allocations, including memory that was not handed out.
     VkDeviceSize bytes() const;
 
+    const char* name() const {
+        return name_;
+    }
+
 private:
     struct Range {
         VkDeviceSize begin = 0;
         VkDeviceSize end = 0;
     };
     struct Block {
-        UniqueMemory memory;
-        std::uint32_t type = 0;
+        DeviceMemory memory;
         Tiling tiling = Tiling::Linear;
         VkDeviceSize bytes = 0;
         std::vector<Range> free;  // by ascending offset; no two of them touch
@@ -77,9 +111,17 @@ private:
         // Returns the first free range that has room, or none.
         std::vector<Range>::iterator findRoom(const VkMemoryRequirements& requirements);
     };
-    Result<Block> makeBlock(std::uint32_t type, Tiling tiling, VkDeviceSize bytes, bool map);
+    // Returns a block with room for the resource, which is there or is made, in memory of the type.
+    Result<Block*> findBlock(std::uint32_t type, const VkMemoryRequirements& requirements, MemoryUse use,
+                             Tiling tiling);
+    Result<Block*> makeBlock(std::uint32_t type, Tiling tiling, VkDeviceSize bytes, MemoryUse use);
+    // Asks the caller's allocator for the memory of one resource.
+    Result<Block*> askHost(const VkMemoryRequirements& requirements, MemoryUse use, Tiling tiling);
+    Result<Block*> addBlock(const HostServices::MemoryRange& range, Tiling tiling, VkDeviceSize bytes,
+                            MemoryUse use);
 
     Context::State* context_;
+    const char* name_;
     std::vector<Block> blocks_;
 };
 

@@ -62,6 +62,16 @@ VkSpecializationInfo specializationOf(const ShaderConstants& constants) {
             &constants};
 }
 
+Result<UniquePipeline> ownPipeline(Context::State& context, const PipelineCreation& creation,
+                                   const char* call, VkResult result, VkPipeline pipeline) {
+    if (result != VK_SUCCESS) {
+        return vulkanError(call, result);
+    }
+    UniquePipeline owned(context, pipeline);
+    nameObject(context, VK_OBJECT_TYPE_PIPELINE, (std::uint64_t)pipeline, creation.name);  // NOLINT: pointer
+    return owned;
+}
+
 Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,
                                              VkPipelineLayout layout, PipelineCreation& creation) {
     GLINT_TRY(auto module, creation.halfPicture ? createShaderModule(context, withHalfImages(words))
@@ -76,12 +86,9 @@ Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<
     info.stage.pSpecializationInfo = &specialization;
     info.layout = layout;
     VkPipeline pipeline = VK_NULL_HANDLE;
-    const VkResult result = context.vk.CreateComputePipelines(context.handles.device, context.pipelineCache,
-                                                              1, &info, nullptr, &pipeline);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateComputePipelines", result);
-    }
-    return UniquePipeline(context, pipeline);
+    const VkResult result = context.vk.CreateComputePipelines(
+        context.handles.device, context.pipelineCache, 1, &info, context.services.allocation, &pipeline);
+    return ownPipeline(context, creation, "vkCreateComputePipelines", result, pipeline);
 }
 
 Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace glint {
@@ -30,11 +31,16 @@ VkSpecializationInfo specializationOf(const ShaderConstants& constants);
 // Settings for making a pipeline, and the driver's feedback about it.
 struct PipelineCreation {
     VkPipelineCreateFlags flags = 0;
+    std::string name = "pipeline";  // for debuggers
     ShaderConstants constants{};
     bool halfPicture = false;  // the shader's images of light have 16-bit floats: withHalfImages()
     VkPipelineCreationFeedback feedback{};  // without the flag VALID the driver gives none
     std::vector<VkPipelineCreationFeedback> stageFeedbacks{};
 };
+
+// Returns the pipeline that a call of Vulkan made, or its error "vulkan-call".
+Result<UniquePipeline> ownPipeline(Context::State& context, const PipelineCreation& creation,
+                                   const char* call, VkResult result, VkPipeline pipeline);
 
 // Makes a compute pipeline from SPIR-V words. Error "vulkan-call".
 Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<const std::uint32_t> words,

@@ -31,94 +31,60 @@ void* VulkanLibrary::symbol(const char* name) const {
     return dlsym(handle_, name);
 }
 
-namespace {
-
-Diagnostic missingFunction(const std::string& name, std::string hint) {
-    return makeError("vulkan-function", "", "the Vulkan implementation has no function " + name,
-                     std::move(hint));
-}
-
-}  // namespace
+// Loads a function with `get(name)`, or returns the error that it is missing.
+#define GLINT_LOAD(name)                                                                              \
+    table.name = reinterpret_cast<PFN_vk##name>(get("vk" #name));                                     \
+    if (table.name == nullptr) {                                                                      \
+        return makeError("vulkan-function", "", "the Vulkan implementation has no function vk" #name, \
+                         std::move(remedy));                                                          \
+    }
 
 Result<GlobalTable> loadGlobalTable(PFN_vkGetInstanceProcAddr getInstanceProcAddr) {
+    std::string remedy = "install a current Vulkan loader";
+    const auto get = [&](const char* name) { return getInstanceProcAddr(VK_NULL_HANDLE, name); };
     GlobalTable table;
     table.GetInstanceProcAddr = getInstanceProcAddr;
-#define GLINT_LOAD(name)                                                                          \
-    table.name = reinterpret_cast<PFN_vk##name>(getInstanceProcAddr(VK_NULL_HANDLE, "vk" #name)); \
-    if (table.name == nullptr) {                                                                  \
-        return missingFunction("vk" #name, "install a current Vulkan loader");                    \
-    }
     GLINT_GLOBAL_FUNCTIONS(GLINT_LOAD)
-#undef GLINT_LOAD
     return table;
 }
 
 Result<InstanceTable> loadInstanceTable(PFN_vkGetInstanceProcAddr getInstanceProcAddr, VkInstance instance) {
+    std::string remedy = "create the instance with API version 1.3 or newer";
+    const auto get = [&](const char* name) { return getInstanceProcAddr(instance, name); };
     InstanceTable table;
-#define GLINT_LOAD(name)                                                                         \
-    table.name = reinterpret_cast<PFN_vk##name>(getInstanceProcAddr(instance, "vk" #name));      \
-    if (table.name == nullptr) {                                                                 \
-        return missingFunction("vk" #name, "create the instance with API version 1.3 or newer"); \
-    }
     GLINT_INSTANCE_FUNCTIONS(GLINT_LOAD)
-#undef GLINT_LOAD
-    table.CreateDebugUtilsMessengerEXT = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
-        getInstanceProcAddr(instance, "vkCreateDebugUtilsMessengerEXT"));
-    table.DestroyDebugUtilsMessengerEXT = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
-        getInstanceProcAddr(instance, "vkDestroyDebugUtilsMessengerEXT"));
+    table.CreateDebugUtilsMessengerEXT =
+        reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(get("vkCreateDebugUtilsMessengerEXT"));
+    table.DestroyDebugUtilsMessengerEXT =
+        reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(get("vkDestroyDebugUtilsMessengerEXT"));
     return table;
 }
 
-Result<DeviceTable> loadDeviceTable(const InstanceTable& instance, VkDevice device, bool debugUtils) {
+Result<DeviceTable> loadDeviceTable(const InstanceTable& instance, const DeviceHandles& handles) {
+    std::string remedy = "create the device with what DeviceRequirements lists";
+    const auto get = [&](const char* name) { return instance.GetDeviceProcAddr(handles.device, name); };
     DeviceTable table;
-#define GLINT_LOAD(name)                                                                            \
-    table.name = reinterpret_cast<PFN_vk##name>(instance.GetDeviceProcAddr(device, "vk" #name));    \
-    if (table.name == nullptr) {                                                                    \
-        return missingFunction("vk" #name, "create the device with what DeviceRequirements lists"); \
-    }
     GLINT_DEVICE_FUNCTIONS(GLINT_LOAD)
-#undef GLINT_LOAD
-    if (debugUtils) {
-        table.CmdBeginDebugUtilsLabelEXT = reinterpret_cast<PFN_vkCmdBeginDebugUtilsLabelEXT>(
-            instance.GetDeviceProcAddr(device, "vkCmdBeginDebugUtilsLabelEXT"));
-        table.CmdEndDebugUtilsLabelEXT = reinterpret_cast<PFN_vkCmdEndDebugUtilsLabelEXT>(
-            instance.GetDeviceProcAddr(device, "vkCmdEndDebugUtilsLabelEXT"));
+    if ((handles.tracers & package::kTracerRayPipeline) != 0) {
+        GLINT_RAY_PIPELINE_FUNCTIONS(GLINT_LOAD)
+    }
+    if (handles.opacityMicromaps) {
+        GLINT_MICROMAP_FUNCTIONS(GLINT_LOAD)
+    }
+    if (handles.pipelineStatistics) {
+        GLINT_PIPELINE_STATISTICS_FUNCTIONS(GLINT_LOAD)
+    }
+    if (handles.debugUtils) {
+        table.SetDebugUtilsObjectNameEXT =
+            reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(get("vkSetDebugUtilsObjectNameEXT"));
+        table.CmdBeginDebugUtilsLabelEXT =
+            reinterpret_cast<PFN_vkCmdBeginDebugUtilsLabelEXT>(get("vkCmdBeginDebugUtilsLabelEXT"));
+        table.CmdEndDebugUtilsLabelEXT =
+            reinterpret_cast<PFN_vkCmdEndDebugUtilsLabelEXT>(get("vkCmdEndDebugUtilsLabelEXT"));
     }
     return table;
 }
-
-Status loadRayPipelineFunctions(const InstanceTable& instance, VkDevice device, DeviceTable& table) {
-#define GLINT_LOAD(name)                                                                            \
-    table.name = reinterpret_cast<PFN_vk##name>(instance.GetDeviceProcAddr(device, "vk" #name));    \
-    if (table.name == nullptr) {                                                                    \
-        return missingFunction("vk" #name, "create the device with what DeviceRequirements lists"); \
-    }
-    GLINT_RAY_PIPELINE_FUNCTIONS(GLINT_LOAD)
 #undef GLINT_LOAD
-    return okStatus();
-}
-
-Status loadMicromapFunctions(const InstanceTable& instance, VkDevice device, DeviceTable& table) {
-#define GLINT_LOAD(name)                                                                            \
-    table.name = reinterpret_cast<PFN_vk##name>(instance.GetDeviceProcAddr(device, "vk" #name));    \
-    if (table.name == nullptr) {                                                                    \
-        return missingFunction("vk" #name, "create the device with what DeviceRequirements lists"); \
-    }
-    GLINT_MICROMAP_FUNCTIONS(GLINT_LOAD)
-#undef GLINT_LOAD
-    return okStatus();
-}
-
-Status loadPipelineStatisticsFunctions(const InstanceTable& instance, VkDevice device, DeviceTable& table) {
-#define GLINT_LOAD(name)                                                                            \
-    table.name = reinterpret_cast<PFN_vk##name>(instance.GetDeviceProcAddr(device, "vk" #name));    \
-    if (table.name == nullptr) {                                                                    \
-        return missingFunction("vk" #name, "create the device with what DeviceRequirements lists"); \
-    }
-    GLINT_PIPELINE_STATISTICS_FUNCTIONS(GLINT_LOAD)
-#undef GLINT_LOAD
-    return okStatus();
-}
 
 std::string vulkanResultName(VkResult result) {
     switch (result) {
@@ -147,6 +113,8 @@ std::string vulkanResultName(VkResult result) {
         GLINT_RESULT(VK_ERROR_FRAGMENTATION)
         GLINT_RESULT(VK_ERROR_INVALID_OPAQUE_CAPTURE_ADDRESS)
         GLINT_RESULT(VK_ERROR_INVALID_SHADER_NV)
+        GLINT_RESULT(VK_ERROR_SURFACE_LOST_KHR)
+        GLINT_RESULT(VK_ERROR_OUT_OF_DATE_KHR)
 #undef GLINT_RESULT
         default:
             return "VkResult " + std::to_string(static_cast<int>(result));
@@ -154,14 +122,30 @@ std::string vulkanResultName(VkResult result) {
 }
 
 Diagnostic vulkanError(const char* call, VkResult result) {
-    std::string hint;
-    if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY) {
-        hint = "use a smaller scene, smaller textures or a smaller image";
-    } else if (result == VK_ERROR_DEVICE_LOST) {
-        hint = "update the driver, or try again with validation on";
+    Diagnostic error =
+        makeError("vulkan-call", "", std::string(call) + " failed with " + vulkanResultName(result));
+    error.code = result;
+    constexpr const char* kSmaller = "use a smaller scene, smaller textures or a smaller image";
+    switch (result) {
+        case VK_ERROR_OUT_OF_HOST_MEMORY:
+            error.kind = ErrorKind::OutOfHostMemory;
+            error.hint = kSmaller;
+            break;
+        case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+            error.kind = ErrorKind::OutOfDeviceMemory;
+            error.hint = kSmaller;
+            break;
+        case VK_ERROR_DEVICE_LOST:
+            error.kind = ErrorKind::DeviceLost;
+            error.hint = "update the driver, or try again with validation on";
+            break;
+        case VK_ERROR_SURFACE_LOST_KHR:
+            error.kind = ErrorKind::SurfaceLost;
+            break;
+        default:
+            break;
     }
-    return makeError("vulkan-call", "", std::string(call) + " failed with " + vulkanResultName(result),
-                     std::move(hint));
+    return error;
 }
 
 }  // namespace glint

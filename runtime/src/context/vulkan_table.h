@@ -2,6 +2,7 @@
 // context and the host application's own loader, never interfere.
 #pragma once
 
+#include <glint/context.h>
 #include <glint/result.h>
 
 #include <vulkan/vulkan_core.h>
@@ -146,13 +147,14 @@ struct InstanceTable {
 
 struct DeviceTable {
     GLINT_DEVICE_FUNCTIONS(GLINT_DECLARE_FUNCTION)
-    // Null until loadRayPipelineFunctions() was called.
+    // Null unless DeviceHandles::tracers has ray tracing pipelines.
     GLINT_RAY_PIPELINE_FUNCTIONS(GLINT_DECLARE_FUNCTION)
-    // Null until loadMicromapFunctions() was called.
+    // Null unless DeviceHandles::opacityMicromaps.
     GLINT_MICROMAP_FUNCTIONS(GLINT_DECLARE_FUNCTION)
-    // Null until loadPipelineStatisticsFunctions() was called.
+    // Null unless DeviceHandles::pipelineStatistics.
     GLINT_PIPELINE_STATISTICS_FUNCTIONS(GLINT_DECLARE_FUNCTION)
-    // Null unless VK_EXT_debug_utils is enabled.
+    // Null unless DeviceHandles::debugUtils.
+    PFN_vkSetDebugUtilsObjectNameEXT SetDebugUtilsObjectNameEXT = nullptr;
     PFN_vkCmdBeginDebugUtilsLabelEXT CmdBeginDebugUtilsLabelEXT = nullptr;
     PFN_vkCmdEndDebugUtilsLabelEXT CmdEndDebugUtilsLabelEXT = nullptr;
 };
@@ -183,19 +185,12 @@ private:
 // Each error ("vulkan-function") names the first function that is missing.
 Result<GlobalTable> loadGlobalTable(PFN_vkGetInstanceProcAddr getInstanceProcAddr);
 Result<InstanceTable> loadInstanceTable(PFN_vkGetInstanceProcAddr getInstanceProcAddr, VkInstance instance);
-// `debugUtils` says whether the instance has VK_EXT_debug_utils. Layers hand out its functions in any case.
-Result<DeviceTable> loadDeviceTable(const InstanceTable& instance, VkDevice device, bool debugUtils);
-// Requires a device with VK_KHR_ray_tracing_pipeline enabled.
-Status loadRayPipelineFunctions(const InstanceTable& instance, VkDevice device, DeviceTable& table);
-// Requires a device with VK_KHR_pipeline_executable_properties enabled.
-Status loadPipelineStatisticsFunctions(const InstanceTable& instance, VkDevice device, DeviceTable& table);
-Status loadMicromapFunctions(const InstanceTable& instance, VkDevice device, DeviceTable& table);
+// Also loads the functions of the extensions that the handles say are enabled. Layers hand out those of
+// VK_EXT_debug_utils in any case.
+Result<DeviceTable> loadDeviceTable(const InstanceTable& instance, const DeviceHandles& handles);
 
 // Returns a name such as "VK_ERROR_DEVICE_LOST", or "VkResult -1234" for a code that this version does not
 // know.
 std::string vulkanResultName(VkResult result);
-
-// Makes the error "vulkan-call", which says which call failed and how.
-Diagnostic vulkanError(const char* call, VkResult result);
 
 }  // namespace glint

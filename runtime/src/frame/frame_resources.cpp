@@ -243,37 +243,6 @@ std::vector<VkDescriptorSetLayoutBinding> setBindings(const Context::State& cont
     return bindings;
 }
 
-Status createFrameSet(Context::State& context, const FrameSize& size, FrameResources& frame) {
-    const std::vector<VkDescriptorSetLayoutBinding> bindings = setBindings(context, size);
-    GLINT_TRY(frame.setLayout, createSetLayout(context, bindings));
-    GLINT_TRY(auto made, createSet(context, frame.setLayout.get(), bindings, false));
-    frame.descriptorPool = std::move(made.pool);
-    frame.set = made.set;
-    return okStatus();
-}
-
-void fillSet(Context::State& context, const FrameSize& size, const FrameResources& frame) {
-    const auto bind = [&](std::uint32_t binding, const DeviceImage& own) {
-        const VkDescriptorImageInfo image{VK_NULL_HANDLE, own.view.get(), VK_IMAGE_LAYOUT_GENERAL};
-        VkWriteDescriptorSet write{};
-        write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-        write.dstSet = frame.set;
-        write.dstBinding = binding;
-        write.descriptorCount = 1;
-        write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-        write.pImageInfo = &image;
-        context.vk.UpdateDescriptorSets(context.handles.device, 1, &write, 0, nullptr);
-    };
-    for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
-        if (bindsImage(size, binding)) {
-            bind(binding, imageOf(frame, binding));
-        }
-    }
-    for (std::uint32_t i = 0; i < frame.layers.size(); ++i) {
-        bind(gpu::kBindingLayers + i, frame.layers[i]);
-    }
-}
-
 }  // namespace
 
 VkFormat vulkanFormat(package::LayerFormat format) {
@@ -307,8 +276,8 @@ Status createFrameResources(Context::State& context, const FrameSize& size, Fram
     }
     GLINT_TRY_DO(createImages(context, size, frame));
     GLINT_TRY_DO(createBuffers(context, size, frame));
-    GLINT_TRY_DO(createFrameSet(context, size, frame));
-    fillSet(context, size, frame);
+    GLINT_TRY(frame.setLayout, createFrameSetLayout(context, size));
+    GLINT_TRY(frame.set, createFrameSet(context, size, frame, nullptr));
     return okStatus();
 }
 
@@ -376,7 +345,7 @@ bool haveSameImages(const FrameSize& first, const FrameSize& second) {
 
 Result<NextBuffers> createNextBuffers(Context::State& context, const FrameSize& now, const FrameSize& next) {
     NextBuffers buffers;
-    buffers.pool = std::make_shared<MemoryPool>(context);
+    buffers.pool = std::make_shared<MemoryPool>(context, "frame");
     const auto before = wantedBuffers(now);
     const auto after = wantedBuffers(next);
     for (std::size_t place = 0; place < after.size(); ++place) {
@@ -416,17 +385,40 @@ VkDeviceSize allocatedBytes(const FrameResources& frame) {
     return bytes;
 }
 
-void bindEnvironment(Context::State& context, const Environment::State& environment, FrameResources& frame) {
-    const VkDescriptorImageInfo map{environment.sampler.get(), environment.map.view.get(),
-                                    VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-    VkWriteDescriptorSet write{};
-    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    write.dstSet = frame.set;
-    write.dstBinding = gpu::kBindingEnvironment;
-    write.descriptorCount = 1;
-    write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    write.pImageInfo = &map;
-    context.vk.UpdateDescriptorSets(context.handles.device, 1, &write, 0, nullptr);
+Result<DescriptorSet> createFrameSet(Context::State& context, const FrameSize& size,
+                                     const FrameResources& frame, const Environment::State* environment) {
+    GLINT_TRY(auto made, createSet(context, frame.setLayout.get(), setBindings(context, size), false));
+    const auto write = [&](std::uint32_t binding, VkDescriptorType type, const VkDescriptorImageInfo& image) {
+        const VkWriteDescriptorSet one{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                       .pNext = nullptr,
+                                       .dstSet = made.set,
+                                       .dstBinding = binding,
+                                       .dstArrayElement = 0,
+                                       .descriptorCount = 1,
+                                       .descriptorType = type,
+                                       .pImageInfo = &image,
+                                       .pBufferInfo = nullptr,
+                                       .pTexelBufferView = nullptr};
+        context.vk.UpdateDescriptorSets(context.handles.device, 1, &one, 0, nullptr);
+    };
+    const auto bind = [&](std::uint32_t binding, const DeviceImage& own) {
+        write(binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
+              {VK_NULL_HANDLE, own.view.get(), VK_IMAGE_LAYOUT_GENERAL});
+    };
+    for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
+        if (bindsImage(size, binding)) {
+            bind(binding, imageOf(frame, binding));
+        }
+    }
+    for (std::uint32_t i = 0; i < frame.layers.size(); ++i) {
+        bind(gpu::kBindingLayers + i, frame.layers[i]);
+    }
+    if (environment != nullptr) {
+        write(gpu::kBindingEnvironment, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
+              {environment->sampler.get(), environment->map.view.get(),
+               VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+    }
+    return made;
 }
 
 }  // namespace glint

@@ -30,7 +30,7 @@ inline constexpr VkDeviceSize kRoundCounterBytes = 2 * sizeof(std::uint32_t);
 // Members are destroyed in reverse order: the pool's memory last. Resources that the frame's effects do not
 // need have no handle.
 struct FrameResources {
-    explicit FrameResources(Context::State& context) : pool(context) {}
+    explicit FrameResources(Context::State& context) : pool(context, "frame") {}
 
     MemoryPool pool;
     // The memory of buffers that replaceBuffers() has exchanged, in the order of buffers(). The memory of the
@@ -71,8 +71,7 @@ struct FrameResources {
     Buffer counters;
     Buffer readback;
     UniqueSetLayout setLayout;
-    UniqueDescriptorPool descriptorPool;
-    VkDescriptorSet set = VK_NULL_HANDLE;
+    DescriptorSet set;
     bool prepared = false;  // by prepareImages()
 
     // All buffers, with names for reports.
@@ -240,8 +239,9 @@ EarlierBuffers replaceBuffers(NextBuffers next, FrameResources& frame);
 // Returns the size of the memory of all images and buffers.
 VkDeviceSize allocatedBytes(const FrameResources& frame);
 
-// Puts the environment into the frame's set. No commands that use the set may be in flight. Requires
-// FrameSize::environmentMap.
-void bindEnvironment(Context::State& context, const Environment::State& environment, FrameResources& frame);
+// Makes a set 1 of the frame's images and, with FrameSize::environmentMap, of an environment, which may be
+// null until a frame needs it. Errors: "vulkan-call".
+Result<DescriptorSet> createFrameSet(Context::State& context, const FrameSize& size,
+                                     const FrameResources& frame, const Environment::State* environment);
 
 }  // namespace glint

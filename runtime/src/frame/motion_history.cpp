@@ -4,6 +4,7 @@
 #include "context/resources.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace glint {
 namespace {
@@ -39,19 +40,20 @@ Result<std::unique_ptr<MotionHistory>> MotionHistory::create(const GpuScene::Sta
     std::unique_ptr<MotionHistory> history(new MotionHistory(scene));
     if (isChanging(scene)) {
         GLINT_TRY_DO(history->makeRoom());
-        GLINT_TRY_DO(history->makeVertices());
     }
     return history;
 }
 
 Status MotionHistory::makeRoom() {
-    GLINT_TRY(auto buffer, createBuffer(scene_->context, pool_, scene_->instances.bytes, kHistoryUsage));
-    if (instances_.handle.get() != VK_NULL_HANDLE) {
-        outgrown_.push_back(std::move(instances_));
+    if (!isChanging(*scene_)) {
+        return okStatus();
     }
-    instances_ = std::move(buffer);
-    hasInstances_ = false;
-    return okStatus();
+    if (instances_.bytes < scene_->instances.bytes) {
+        GLINT_TRY(auto buffer, createBuffer(scene_->context, pool_, scene_->instances.bytes, kHistoryUsage));
+        outgrown_.add(std::exchange(instances_, std::move(buffer)));
+        hasInstances_ = false;
+    }
+    return shapes_ == shapeVersion(*scene_) ? okStatus() : makeVertices();
 }
 
 // Geometries that do not deform keep their positions, in whatever form they are.
@@ -89,13 +91,8 @@ Status MotionHistory::makeVertices() {
     } else {
         table.clear();
     }
-    for (Buffer* const buffer : {&vertices_, &table_}) {
-        if (buffer->handle.get() != VK_NULL_HANDLE) {
-            outgrown_.push_back(std::move(*buffer));
-        }
-    }
-    vertices_ = std::move(vertices);
-    table_ = std::move(places);
+    outgrown_.add(std::exchange(vertices_, std::move(vertices)));
+    outgrown_.add(std::exchange(table_, std::move(places)));
     newTable_ = std::move(table);
     copies_ = std::move(copies);
     hasVertices_ = false;
@@ -118,24 +115,18 @@ void MotionHistory::recordTable(VkCommandBuffer commands) {
     newTable_.clear();
 }
 
-Status MotionHistory::fill(gpu::FrameConstants& constants) {
+void MotionHistory::fill(gpu::FrameConstants& constants) {
     fillView(constants, next_.rows);
-    if (instances_.handle.get() != VK_NULL_HANDLE && instances_.bytes < scene_->instances.bytes) {
-        GLINT_TRY_DO(makeRoom());
-    }
-    if (instances_.handle.get() != VK_NULL_HANDLE && shapes_ != shapeVersion(*scene_)) {
-        GLINT_TRY_DO(makeVertices());
-    }
     std::ranges::copy(view_ ? view_->rows : next_.rows, constants.previousView);
     constants.previousInstances = hasInstances_ ? instances_.address : scene_->instances.address;
     const bool hasVertices = hasInstances_ && hasVertices_;
     constants.previousVertices = hasVertices ? table_.address : 0;
     constants.hasPreviousVertices = hasVertices ? 1 : 0;
-    return okStatus();
 }
 
-void MotionHistory::record(VkCommandBuffer commands) {
+void MotionHistory::record(VkCommandBuffer commands, std::uint64_t recording) {
     view_ = next_;
+    outgrown_.close(recording);
     if (instances_.handle.get() == VK_NULL_HANDLE) {
         return;
     }
@@ -153,8 +144,9 @@ void MotionHistory::record(VkCommandBuffer commands) {
 
 void MotionHistory::addMemory(std::vector<MemoryItem>& items) const {
     addTo(items, "instances of the frame before", instances_);
-    for (const Buffer& buffer : outgrown_) {
-        addTo(items, "instances of the frame before", buffer);
+    if (outgrown_.bytes() > 0) {
+        addTo(items, {"instances of the frame before", MemoryUse::Device, false, outgrown_.count(),
+                      outgrown_.bytes()});
     }
     addTo(items, "vertices of the frame before", vertices_);
     addTo(items, "vertices of the frame before", table_);

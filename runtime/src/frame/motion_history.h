@@ -3,9 +3,11 @@
 #pragma once
 
 #include "context/resources.h"
+#include "data/retired.h"
 #include "interop/frame.h"
 #include "scene/gpu_scene_state.h"
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -19,24 +21,30 @@ public:
     // A scene that neither moves nor is edited needs no memory. Errors: those of buffers.
     static Result<std::unique_ptr<MotionHistory>> create(const GpuScene::State& scene);
 
+    // Makes room for as many instances, and vertices that deform, as the scene has. After that the next frame
+    // itself stands for the previous one. Errors: those of buffers; nothing has changed then.
+    Status makeRoom();
     // Fills FrameConstants::previous*, whose camera is that of the frame to come. Without a previous frame,
-    // or after the scene got room for more instances, the frame itself stands for the previous one. Errors:
-    // those of buffers.
-    Status fill(gpu::FrameConstants& constants);
+    // the frame itself stands for it.
+    void fill(gpu::FrameConstants& constants);
     // Records the copies that the next frame needs, after a frame's passes. The commands that follow must
     // wait for them.
-    void record(VkCommandBuffer commands);
+    void record(VkCommandBuffer commands, std::uint64_t recording);
+    // The device has completed all recordings up to a number: frees what only those used.
+    void complete(std::uint64_t recording) {
+        outgrown_.complete(recording);
+    }
 
     void addMemory(std::vector<MemoryItem>& items) const;
-    VkDeviceSize allocatedBytes() const {
+    std::uint64_t allocatedBytes() const {
         return pool_.bytes();
     }
 
 private:
-    explicit MotionHistory(const GpuScene::State& scene) : scene_(&scene), pool_(scene.context) {}
+    explicit MotionHistory(const GpuScene::State& scene)
+        : scene_(&scene), pool_(scene.context, "frame before"), outgrown_(pool_) {}
 
     Status makeVertices();
-    Status makeRoom();
     void recordTable(VkCommandBuffer commands);
 
     // The positions of one deformed primitive.
@@ -51,7 +59,7 @@ private:
     const GpuScene::State* scene_;
     MemoryPool pool_;
     Buffer instances_;
-    std::vector<Buffer> outgrown_;  // frames in flight may read them
+    Retired outgrown_;  // frames in flight may read them
     Buffer vertices_;
     Buffer table_;                                 // gpu::PreviousVertices by geometry
     std::vector<gpu::PreviousVertices> newTable_;  // until they are recorded

@@ -1,6 +1,10 @@
 #include "package/package.h"
 
+#include "context/parallel.h"
+
 #include <glint/package.h>
+
+#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
@@ -18,13 +22,15 @@ constexpr std::uint64_t kMaxTablesBytes = std::uint64_t{256} << 20;
 
 }  // namespace
 
-Result<Package> Package::load(const std::filesystem::path& folder) {
+Result<Package> Package::load(const std::filesystem::path& folder) try {
     return loadFrom(FolderFiles(folder));
 }
+GLINT_CATCH
 
-Result<Package> Package::load(std::span<const package::EmbeddedFile> files) {
+Result<Package> Package::load(std::span<const package::EmbeddedFile> files) try {
     return loadFrom(MemoryFiles(files));
 }
+GLINT_CATCH
 
 Result<Package> Package::loadFrom(const PackageFiles& files) {
     GLINT_TRY(auto bytes, files.read(package::kTablesFile, "package-missing", kMaxTablesBytes));
@@ -249,7 +255,7 @@ std::optional<std::uint64_t> readStamp(const std::filesystem::path& file) {
 PackageWatch::PackageWatch(const std::filesystem::path& folder)
     : folder_(folder), stamp_(package::stampFile(folder)), counter_(package::readStamp(stamp_).value_or(0)) {}
 
-Result<std::shared_ptr<const Package>> PackageWatch::poll() {
+Result<std::shared_ptr<const Package>> PackageWatch::poll() try {
     const std::optional<std::uint64_t> now = package::readStamp(stamp_);
     if (!now || *now == counter_) {
         return std::shared_ptr<const Package>();
@@ -264,6 +270,58 @@ Result<std::shared_ptr<const Package>> PackageWatch::poll() {
         return package.error();
     }
     return std::make_shared<const Package>(std::move(*package));
+}
+GLINT_CATCH
+
+Status checkDevice(const Package& package, const DeviceHandles& handles) {
+    if (package.positionFetch() && !handles.positionFetch) {
+        return makeError(
+            "position-fetch", "",
+            "the package's shaders read positions from acceleration structures, which the device does "
+            "not allow or was not created for",
+            "create it with VK_KHR_ray_tracing_position_fetch and set DeviceHandles::positionFetch, or "
+            "compile without --position-fetch");
+    }
+    if (package.precision() == package::ShadingPrecision::Half && !handles.shaderFloat16) {
+        return makeError("half-precision", "",
+                         "the package's shaders compute in 16-bit float, which the device does not allow or "
+                         "was not created for",
+                         "create it with VkPhysicalDeviceVulkan12Features::shaderFloat16 and set "
+                         "DeviceHandles::shaderFloat16, or compile with --precision 32");
+    }
+    return okStatus();
+}
+
+std::uint64_t recordsHash(const Package& package, const PackageScene& scene) {
+    std::uint64_t hash = 0;
+    const auto add = [&](const void* data, std::size_t bytes) {
+        hash = XXH3_64bits_withSeed(data, bytes, hash + bytes);
+    };
+    const MaterialTable& table = scene.materials;
+    const std::uint32_t layout[] = {table.recordBytes, table.textureOffset, table.textureCount};
+    add(layout, sizeof layout);
+    add(scene.primitives.data(), scene.primitives.size_bytes());
+    add(scene.textures.data(), scene.textures.size_bytes());
+    add(scene.samplers.data(), scene.samplers.size_bytes());
+    for (const package::AttributeEntry& attribute : package.attributes()) {
+        const std::string_view name = package.string(attribute.name);
+        add(name.data(), name.size());
+        add(&attribute.channels, sizeof attribute.channels);
+    }
+    return hash;
+}
+
+Status checkRecords(const Package& package, std::uint64_t hash) {
+    // A scene that began without anything has no scene in the package.
+    bool known = recordsHash(package, {}) == hash;
+    for (std::uint32_t scene = 0; scene < package.sceneCount() && !known; ++scene) {
+        known = recordsHash(package, package.scene(scene)) == hash;
+    }
+    return known
+               ? okStatus()
+               : Status(makeError("scene-package", "",
+                                  "the scene's records are those of a package with other cases or materials",
+                                  "use the package that the scene was made with, or that replaced it last"));
 }
 
 }  // namespace glint

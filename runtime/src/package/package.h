@@ -3,6 +3,7 @@
 
 #include "interop/scene.h"
 
+#include <glint/context.h>
 #include <glint/package.h>
 #include <glint/package_modules.h>
 #include <glint/result.h>
@@ -119,6 +120,16 @@ inline gpu::TextureRecord textureAt(const MaterialTable& table, std::size_t mate
 inline MaterialTable tableWith(const MaterialTable& layout, std::span<const std::uint8_t> records) {
     return {records, layout.recordBytes, layout.textureOffset, layout.textureCount};
 }
+
+// Errors "position-fetch" and "half-precision": the device was created without what all shaders of the
+// package need. Modules with other needs are checked where pipelines are made of them.
+Status checkDevice(const Package& package, const DeviceHandles& handles);
+
+// Returns a hash of what a scene's records on the device and the shaders of its package must agree about: the
+// keys and numbers of primitives, textures and samplers, and the layout of materials and attributes.
+std::uint64_t recordsHash(const Package& package, const PackageScene& scene);
+// Error "scene-package": no scene of the package has records with that hash.
+Status checkRecords(const Package& package, std::uint64_t hash);
 
 // Returns the interop headers of the build, one after the other.
 std::string_view interopText();

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <system_error>
 #include <tuple>
 #include <utility>
 
@@ -33,54 +32,85 @@ std::vector<std::uint32_t> casesOf(const PlannedPipeline& planned) {
     return cases;
 }
 
-BackgroundPipelines::BackgroundPipelines(std::vector<PlannedPipeline> planned, VkPipelineCreateFlags flags,
-                                         std::uint32_t threads)
-    : flags_(flags), waiting_(std::move(planned)), wanted_(static_cast<std::uint32_t>(waiting_.size())) {
+BackgroundPipelines::BackgroundPipelines(Jobs& jobs, std::vector<PlannedPipeline> planned,
+                                         VkPipelineCreateFlags flags, std::uint32_t threads)
+    : flags_(flags),
+      waiting_(std::move(planned)),
+      wanted_(static_cast<std::uint32_t>(waiting_.size())),
+      threads_(std::max(threads, 1U)),
+      group_(jobs) {
     const auto count = [&](PipelineTurn turn) {
         return static_cast<std::uint32_t>(std::ranges::count(waiting_, turn, &PlannedPipeline::turn));
     };
     missing_ = wanted_ - count(PipelineTurn::Spare);
     missingFixed_ = count(PipelineTurn::Fixed);
-    for (std::uint32_t i = 0; i < std::max(threads, 1U); ++i) {
-        try {
-            threads_.emplace_back([this] { work(); });
-        } catch (const std::system_error&) {
-            if (threads_.empty()) {
-                throw;
-            }
-            break;  // the existing threads do all the work
-        }
-    }
+    done_.reserve(wanted_);
+    giveOut();
 }
 
-BackgroundPipelines::~BackgroundPipelines() {
+void BackgroundPipelines::giveOut() noexcept {
+    std::uint32_t wanted = 0;
     {
         const std::lock_guard lock(mutex_);
-        ends_ = true;
+        const bool begins = best() != waiting_.end();
+        const std::size_t most = begins ? std::min<std::size_t>(threads_, running_ + waiting_.size()) : 0;
+        wanted = static_cast<std::uint32_t>(std::max<std::size_t>(most, given_) - given_);
+        given_ += wanted;
     }
-    changed_.notify_all();
-    for (std::thread& thread : threads_) {
-        thread.join();
+    for (; wanted > 0; --wanted) {
+        try {
+            group_.run([this] { work(); });
+        } catch (...) {
+            const std::lock_guard lock(mutex_);
+            given_ -= wanted;
+            if (given_ == 0) {
+                waiting_.clear();
+                error_ = caughtError();
+            }
+            return;  // if there are others, they make all pipelines
+        }
     }
 }
 
-void BackgroundPipelines::work() {
-    while (std::optional<PlannedPipeline> planned = next()) {
-        PipelineCreation creation{flags_, {}};
-        Result<UniquePipeline> made = planned->job.make(creation);
+void BackgroundPipelines::work() noexcept {
+    std::optional<PlannedPipeline> planned = next();
+    if (planned) {
+        std::optional<Diagnostic> error = make(std::move(*planned));
+        if (error) {
+            group_.jobs().report(*error);
+        }
         const std::lock_guard lock(mutex_);
         --running_;
-        missing_ -= planned->turn == PipelineTurn::Spare ? 0 : 1;
-        if (made) {
-            missingFixed_ -= planned->turn == PipelineTurn::Fixed ? 1 : 0;
-            MadePipeline pipeline{planned->job.name, std::make_shared<const UniquePipeline>(std::move(*made)),
-                                  creation.feedback, planned->job.identity};
-            done_.push_back({std::move(*planned), std::move(pipeline)});
-        } else if (!error_) {
-            error_ = made.error();
+        if (error && !error_) {
+            error_ = std::move(error);
         }
-        changed_.notify_all();
     }
+    {
+        const std::lock_guard lock(mutex_);
+        --given_;
+    }
+    giveOut();
+    changed_.notify_all();
+}
+
+std::optional<Diagnostic> BackgroundPipelines::make(PlannedPipeline planned) try {
+    PipelineCreation creation{.flags = flags_, .name = planned.job.name};
+    Result<UniquePipeline> made = planned.job.make(creation);
+    std::optional<MadePipeline> pipeline;
+    if (made) {
+        pipeline = {planned.job.name, std::make_shared<const UniquePipeline>(std::move(*made)),
+                    creation.feedback, planned.job.identity};
+    }
+    const std::lock_guard lock(mutex_);
+    missing_ -= planned.turn == PipelineTurn::Spare ? 0 : 1;
+    if (!pipeline) {
+        return made.error();
+    }
+    missingFixed_ -= planned.turn == PipelineTurn::Fixed ? 1 : 0;
+    done_.push_back({std::move(planned), std::move(*pipeline)});
+    return std::nullopt;
+} catch (...) {
+    return caughtError();
 }
 
 std::vector<PlannedPipeline>::iterator BackgroundPipelines::best() {
@@ -93,15 +123,14 @@ std::vector<PlannedPipeline>::iterator BackgroundPipelines::best() {
 }
 
 std::optional<PlannedPipeline> BackgroundPipelines::next() {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return ends_ || waiting_.empty() || best() != waiting_.end(); });
-    if (ends_ || waiting_.empty()) {
+    const std::lock_guard lock(mutex_);
+    const auto most = best();
+    if (most == waiting_.end()) {
         return std::nullopt;
     }
-    const auto most = best();
+    ++running_;
     PlannedPipeline planned = std::move(*most);
     waiting_.erase(most);
-    ++running_;
     return planned;
 }
 
@@ -117,6 +146,12 @@ std::vector<BackgroundPipelines::Done> BackgroundPipelines::take(std::vector<Don
     done_.erase(first, end);
     adopted_ += static_cast<std::uint32_t>(taken.size());
     return taken;
+}
+
+void BackgroundPipelines::putBack(std::vector<Done> done) {
+    const std::lock_guard lock(mutex_);
+    adopted_ -= static_cast<std::uint32_t>(done.size());
+    std::ranges::move(done, std::back_inserter(done_));
 }
 
 std::vector<BackgroundPipelines::Done> BackgroundPipelines::take(std::size_t most) {
@@ -145,7 +180,7 @@ void BackgroundPipelines::setPaused(bool paused) {
         const std::lock_guard lock(mutex_);
         paused_ = paused;
     }
-    changed_.notify_all();
+    giveOut();
 }
 
 std::uint32_t BackgroundPipelines::missing() const {

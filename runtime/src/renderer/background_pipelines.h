@@ -1,6 +1,7 @@
 // Pipelines that threads make while frames are drawn with a fallback.
 #pragma once
 
+#include "context/parallel.h"
 #include "renderer/pipeline_jobs.h"
 
 #include <glint/package_modules.h>
@@ -14,7 +15,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace glint {
@@ -54,18 +54,20 @@ public:
         MadePipeline made;
     };
 
-    // Starts at most `threads` threads, at least one. Modules and layouts that the jobs use must outlive
-    // this. Throws std::system_error if the system gives no thread.
-    BackgroundPipelines(std::vector<PlannedPipeline> planned, VkPipelineCreateFlags flags,
+    // Makes at most `threads` pipelines at once, at least one. Modules and layouts that they need must
+    // outlive this. If there is no thread, progress() has the error.
+    BackgroundPipelines(Jobs& jobs, std::vector<PlannedPipeline> planned, VkPipelineCreateFlags flags,
                         std::uint32_t threads);
     // Waits for the pipelines that are being made, and makes no more.
-    ~BackgroundPipelines();
+    ~BackgroundPipelines() = default;
     BackgroundPipelines(const BackgroundPipelines&) = delete;
     BackgroundPipelines& operator=(const BackgroundPipelines&) = delete;
 
     // Sets the order of the cases that remain: the one with the most hits is made next. `bucketCounts` has
     // the misses first, then the hits by shader ID.
     void setHits(std::span<const std::uint32_t> bucketCounts);
+    // Takes back what take() or takeFixed() returned last and the caller could not use.
+    void putBack(std::vector<Done> done);
     // Returns pipelines that were made since the last call, at most `most`.
     std::vector<Done> take(std::size_t most);
     // Returns all fixed passes if all are made and none has failed, and otherwise nothing.
@@ -80,7 +82,11 @@ public:
     PipelineProgress progress() const;
 
 private:
-    void work();
+    // Gives out as many jobs as there are pipelines to begin and threads left.
+    void giveOut() noexcept;
+    // Is a job: makes one pipeline.
+    void work() noexcept;
+    std::optional<Diagnostic> make(PlannedPipeline planned);
     std::optional<PlannedPipeline> next();
     // Returns the pipeline that is made next; the end if nothing may be begun. Requires the lock.
     std::vector<PlannedPipeline>::iterator best();
@@ -98,9 +104,10 @@ private:
     std::uint32_t missingFixed_ = 0;
     std::uint32_t adopted_ = 0;
     std::optional<Diagnostic> error_;
-    bool ends_ = false;
+    std::uint32_t threads_;
+    std::uint32_t given_ = 0;  // jobs that have not ended
     bool paused_ = false;
-    std::vector<std::thread> threads_;
+    JobGroup group_;
 };
 
 }  // namespace glint

@@ -48,23 +48,8 @@ void PassRecorder::barrier(const MemoryDependency& dependency) {
     recordDependency(state_.context, commands_, dependency);
 }
 
-void PassRecorder::beginLabel(const std::string& name) {
-    if (vk_.CmdBeginDebugUtilsLabelEXT != nullptr) {
-        VkDebugUtilsLabelEXT text{};
-        text.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
-        text.pLabelName = name.c_str();
-        vk_.CmdBeginDebugUtilsLabelEXT(commands_, &text);
-    }
-}
-
-void PassRecorder::endLabel() {
-    if (vk_.CmdEndDebugUtilsLabelEXT != nullptr) {
-        vk_.CmdEndDebugUtilsLabelEXT(commands_);
-    }
-}
-
 void PassRecorder::beginPass(const PassLabel& label) {
-    beginLabel(label.name);
+    beginLabel(state_.context, commands_, label.name);
     if (timesPasses_) {
         state_.timer.recordBegin(commands_, static_cast<std::uint32_t>(state_.timed.size()));
         state_.timed.push_back(label);
@@ -75,7 +60,7 @@ void PassRecorder::endPass() {
     if (timesPasses_) {
         state_.timer.recordEnd(commands_, static_cast<std::uint32_t>(state_.timed.size() - 1));
     }
-    endLabel();
+    endLabel(state_.context, commands_);
 }
 
 std::uint32_t PassRecorder::beginStretch(const PassLabel& label) {

@@ -103,9 +103,6 @@ public:
     void bindSets(std::span<const VkDescriptorSet> sets);
     // Draws a scene into the G-buffer's visibility image.
     void drawScene(std::span<const DrawBatch> batches, std::span<const VkDescriptorSet> sets);
-    // Begins and ends a label around several passes.
-    void beginLabel(const std::string& name);
-    void endLabel();
     // Sets the number of rows that passes over pixels have. The default is the height of the image.
     void setRows(std::uint32_t rows);
     // Dispatches the pass over the pixels of these rows.

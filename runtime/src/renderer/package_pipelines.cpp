@@ -255,7 +255,7 @@ void planDeform(Context::State& context, const Package& package, VkPipelineLayou
 }  // namespace
 
 Result<std::vector<PackagePipeline>> makePackagePipelines(Context& context, const Package& package,
-                                                          std::uint32_t threads) {
+                                                          std::uint32_t threads) try {
     Context::State& state = context.state();
     GLINT_TRY(auto choices, allChoices(state, package));
     GLINT_TRY(auto layout, package.passes() == package::Passes::Frame
@@ -289,5 +289,6 @@ Result<std::vector<PackagePipeline>> makePackagePipelines(Context& context, cons
     }
     return std::move(all.pipelines);
 }
+GLINT_CATCH
 
 }  // namespace glint

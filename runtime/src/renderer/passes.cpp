@@ -27,7 +27,7 @@ public:
         static_assert(sizeof(constants) <= 65536 && sizeof(constants) % 4 == 0, "limits of the command");
         vk_.CmdUpdateBuffer(commands_, state_.frame.constants.handle.get(), 0, sizeof(constants), &constants);
         passes_.barrier(dependencies().clearToPasses);
-        const VkDescriptorSet sets[] = {state_.scene.set, state_.frame.set};
+        const VkDescriptorSet sets[] = {state_.scene.set, state_.frame.set.set};
         passes_.drawScene(state_.scene.batches, sets);
         passes_.barrier(dependencies().rasterToPasses);
         passes_.bindSets(sets);
@@ -43,7 +43,7 @@ public:
         // Layers of motion describe a picture's first sample, so only that sample needs the state of the
         // previous frame.
         if (state_.history != nullptr && constants.averaged == 0) {
-            state_.history->record(commands_);
+            state_.history->record(commands_, state_.recordings + 1);
         }
         passes_.barrier(dependencies().passesToCopy);
         copy(state_.frame.counters, 0, state_.frame.counters.bytes, 0);

@@ -166,12 +166,10 @@ Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayo
     info.maxPipelineRayRecursionDepth = 1;
     info.layout = layout;
     VkPipeline pipeline = VK_NULL_HANDLE;
-    const VkResult result = context.vk.CreateRayTracingPipelinesKHR(
-        context.handles.device, VK_NULL_HANDLE, context.pipelineCache, 1, &info, nullptr, &pipeline);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateRayTracingPipelinesKHR", result);
-    }
-    return UniquePipeline(context, pipeline);
+    const VkResult result =
+        context.vk.CreateRayTracingPipelinesKHR(context.handles.device, VK_NULL_HANDLE, context.pipelineCache,
+                                                1, &info, context.services.allocation, &pipeline);
+    return ownPipeline(context, creation, "vkCreateRayTracingPipelinesKHR", result, pipeline);
 }
 
 Result<ShaderBindingTable> createTable(Context::State& context, MemoryPool& pool, VkPipeline pipeline,
@@ -234,11 +232,12 @@ std::vector<Result<MadePipeline>> tryPipelines(std::span<const PipelineJob> jobs
     std::ranges::stable_sort(order, std::greater(), [&](std::size_t job) { return jobs[job].wordCount; });
 
     std::vector<std::optional<Result<UniquePipeline>>> results(jobs.size());
-    std::vector<PipelineCreation> creations(jobs.size(), PipelineCreation{flags, {}});
+    std::vector<PipelineCreation> creations(jobs.size(), PipelineCreation{.flags = flags});
     forEach(
         order.size(),
         [&](std::size_t taken) {
             const std::size_t job = order[taken];
+            creations[job].name = jobs[job].name;
             results[job].emplace(jobs[job].make(creations[job]));
         },
         threads);

@@ -227,8 +227,8 @@ std::size_t wordCount(const RayPipelineSource& source) {
     return count;
 }
 
-// Makes the shader binding table of the pass and adds the pass to `pipelines`, which must own `pipeline`.
-// Errors: those of buffers, "vulkan-call".
+// Makes the shader binding table of the pass and adds the pass to `pipelines`, which then must own
+// `pipeline`. Errors: those of buffers, "vulkan-call".
 Status addRayPass(Context::State& context, const RayPass& pass, VkPipeline pipeline, Pipelines& pipelines) {
     GLINT_TRY(auto table, createTable(context, pipelines.pool, pipeline, pass.source));
     const PassPipeline made{pipeline, true, table.rayGeneration, table.miss, table.hit};
@@ -326,12 +326,9 @@ Result<UniquePipeline> createGBuffer(Context::State& context, const Package& pac
     info.pDynamicState = &dynamic;
     info.layout = layout;
     VkPipeline pipeline = VK_NULL_HANDLE;
-    const VkResult result = context.vk.CreateGraphicsPipelines(context.handles.device, context.pipelineCache,
-                                                               1, &info, nullptr, &pipeline);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateGraphicsPipelines", result);
-    }
-    return UniquePipeline(context, pipeline);
+    const VkResult result = context.vk.CreateGraphicsPipelines(
+        context.handles.device, context.pipelineCache, 1, &info, context.services.allocation, &pipeline);
+    return ownPipeline(context, creation, "vkCreateGraphicsPipelines", result, pipeline);
 }
 
 bool isGraphics(const package::RoleInfo& info) {
@@ -448,10 +445,12 @@ std::vector<PlannedPipeline> planPipelines(Context::State& context, const Packag
 Status addPipeline(Context::State& context, const PlannedPipeline& planned, MadePipeline made,
                    Pipelines& pipelines) {
     const VkPipeline pipeline = made.handle->get();
-    pipelines.owned.push_back(std::move(made));
     if (planned.rays) {
-        return addRayPass(context, *planned.rays, pipeline, pipelines);
+        GLINT_TRY_DO(addRayPass(context, *planned.rays, pipeline, pipelines));
+        pipelines.owned.push_back(std::move(made));
+        return okStatus();
     }
+    pipelines.owned.push_back(std::move(made));
     for (const package::ModuleKey& key : planned.keys) {
         if (key.role == ModuleRole::GBufferVertex) {
             pipelines.gbuffer = pipeline;
@@ -571,8 +570,8 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
     if (!laterPlan.empty()) {
         // One thread is the caller's.
         const std::uint32_t threads = pipelineThreads(making.threads, laterPlan.size() + 1);
-        pipelines.background =
-            std::make_unique<BackgroundPipelines>(std::move(laterPlan), flags, std::max(threads, 2U) - 1);
+        pipelines.background = std::make_unique<BackgroundPipelines>(context.jobs, std::move(laterPlan),
+                                                                     flags, std::max(threads, 2U) - 1);
     }
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
     pipelines.creationMs = elapsed.count();
@@ -581,14 +580,14 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
 
 namespace {
 
-// Lets the fixed passes take the place of the draft, if all are made.
-Status endDraft(Context::State& context, Pipelines& pipelines) {
-    for (BackgroundPipelines::Done& done : pipelines.background->takeFixed()) {
-        pipelines.draft = false;
-        GLINT_TRY_DO(addPipeline(context, done.planned, std::move(done.made), pipelines));
-    }
-    if (!pipelines.draft) {
-        addFallback(*pipelines.drafted, pipelines.choice, pipelines);
+// Lets the passes use pipelines that were made. After an error those that are left wait for the next call.
+Status useMade(Context::State& context, std::vector<BackgroundPipelines::Done> made, Pipelines& pipelines) {
+    for (auto done = made.begin(); done != made.end(); ++done) {
+        if (Status status = addPipeline(context, done->planned, done->made, pipelines); !status) {
+            made.erase(made.begin(), done);
+            pipelines.background->putBack(std::move(made));
+            return status;
+        }
     }
     return okStatus();
 }
@@ -601,16 +600,17 @@ Status adoptPipelines(Context::State& context, Pipelines& pipelines) {
     }
     std::size_t most = pipelines.adoptedAtOnce;
     if (pipelines.draft && most > 0) {
-        GLINT_TRY_DO(endDraft(context, pipelines));
+        std::vector<BackgroundPipelines::Done> fixed = pipelines.background->takeFixed();
+        if (fixed.empty()) {
+            return okStatus();
+        }
+        // The fixed passes take the place of the draft together.
+        GLINT_TRY_DO(useMade(context, std::move(fixed), pipelines));
+        pipelines.draft = false;
+        addFallback(*pipelines.drafted, pipelines.choice, pipelines);
         --most;
     }
-    if (pipelines.draft) {
-        return okStatus();
-    }
-    for (BackgroundPipelines::Done& done : pipelines.background->take(most)) {
-        GLINT_TRY_DO(addPipeline(context, done.planned, std::move(done.made), pipelines));
-    }
-    return okStatus();
+    return pipelines.draft ? okStatus() : useMade(context, pipelines.background->take(most), pipelines);
 }
 
 }  // namespace glint

@@ -62,7 +62,7 @@ struct PassPipeline {
 
 // Members are destroyed in reverse order: first the threads end, and the pool's memory is freed last.
 struct Pipelines {
-    explicit Pipelines(Context::State& context) : pool(context) {}
+    explicit Pipelines(Context::State& context) : pool(context, "shader binding tables") {}
 
     MemoryPool pool;
     std::vector<Buffer> tables;  // shader binding tables

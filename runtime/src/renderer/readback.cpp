@@ -44,7 +44,7 @@ PixelPath pathOf(std::uint32_t path, std::uint32_t outcome) {
 template <typename Pixel>
 Result<std::vector<Pixel>> readImage(const Renderer::State& state, CommandRunner& runner,
                                      const DeviceImage& image, std::size_t count) {
-    MemoryPool pool(state.context);
+    MemoryPool pool(state.context, "read-back");
     std::vector<Pixel> pixels(count);
     const std::size_t bytes = pixels.size() * sizeof(pixels[0]);
     GLINT_TRY(auto buffer, createBuffer(state.context, pool, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
@@ -131,7 +131,7 @@ Result<std::vector<std::array<float, 4>>> readFrameImage(Renderer::State& state,
 
 Result<std::vector<std::uint8_t>> readFrameBuffer(Renderer::State& state, CommandRunner& runner,
                                                   const Buffer& buffer) {
-    MemoryPool pool(state.context);
+    MemoryPool pool(state.context, "read-back");
     GLINT_TRY(auto target, createBuffer(state.context, pool, buffer.bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                                         MemoryUse::Readback));
     GLINT_TRY(auto commands, runner.begin());
@@ -154,7 +154,7 @@ std::vector<LayerImage> Renderer::layers() const {
     return images;
 }
 
-Result<LayerValues> Renderer::readLayer(std::string_view name) {
+Result<LayerValues> Renderer::readLayer(std::string_view name) try {
     const auto found = std::ranges::find(state_->size.layers, name, &package::PackageLayer::name);
     if (found == state_->size.layers.end()) {
         return makeError("layer-missing", "", "the package has no layer " + std::string(name),
@@ -176,8 +176,9 @@ Result<LayerValues> Renderer::readLayer(std::string_view name) {
     }
     return values;
 }
+GLINT_CATCH
 
-Result<std::vector<std::uint8_t>> Renderer::readSurfaces() {
+Result<std::vector<std::uint8_t>> Renderer::readSurfaces() try {
     if (!state_->recorded) {
         return frameNotRecorded();
     }
@@ -188,8 +189,9 @@ Result<std::vector<std::uint8_t>> Renderer::readSurfaces() {
     });
     return surfaces;
 }
+GLINT_CATCH
 
-Result<std::optional<SurfacePlace>> Renderer::readPlace(std::uint32_t x, std::uint32_t y) {
+Result<std::optional<SurfacePlace>> Renderer::readPlace(std::uint32_t x, std::uint32_t y) try {
     if (!state_->recorded) {
         return frameNotRecorded();
     }
@@ -209,8 +211,9 @@ Result<std::optional<SurfacePlace>> Renderer::readPlace(std::uint32_t x, std::ui
     return std::optional(
         SurfacePlace{place->instance.index, place->mesh, place->primitive, place->shaderId, place->instance});
 }
+GLINT_CATCH
 
-Result<LinearImage> Renderer::readOutput() {
+Result<LinearImage> Renderer::readOutput() try {
     if (!state_->recorded) {
         return frameNotRecorded();
     }
@@ -218,8 +221,9 @@ Result<LinearImage> Renderer::readOutput() {
     GLINT_TRY(auto pixels, readFrameImage(*state_, runner, gpu::kBindingAccumulated));
     return LinearImage{state_->size.width, state_->size.height, std::move(pixels)};
 }
+GLINT_CATCH
 
-Result<std::vector<PixelPath>> Renderer::readCoverage(package::Effect effect) {
+Result<std::vector<PixelPath>> Renderer::readCoverage(package::Effect effect) try {
     if (!state_->recorded) {
         return frameNotRecorded();
     }
@@ -260,6 +264,7 @@ Result<std::vector<PixelPath>> Renderer::readCoverage(package::Effect effect) {
     }
     return paths;
 }
+GLINT_CATCH
 
 namespace {
 
@@ -348,7 +353,7 @@ std::vector<std::uint32_t> bucketCountsOf(const Renderer::State& state) {
     return sums;
 }
 
-Result<FrameCounters> Renderer::counters() {
+Result<FrameCounters> Renderer::counters() try {
     if (!state_->recorded) {
         return frameNotRecorded();
     }
@@ -377,5 +382,6 @@ Result<FrameCounters> Renderer::counters() {
     }
     return counters;
 }
+GLINT_CATCH
 
 }  // namespace glint

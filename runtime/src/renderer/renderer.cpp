@@ -1,10 +1,12 @@
 // Renderer: creation, frame constants, results.
 #include "renderer/renderer.h"
 
+#include "context/parallel.h"
 #include "context/resources.h"
 #include "context/vulkan_table.h"
 #include "frame/frame_constants.h"
 #include "frame/motion_history.h"
+#include "package/package.h"
 #include "renderer/background_pipelines.h"
 #include "renderer/pipeline_jobs.h"
 #include "renderer/renderer_choice.h"
@@ -14,6 +16,7 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
+#include <mutex>
 #include <string_view>
 #include <utility>
 
@@ -153,12 +156,13 @@ void orderByHits(Renderer::State& state) {
 }  // namespace
 
 Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Package& package, GpuScene& scene,
-                                                   const RendererOptions& options) {
+                                                   const RendererOptions& options) try {
     Context::State& contextState = context.state();
     if (package.passes() != package::Passes::Frame) {
         return makeError("package-passes", "", "the package has the steps of a host's own rays, and no frame",
                          "compile it with --passes frame, or use RaySteps");
     }
+    GLINT_TRY_DO(checkRecords(package, scene.state().package.records));
     GLINT_TRY(auto choice, choosePipelines(contextState, package, options));
     if (options.pipelineStatistics && !contextState.handles.pipelineStatistics) {
         return makeError("pipeline-statistics", "", "the device was created without statistics of pipelines",
@@ -173,7 +177,6 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
     state->size = size;
     state->options = options;
     state->timerCapacity = stretches;
-    state->scenePackage = state->scene.package.number;
     state->effects = effectsOf(package);
     state->caseNames = caseNamesOf(package);
     GLINT_TRY_DO(createFrameResources(contextState, size, state->frame));
@@ -186,35 +189,59 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
                                                 state->scene.shaderIds, {layouts}));
     return std::unique_ptr<Renderer>(new Renderer(std::move(state)));
 }
+GLINT_CATCH
 
-Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
-Renderer::~Renderer() = default;
+Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {
+    const std::lock_guard lock(state_->scene.renderersMutex);
+    state_->scene.renderers.push_back(this);
+}
 
-Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) {
+Renderer::~Renderer() {
+    const std::lock_guard lock(state_->scene.renderersMutex);
+    std::erase(state_->scene.renderers, this);
+}
+
+namespace {
+
+// Puts another environment into a set of its own, since frames in flight use the present one. They keep what
+// they use until releaseLeftovers().
+Status takeEnvironment(Renderer::State& state, const std::shared_ptr<const Environment::State>& environment) {
+    GLINT_TRY(auto set, createFrameSet(state.context, state.size, state.frame, environment.get()));
+    auto left = std::make_unique<Leftovers>();
+    left->recording = state.recordings;
+    state.leftovers.push_back(std::move(left));
+    state.leftovers.back()->descriptors = std::exchange(state.frame.set, std::move(set)).pool;
+    state.leftovers.back()->environment = std::exchange(state.environment, environment);
+    return okStatus();
+}
+
+}  // namespace
+
+// All that can fail comes before the first command is recorded.
+Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) try {
     GLINT_TRY_DO(checkFrame(frame, state_->options));
     GLINT_TRY_DO(checkOutside(state_->size, outsideOf(frame)));
-    if (state_->scenePackage != state_->scene.package.number) {
-        return makeError(
-            "package-replaced", "",
-            "another renderer of the scene has replaced its package, and the shaders of this one "
-            "are for the package before",
-            "make this renderer anew with the new package");
-    }
-    if (frame.environment != nullptr && frame.environment->state() != state_->environment) {
-        bindEnvironment(state_->context, *frame.environment->state(), state_->frame);
-        state_->environment = frame.environment->state();
-    }
     if (state_->pipelines.background) {
         orderByHits(*state_);
         GLINT_TRY_DO(adoptPipelines(state_->context, state_->pipelines));
     }
-    if (state_->next) {
+    const bool switches = state_->next && joinReplacement(*state_);
+    if (switches) {
+        GLINT_TRY_DO(checkOutside(state_->next->size, outsideOf(frame)));
+    }
+    if (state_->history != nullptr) {
+        GLINT_TRY_DO(state_->history->makeRoom());
+    }
+    if (frame.environment != nullptr && frame.environment->state() != state_->environment) {
+        GLINT_TRY_DO(takeEnvironment(*state_, frame.environment->state()));
+    }
+    if (switches) {
         switchPackage(*state_, commands);
     }
     beginPicture(*state_, frame.sampleIndex);
     gpu::FrameConstants constants = makeConstants(*state_, frame);
     if (state_->history != nullptr) {
-        GLINT_TRY_DO(state_->history->fill(constants));
+        state_->history->fill(constants);
     }
     prepareImages(state_->context, commands, state_->frame);
     recordFrame(*state_, commands, frame, constants);
@@ -222,12 +249,14 @@ Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) {
     ++state_->recordings;
     return okStatus();
 }
+GLINT_CATCH
 
-Result<PackageReplacement> Renderer::replacePackage(std::shared_ptr<const Package> package) {
-    return beginReplacement(*state_, std::move(package));
+Result<Renderer::Replacement> Renderer::replacePackage(std::shared_ptr<const Package> package) try {
+    return beginReplacement(*state_, package);
 }
+GLINT_CATCH
 
-ReplacementProgress Renderer::replacementProgress() const {
+Renderer::ReplacementProgress Renderer::replacementProgress() const {
     ReplacementProgress progress;
     progress.inUse = state_->replacementsInUse;
     progress.error = state_->replacementError;
@@ -236,8 +265,7 @@ ReplacementProgress Renderer::replacementProgress() const {
         const auto& background = state_->next->pipelines.background;
         progress.pending = true;
         progress.missing = background ? background->missing() : 0;
-        const bool failed = background && background->progress().error;
-        progress.ready = progress.missing == 0 && !failed && state_->pipelines.adoptedAtOnce > 0;
+        progress.ready = isReplacementReady(*state_);
     }
     return progress;
 }
@@ -248,6 +276,9 @@ std::uint64_t Renderer::recordings() const {
 
 void Renderer::finished(std::uint64_t recording) {
     releaseLeftovers(*state_, recording);
+    if (state_->history != nullptr) {
+        state_->history->complete(recording);
+    }
     if (state_->size.paths) {
         std::array<std::uint32_t, BounceLevels::kSlots> depths{};
         const VkDeviceSize place = readbackDepth(state_->size, 0);
@@ -294,22 +325,23 @@ Status runSamples(Renderer& renderer, CommandRunner& runner, FrameOptions sample
 }  // namespace
 
 Result<LinearImage> Renderer::render(const FrameOptions& frame, std::uint32_t sampleCount,
-                                     const std::function<Status()>& afterSample) {
+                                     const std::function<Status()>& afterSample) try {
     GLINT_TRY(auto runner, CommandRunner::create(state_->context));
     GLINT_TRY_DO(runSamples(*this, runner, frame, sampleCount, afterSample));
     GLINT_TRY(auto pixels, readFrameImage(*state_, runner, gpu::kBindingAccumulated));
     return LinearImage{state_->size.width, state_->size.height, std::move(pixels)};
 }
+GLINT_CATCH
 
 Status Renderer::renderSamples(const FrameOptions& frame, std::uint32_t sampleCount,
-                               const std::function<Status()>& afterSample) {
+                               const std::function<Status()>& afterSample) try {
     Result<CommandRunner> runner = CommandRunner::create(state_->context);
     return runner ? runSamples(*this, *runner, frame, sampleCount, afterSample) : Status(runner.error());
 }
+GLINT_CATCH
 
-Result<std::vector<PassTiming>> Renderer::timings() {
-    return passTimings(*state_);
-}
+Result<std::vector<PassTiming>> Renderer::timings() try { return passTimings(*state_); }
+GLINT_CATCH
 
 PipelineProgress Renderer::pipelineProgress() const {
     const auto& background = state_->pipelines.background;
@@ -360,8 +392,10 @@ std::vector<MemoryItem> Renderer::memory() const {
     // Memory that buffers share with the depth image counts as the buffers' memory.
     VkDeviceSize shared = 0;
     for (const auto& [name, buffer] : frame.buffers()) {
-        const bool shares =
-            buffer->handle.get() != VK_NULL_HANDLE && buffer->memory.memory == frame.depth.memory.memory;
+        const Allocation& place = buffer->memory;
+        const Allocation& depth = frame.depth.memory;
+        const bool shares = buffer->handle.get() != VK_NULL_HANDLE && place.memory == depth.memory &&
+                            place.offset >= depth.offset && place.offset < depth.offset + frame.depth.bytes;
         shared += shares ? buffer->bytes : 0;
     }
     if (frame.depth.handle.get() != VK_NULL_HANDLE) {
@@ -405,7 +439,7 @@ Renderer::PipelineMaking Renderer::pipelineMaking() const {
     return making;
 }
 
-Result<std::vector<PipelineStatistics>> Renderer::pipelineStatistics() const {
+Result<std::vector<PipelineStatistics>> Renderer::pipelineStatistics() const try {
     if (!state_->pipelines.captureStatistics) {
         return makeError("pipeline-statistics", "",
                          "the renderer was made without statistics of its pipelines",
@@ -419,5 +453,6 @@ Result<std::vector<PipelineStatistics>> Renderer::pipelineStatistics() const {
     }
     return list;
 }
+GLINT_CATCH
 
 }  // namespace glint

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "context/commands.h"
+#include "context/parallel.h"
 #include "frame/bounce_levels.h"
 #include "frame/frame_resources.h"
 #include "frame/motion_history.h"
@@ -16,8 +17,8 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <future>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -45,6 +46,7 @@ struct NextPackage {
     explicit NextPackage(Context::State& context) : pipelines(context) {}
 
     std::shared_ptr<const Package> package;
+    Renderer::Replacement report;
     std::uint32_t scene = 0;  // index in the package
     PipelineChoice choice;
     FrameSize size;
@@ -58,28 +60,45 @@ struct NextPackage {
 struct Leftovers {
     std::uint64_t recording = 0;
     EarlierBuffers buffers;
-    RetiredLot scene;
+    std::shared_ptr<const RetiredLot> scene;  // shared by the scene's renderers
+    std::shared_ptr<const Environment::State> environment;
+    UniqueDescriptorPool descriptors;  // of a set with that environment
     std::optional<Timer> timer;
     std::unique_ptr<NextPackage> next;  // one that was given up
     std::unique_ptr<Pipelines> pipelines;
 };
 
-// Destroys pipelines on threads of its own. A driver takes its time for each pipeline, and those that are
-// being made have to be waited for. The destructor waits until all are gone.
+// Destroys pipelines with jobs. A driver takes its time for each pipeline, and those that are being made have
+// to be waited for. The destructor waits until all are gone.
 class PipelineDisposal {
 public:
-    // Never waits, unless the system gives no thread.
+    explicit PipelineDisposal(Jobs& jobs) : group_(jobs) {}
+    // Never waits, unless there is no thread.
     void take(std::unique_ptr<Pipelines> pipelines, std::unique_ptr<NextPackage> next);
 
 private:
-    std::vector<std::future<void>> running_;
+    struct Waste {
+        std::unique_ptr<NextPackage> next;
+        std::unique_ptr<Pipelines> pipelines;
+    };
+    void destroyOne();
+
+    std::mutex mutex_;
+    std::vector<Waste> waste_;
+    JobGroup group_;  // its jobs destroy a part of the waste each
 };
 
-// Implements Renderer::replacePackage().
-Result<PackageReplacement> beginReplacement(Renderer::State& state, std::shared_ptr<const Package> package);
+// Implements Renderer::replacePackage() for all renderers of the scene.
+Result<Renderer::Replacement> beginReplacement(Renderer::State& state,
+                                               const std::shared_ptr<const Package>& package);
 
-// If all pipelines of the package that waits are there, lets the commands that are recorded from now on use
-// that package. If a pipeline could not be made, gives the package up.
+// Returns whether the pipelines of the package that waits are there, in all renderers of the scene.
+bool isReplacementReady(const Renderer::State& state);
+// Lets the package wait in renderers that were made after replacePackage(), too, and returns whether it is
+// ready. If a pipeline could not be made, gives the package up.
+bool joinReplacement(Renderer::State& state);
+// Lets the commands that are recorded from now on use the package that waits, in all renderers of the scene.
+// Requires joinReplacement(). If something can't be made, gives the package up, and nothing else changes.
 void switchPackage(Renderer::State& state, VkCommandBuffer commands);
 
 // Destroys resources that recordings after `recording` do not use; pipelines are gone some time later.
@@ -87,7 +106,7 @@ void releaseLeftovers(Renderer::State& state, std::uint64_t recording);
 
 struct Renderer::State : PassState {
     State(Context::State& contextState, GpuScene::State& sceneState, Timer passTimer)
-        : PassState(contextState, std::move(passTimer)), scene(sceneState) {}
+        : PassState(contextState, std::move(passTimer)), scene(sceneState), disposal(contextState.jobs) {}
 
     GpuScene::State& scene;
     std::vector<EffectName> effects;
@@ -105,11 +124,9 @@ struct Renderer::State : PassState {
     RendererOptions options;
     std::uint32_t timerCapacity = 0;  // stretches
     std::uint64_t recordings = 0;
-    std::uint64_t drafts = 0;       // recordings that were drafts
-    bool drafted = false;           // the last recording was one
-    std::uint32_t firstSample = 0;  // FrameOptions::sampleIndex with which the picture began
-    // The package of the scene that the pipelines are for, as ScenePackage::number.
-    std::uint64_t scenePackage = 0;
+    std::uint64_t drafts = 0;           // recordings that were drafts
+    bool drafted = false;               // the last recording was one
+    std::uint32_t firstSample = 0;      // FrameOptions::sampleIndex with which the picture began
     std::unique_ptr<NextPackage> next;  // null unless a package waits
     std::vector<std::unique_ptr<Leftovers>> leftovers;
     PipelineDisposal disposal;

@@ -3,11 +3,10 @@
 #include "renderer/renderer_choice.h"
 
 #include <algorithm>
-#include <chrono>
+#include <exception>
 #include <iterator>
 #include <limits>
 #include <map>
-#include <system_error>
 #include <utility>
 
 namespace glint {
@@ -66,7 +65,8 @@ Status makeNow(std::vector<PlannedPipeline> missing, const PipelineMaking& makin
 }
 
 // Plans the pipelines, keeps those that are known, and makes the others or starts threads that do.
-Status makePipelinesOf(Renderer::State& state, NextPackage& next, PackageReplacement& result) {
+Status makePipelinesOf(Renderer::State& state, NextPackage& next) {
+    Renderer::Replacement& result = next.report;
     const PipelineMaking making{state.options.pipelineThreads, state.options.pipelineStatistics};
     const VkPipelineCreateFlags flags =
         making.captureStatistics ? VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR : 0;
@@ -108,8 +108,8 @@ Status makePipelinesOf(Renderer::State& state, NextPackage& next, PackageReplace
     if (!missing.empty()) {
         // One thread is the caller's.
         const std::uint32_t threads = pipelineThreads(making.threads, missing.size() + 1);
-        pipelines.background =
-            std::make_unique<BackgroundPipelines>(std::move(missing), flags, std::max(threads, 2U) - 1);
+        pipelines.background = std::make_unique<BackgroundPipelines>(state.context.jobs, std::move(missing),
+                                                                     flags, std::max(threads, 2U) - 1);
         if (state.recorded && state.size.ordered && next.size.bucketCount == state.size.bucketCount) {
             pipelines.background->setHits(bucketCountsOf(state));
         }
@@ -118,8 +118,8 @@ Status makePipelinesOf(Renderer::State& state, NextPackage& next, PackageReplace
 }
 
 // Makes everything that frames of the package need. Nothing of the renderer changes.
-Result<std::unique_ptr<NextPackage>> makeNext(Renderer::State& state, std::shared_ptr<const Package> package,
-                                              PackageReplacement& result) {
+Result<std::unique_ptr<NextPackage>> makeNext(Renderer::State& state,
+                                              std::shared_ptr<const Package> package) {
     if (package->passes() != package::Passes::Frame) {
         return makeError("package-passes", "", "the package has the steps of a host's own rays, and no frame",
                          "compile it with --passes frame");
@@ -145,9 +145,9 @@ Result<std::unique_ptr<NextPackage>> makeNext(Renderer::State& state, std::share
         next->timer.emplace(std::move(timer));
     }
     GLINT_TRY(next->buffers, createNextBuffers(state.context, state.size, next->size));
-    result.buffersKept = next->buffers.kept;
-    result.buffersMade = next->buffers.made;
-    GLINT_TRY_DO(makePipelinesOf(state, *next, result));
+    next->report.buffersKept = next->buffers.kept;
+    next->report.buffersMade = next->buffers.made;
+    GLINT_TRY_DO(makePipelinesOf(state, *next));
     return next;
 }
 
@@ -181,10 +181,62 @@ Status joinPasses(Renderer::State& state, NextPackage& next) {
     return okStatus();
 }
 
-void refuse(Renderer::State& state, const Diagnostic& error) {
-    state.replacementError = error;
+// Returns the renderers of the scene.
+std::vector<Renderer::State*> usersOf(GpuScene::State& scene) {
+    const std::lock_guard lock(scene.renderersMutex);
+    std::vector<Renderer::State*> users;
+    for (Renderer* const renderer : scene.renderers) {
+        users.push_back(&renderer->state());
+    }
+    return users;
+}
+
+// Lets a package wait that was made by makeNext(). The threads make its pipelines first.
+void await(Renderer::State& state, std::unique_ptr<NextPackage> next) {
     giveUp(state);
-    pauseBackground(state, false);
+    pauseBackground(state, true);
+    state.next = std::move(next);
+    state.replacementError.reset();
+}
+
+void refuse(Renderer::State& state, const Diagnostic& error) {
+    state.context.jobs.report(error);
+    for (Renderer::State* const user : usersOf(state.scene)) {
+        if (user->next) {
+            user->replacementError = error;
+            giveUp(*user);
+            pauseBackground(*user, false);
+        }
+    }
+}
+
+bool waitsFor(const Renderer::State& state, const std::shared_ptr<const Package>& package) {
+    return state.next && state.next->package == package;
+}
+
+// Makes the package that waits the renderer's own. `scene` are the leftovers of the scene, and `recording` is
+// the last one that uses them. Nothing can fail.
+void takeOver(Renderer::State& state, const std::shared_ptr<const RetiredLot>& scene,
+              std::uint64_t recording) {
+    NextPackage& next = *state.next;
+    Leftovers& left = *state.leftovers.back();
+    left.recording = recording;
+    left.scene = scene;
+    left.buffers = replaceBuffers(std::move(next.buffers), state.frame);
+    *left.pipelines = std::exchange(state.pipelines, std::move(next.pipelines));
+    if (next.timer) {
+        left.timer.emplace(std::exchange(state.timer, std::move(*next.timer)));
+        state.timerCapacity = timerCapacity(*next.package, next.size);
+    }
+    state.choice = next.choice;
+    state.size = next.size;
+    state.effects = effectsOf(*next.package);
+    state.caseNames = caseNamesOf(*next.package);
+    state.rounds.clear();
+    state.bounceLevels.reset();
+    state.recorded = false;
+    ++state.replacementsInUse;
+    state.next.reset();
 }
 
 }  // namespace
@@ -211,81 +263,100 @@ std::uint32_t timerCapacity(const Package& package, const FrameSize& size) {
 }
 
 void PipelineDisposal::take(std::unique_ptr<Pipelines> pipelines, std::unique_ptr<NextPackage> next) {
-    std::erase_if(running_, [](const std::future<void>& task) {
-        return task.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-    });
     if (!pipelines && !next) {
         return;
     }
     try {
-        // The task may be copied, so its copies share the objects that it destroys.
-        const auto taken =
-            std::make_shared<std::pair<std::unique_ptr<Pipelines>, std::unique_ptr<NextPackage>>>(
-                std::move(pipelines), std::move(next));
-        running_.push_back(std::async(std::launch::async, [taken] {
-            taken->first.reset();
-            taken->second.reset();
-        }));
-    } catch (const std::system_error&) {
-        // There is no thread, so this call has destroyed them.
+        {
+            const std::lock_guard lock(mutex_);
+            waste_.push_back({std::move(next), std::move(pipelines)});
+        }
+        group_.run([this] { destroyOne(); });
+    } catch (const std::exception&) {
+        destroyOne();  // there is no thread
     }
 }
 
-Result<PackageReplacement> beginReplacement(Renderer::State& state, std::shared_ptr<const Package> package) {
-    PackageReplacement result;
-    if (state.pipelines.background) {
-        GLINT_TRY_DO(adoptPipelines(state.context, state.pipelines));
+void PipelineDisposal::destroyOne() {
+    Waste waste;
+    const std::lock_guard lock(mutex_);
+    if (!waste_.empty()) {
+        waste = std::move(waste_.back());
+        waste_.pop_back();
     }
-    GLINT_TRY(auto next, makeNext(state, std::move(package), result));
-    giveUp(state);
-    // The threads make the pipelines of the new package instead.
-    pauseBackground(state, true);
-    state.next = std::move(next);
-    state.replacementError.reset();
-    return result;
+}
+
+Result<Renderer::Replacement> beginReplacement(Renderer::State& state,
+                                               const std::shared_ptr<const Package>& package) {
+    std::vector<std::pair<Renderer::State*, std::unique_ptr<NextPackage>>> made;
+    for (Renderer::State* const user : usersOf(state.scene)) {
+        if (user->pipelines.background) {
+            GLINT_TRY_DO(adoptPipelines(user->context, user->pipelines));
+        }
+        if (!waitsFor(*user, package)) {
+            GLINT_TRY(auto next, makeNext(*user, package));
+            made.emplace_back(user, std::move(next));
+        }
+    }
+    for (auto& [user, next] : made) {
+        await(*user, std::move(next));
+    }
+    return state.next->report;
+}
+
+bool isReplacementReady(const Renderer::State& state) {
+    return std::ranges::all_of(usersOf(state.scene), [&](const Renderer::State* user) {
+        const auto* const background = user->next ? user->next->pipelines.background.get() : nullptr;
+        return waitsFor(*user, state.next->package) && user->pipelines.adoptedAtOnce > 0 &&
+               (background == nullptr || (background->missing() == 0 && !background->progress().error));
+    });
+}
+
+bool joinReplacement(Renderer::State& state) {
+    const std::shared_ptr<const Package> package = state.next->package;
+    for (Renderer::State* const user : usersOf(state.scene)) {
+        if (!waitsFor(*user, package)) {  // it was made after replacePackage()
+            Result<std::unique_ptr<NextPackage>> next = makeNext(*user, package);
+            if (!next) {
+                refuse(state, next.error());
+                return false;
+            }
+            await(*user, std::move(*next));
+        }
+        if (const auto& background = user->next->pipelines.background) {
+            if (const std::optional<Diagnostic> error = background->progress().error) {
+                refuse(state, *error);
+                return false;
+            }
+        }
+    }
+    return isReplacementReady(state);
 }
 
 void switchPackage(Renderer::State& state, VkCommandBuffer commands) {
-    NextPackage& next = *state.next;
-    if (next.pipelines.background) {
-        if (const std::optional<Diagnostic> error = next.pipelines.background->progress().error) {
-            refuse(state, *error);
-            return;
-        }
-        if (next.pipelines.background->missing() > 0 || state.pipelines.adoptedAtOnce == 0) {
+    const std::vector<Renderer::State*> users = usersOf(state.scene);
+    for (Renderer::State* const user : users) {
+        if (Status status = joinPasses(*user, *user->next); !status) {
+            refuse(state, status.error());
             return;
         }
     }
-    if (Status status = joinPasses(state, next); !status) {
-        refuse(state, status.error());
-        return;
+    for (Renderer::State* const user : users) {
+        user->leftovers.push_back(std::make_unique<Leftovers>());
+        user->leftovers.back()->pipelines = std::make_unique<Pipelines>(user->context);
     }
-    Result<RetiredLot> scene = recordReplacement(state.scene, *next.package, next.scene, commands);
+    const auto left = std::make_shared<RetiredLot>();
+    Result<RetiredLot> scene =
+        recordReplacement(state.scene, *state.next->package, state.next->scene, commands);
     if (!scene) {
         refuse(state, scene.error());
         return;
     }
-    state.leftovers.push_back(std::make_unique<Leftovers>());
-    Leftovers& left = *state.leftovers.back();
-    // The commands that are being recorded read the staging memory of `scene`.
-    left.recording = state.recordings + 1;
-    left.scene = std::move(*scene);
-    left.buffers = replaceBuffers(std::move(next.buffers), state.frame);
-    left.pipelines = std::make_unique<Pipelines>(std::exchange(state.pipelines, std::move(next.pipelines)));
-    if (next.timer) {
-        left.timer.emplace(std::exchange(state.timer, std::move(*next.timer)));
-        state.timerCapacity = timerCapacity(*next.package, next.size);
+    *left = std::move(*scene);
+    for (Renderer::State* const user : users) {
+        // The commands that are being recorded read the staging memory.
+        takeOver(*user, left, user->recordings + (user == &state ? 1 : 0));
     }
-    state.choice = next.choice;
-    state.size = next.size;
-    state.effects = effectsOf(*next.package);
-    state.caseNames = caseNamesOf(*next.package);
-    state.scenePackage = state.scene.package.number;
-    state.rounds.clear();
-    state.bounceLevels.reset();
-    state.recorded = false;
-    ++state.replacementsInUse;
-    state.next.reset();
 }
 
 void releaseLeftovers(Renderer::State& state, std::uint64_t recording) {

@@ -23,21 +23,7 @@ Result<std::unique_ptr<GpuScene::State>> makeScene(Context& context, const Packa
                              " is not in the package, which has " + std::to_string(package.sceneCount()),
                          "find its index by Package::findScene()");
     }
-    if (package.positionFetch() && !contextState.handles.positionFetch) {
-        return makeError(
-            "position-fetch", "",
-            "the package's shaders read positions from acceleration structures, which the device does "
-            "not allow or was not created for",
-            "create it with VK_KHR_ray_tracing_position_fetch and set DeviceHandles::positionFetch, or "
-            "compile without --position-fetch");
-    }
-    if (package.precision() == package::ShadingPrecision::Half && !contextState.handles.shaderFloat16) {
-        return makeError("half-precision", "",
-                         "the package's shaders compute in 16-bit float, which the device does not allow or "
-                         "was not created for",
-                         "create it with VkPhysicalDeviceVulkan12Features::shaderFloat16 and set "
-                         "DeviceHandles::shaderFloat16, or compile with --precision 32");
-    }
+    GLINT_TRY_DO(checkDevice(package, contextState.handles));
     const PackageScene known = hasNothing ? PackageScene{} : package.scene(scene.packageScene);
     GLINT_TRY_DO(checkScene(package, known, scene, imageLimits(contextState)));
     auto state = std::make_unique<GpuScene::State>(contextState);
@@ -54,6 +40,7 @@ Result<std::unique_ptr<GpuScene::State>> makeScene(Context& context, const Packa
     if (scene.editable) {
         state->editor = std::make_unique<SceneEditor>(*state->store);
     }
+    state->package.records = recordsHash(package, known);
     state->compaction = std::move(upload.compaction);
     return state;
 }

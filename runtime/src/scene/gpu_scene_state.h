@@ -17,12 +17,14 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace glint {
 
+class Renderer;
 struct SceneStore;
 
 // The place of a geometry record's positions. Those that follow joints or morph weights are in a buffer of
@@ -69,8 +71,8 @@ struct ScenePackage {
         std::vector<std::uint8_t> inputs;
     };
 
-    std::uint64_t number = 0;  // of replacements so far
-    std::string scene;         // name in the package
+    std::uint64_t records = 0;  // recordsHash()
+    std::string scene;          // name in the package
     std::vector<package::PrimitiveEntry> entries;
     std::vector<package::TextureEntry> textures;
     std::vector<std::array<float, 2>> texels;  // sizes of the textures
@@ -94,9 +96,12 @@ struct GpuScene::State {
 
     Context::State& context;
     MemoryPool pool;
-    std::unique_ptr<Compaction> compaction;             // null if there is nothing more to compact
-    std::unique_ptr<SceneUpload> upload;                // null when the device has completed it
-    ScenePackage package;                               // the package that draws the scene
+    std::unique_ptr<Compaction> compaction;  // null if there is nothing more to compact
+    std::unique_ptr<SceneUpload> upload;     // null when the device has completed it
+    ScenePackage package;                    // the package that draws the scene
+    // The renderers of the scene, which add and remove themselves. They replace its package together.
+    std::vector<Renderer*> renderers;
+    std::mutex renderersMutex;
     std::array<double, 3> origin{};                     // SceneView::origin, or that of the last MotionView
     std::map<std::uint32_t, DeviceMicromap> micromaps;  // by index into SceneView::primitives
     AccelerationStructure tlas;

@@ -239,13 +239,7 @@ Result<std::uint32_t> findScene(const GpuScene::State& scene, const Package& pac
             "without them",
             "upload the scene anew, or compile without --position-fetch");
     }
-    if (package.precision() == package::ShadingPrecision::Half && !scene.context.handles.shaderFloat16) {
-        return makeError("half-precision", "",
-                         "the package's shaders compute in 16-bit float, which the device does not allow or "
-                         "was not created for",
-                         "create it with VkPhysicalDeviceVulkan12Features::shaderFloat16 and set "
-                         "DeviceHandles::shaderFloat16, or compile with --precision 32");
-    }
+    GLINT_TRY_DO(checkDevice(package, scene.context.handles));
     const PackageScene known = package.scene(*index);
     if (!sameBytes(known.textures, std::span<const package::TextureEntry>(now.textures)) ||
         !sameBytes(known.samplers, std::span<const package::SamplerEntry>(now.samplers))) {
@@ -307,7 +301,7 @@ Result<RetiredLot> recordReplacement(GpuScene::State& scene, const Package& pack
     }
     scene.shaderIds = shaderIdsIn(scene, known);
     scene.package.entries.assign(known.primitives.begin(), known.primitives.end());
-    ++scene.package.number;
+    scene.package.records = recordsHash(package, known);
     scene.materialLayout = known.materials.part(0, 0);
     scene.changing = std::move(changing);
     return leftovers;

@@ -1,4 +1,5 @@
 // SceneStore: the work of the device for the changes since the last recording.
+#include "context/commands.h"
 #include "context/vulkan_table.h"
 #include "data/geometry.h"
 #include "scene/scene_store.h"
@@ -309,19 +310,11 @@ private:
         if (!isTimed) {
             return;
         }
-        const DeviceTable& vk = context_.vk;
-        if (vk.CmdBeginDebugUtilsLabelEXT != nullptr) {
-            VkDebugUtilsLabelEXT label{};
-            label.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
-            label.pLabelName = name;
-            vk.CmdBeginDebugUtilsLabelEXT(commands_, &label);
-        }
+        beginLabel(context_, commands_, name);
         store_.timer->recordBegin(commands_, stretch);
         record();
         store_.timer->recordEnd(commands_, stretch);
-        if (vk.CmdEndDebugUtilsLabelEXT != nullptr) {
-            vk.CmdEndDebugUtilsLabelEXT(commands_);
-        }
+        endLabel(context_, commands_);
     }
 
     // Copies old content into arrays of another size.

@@ -130,7 +130,7 @@ struct Environment::Upload : StagedCopies {
 
 Result<std::unique_ptr<Environment>> Environment::record(Context& context, const LinearImage& image,
                                                          const EnvironmentOptions& options,
-                                                         VkCommandBuffer commands, std::uint64_t frame) {
+                                                         VkCommandBuffer commands, std::uint64_t frame) try {
     auto upload = std::make_unique<Upload>(context.state());
     GLINT_TRY(auto state, makeState(context, image, options, *upload->uploader));
     upload->record(commands, frame);
@@ -138,12 +138,14 @@ Result<std::unique_ptr<Environment>> Environment::record(Context& context, const
     environment->upload_ = std::move(upload);
     return environment;
 }
+GLINT_CATCH
 
 Result<std::unique_ptr<Environment>> Environment::create(Context& context, const LinearImage& image,
-                                                         const EnvironmentOptions& options) {
+                                                         const EnvironmentOptions& options) try {
     return makeOnce(context.state(),
                     [&](VkCommandBuffer commands) { return record(context, image, options, commands, 0); });
 }
+GLINT_CATCH
 
 void Environment::complete(std::uint64_t frame) {
     if (upload_ && upload_->frame <= frame) {

@@ -10,7 +10,7 @@ namespace glint {
 
 // Members are destroyed in reverse order: the pool's memory last.
 struct Environment::State {
-    explicit State(Context::State& contextState) : context(contextState), pool(contextState) {}
+    explicit State(Context::State& contextState) : context(contextState), pool(contextState, "environment") {}
 
     Context::State& context;
     MemoryPool pool;

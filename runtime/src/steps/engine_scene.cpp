@@ -6,6 +6,7 @@
 #include "data/materials.h"
 #include "data/scene_checks.h"
 #include "interop/frame.h"
+#include "package/package.h"
 #include "scene/gpu_scene_state.h"
 
 #include <algorithm>
@@ -193,12 +194,13 @@ void recordContents(const EngineScene::State& state, VkCommandBuffer commands, c
 
 Result<std::unique_ptr<EngineScene>> EngineScene::record(Context& context, const Package& package,
                                                          const EngineSceneView& scene,
-                                                         VkCommandBuffer commands, std::uint64_t frame) {
+                                                         VkCommandBuffer commands, std::uint64_t frame) try {
     if (scene.packageScene >= package.sceneCount()) {
         return makeError("scene-package", "",
                          "the package has no scene " + std::to_string(scene.packageScene),
                          "give an index below Package::sceneCount()");
     }
+    GLINT_TRY_DO(checkDevice(package, context.handles()));
     const PackageScene known = package.scene(scene.packageScene);
     GLINT_TRY(auto geometries, makeGeometries(known, scene));
     GLINT_TRY(auto instances, makeInstances(scene.instances));
@@ -215,6 +217,7 @@ Result<std::unique_ptr<EngineScene>> EngineScene::record(Context& context, const
     state->placed.assign(scene.instances.begin(), scene.instances.end());
     state->lightCount = state->lightCapacity = static_cast<std::uint32_t>(lights.size());
     state->recordsBy = scene.recordsBy;
+    state->records = recordsHash(package, known);
     state->upload = std::make_unique<StagedCopies>(context.state());
     const std::vector<std::uint32_t> firstRecords(scene.firstRecords.begin(), scene.firstRecords.end());
     for (const Status& status :
@@ -230,12 +233,14 @@ Result<std::unique_ptr<EngineScene>> EngineScene::record(Context& context, const
     state->upload->record(commands, frame);
     return std::unique_ptr<EngineScene>(new EngineScene(std::move(state)));
 }
+GLINT_CATCH
 
 Result<std::unique_ptr<EngineScene>> EngineScene::create(Context& context, const Package& package,
-                                                         const EngineSceneView& scene) {
+                                                         const EngineSceneView& scene) try {
     return makeOnce(context.state(),
                     [&](VkCommandBuffer commands) { return record(context, package, scene, commands, 0); });
 }
+GLINT_CATCH
 
 void EngineScene::complete(std::uint64_t frame) {
     if (state_->upload && state_->upload->frame <= frame) {
@@ -243,12 +248,14 @@ void EngineScene::complete(std::uint64_t frame) {
     }
 }
 
-Result<std::unique_ptr<EngineScene>> EngineScene::share(Context& context, GpuScene& scene) {
+Result<std::unique_ptr<EngineScene>> EngineScene::share(Context& context, GpuScene& scene) try {
     auto state = std::make_unique<State>(context.state());
     state->shared = &scene.state();
     state->shaderIds = state->shared->shaderIds;
+    state->records = state->shared->package.records;
     return std::unique_ptr<EngineScene>(new EngineScene(std::move(state)));
 }
+GLINT_CATCH
 
 EngineScene::State::Addresses EngineScene::State::addresses() const {
     if (shared != nullptr) {
@@ -267,7 +274,7 @@ EngineScene::EngineScene(std::unique_ptr<State> state) : state_(std::move(state)
 EngineScene::~EngineScene() = default;
 
 Status EngineScene::update(VkCommandBuffer commands, std::span<const std::array<float, 12>> instances,
-                           std::span<const LightView> lights, const std::array<double, 3>& originMoved) {
+                           std::span<const LightView> lights, const std::array<double, 3>& originMoved) try {
     if (state_->shared != nullptr) {
         return makeError("engine-scene", "", "the scene is that of a GpuScene", "use GpuScene::update()");
     }
@@ -300,6 +307,7 @@ Status EngineScene::update(VkCommandBuffer commands, std::span<const std::array<
     state_->lightCount = static_cast<std::uint32_t>(lightRecords.size());
     return okStatus();
 }
+GLINT_CATCH
 
 VkDeviceAddress EngineScene::materials() const {
     return state_->addresses().materials;

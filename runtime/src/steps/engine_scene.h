@@ -4,6 +4,7 @@
 #include "context/context.h"
 #include "context/resources.h"
 #include "context/upload.h"
+#include "scene/gpu_scene_state.h"
 
 #include <glint/steps.h>
 
@@ -16,7 +17,8 @@ namespace glint {
 
 // Members are destroyed in reverse order: the pool's memory last.
 struct EngineScene::State {
-    explicit State(Context::State& contextState) : context(contextState), pool(contextState) {}
+    explicit State(Context::State& contextState)
+        : context(contextState), pool(contextState, "engine scene") {}
 
     Context::State& context;
     MemoryPool pool;
@@ -37,7 +39,8 @@ struct EngineScene::State {
         VkDeviceAddress firstRecords = 0;
     };
     Addresses addresses() const;
-    const GpuScene::State* shared = nullptr;
+    const GpuScene::State* shared = nullptr;    // the scene whose records these are
+    std::uint64_t records = 0;                  // recordsHash()
     std::vector<std::array<float, 12>> placed;  // the transforms of the instances
     std::uint32_t lightsNow() const;
     std::uint32_t lightCount = 0;  // of a scene that is not shared

@@ -1,4 +1,6 @@
+#include "context/parallel.h"
 #include "frame/frame_constants.h"
+#include "package/package.h"
 #include "renderer/hit_passes.h"
 #include "renderer/renderer_choice.h"
 #include "steps/engine_scene.h"
@@ -65,12 +67,13 @@ Status checkBatch(const RaySteps::State& state, const RayBatch& batch) {
 }  // namespace
 
 Result<std::unique_ptr<RaySteps>> RaySteps::create(Context& context, const Package& package,
-                                                   EngineScene& scene, const RayStepsOptions& options) {
+                                                   EngineScene& scene, const RayStepsOptions& options) try {
     Context::State& contextState = context.state();
     if (package.passes() != package::Passes::Steps) {
         return makeError("package-passes", "", "the package draws frames, and has no steps",
                          "compile it with --passes steps, or use Renderer");
     }
+    GLINT_TRY_DO(checkRecords(package, scene.state().records));
     if (options.layout == VK_NULL_HANDLE) {
         return wrongBatch("there is no pipeline layout", "set RayStepsOptions::layout");
     }
@@ -102,15 +105,12 @@ Result<std::unique_ptr<RaySteps>> RaySteps::create(Context& context, const Packa
         state->caseNames.emplace_back(package.string(entry.name));
     }
     GLINT_TRY_DO(createFrameResources(contextState, size, state->frame));
-    Result<Pipelines> pipelines =
-        createPipelines(contextState, package, choice, {options.pipelineThreads, false},
-                        scene.state().shaderIds, {{}, options.layout, options.pushStages});
-    if (!pipelines) {
-        return pipelines.error();
-    }
-    state->pipelines = std::move(*pipelines);
+    GLINT_TRY(state->pipelines,
+              createPipelines(contextState, package, choice, {options.pipelineThreads, false},
+                              scene.state().shaderIds, {{}, options.layout, options.pushStages}));
     return std::unique_ptr<RaySteps>(new RaySteps(std::move(state)));
 }
+GLINT_CATCH
 
 RaySteps::RaySteps(std::unique_ptr<State> state) : state_(std::move(state)) {}
 RaySteps::~RaySteps() = default;
@@ -174,8 +174,13 @@ gpu::FrameConstants makeConstants(const RaySteps::State& state, const RayBatch& 
 
 }  // namespace
 
-Status RaySteps::begin(VkCommandBuffer commands, const RayBatch& batch) {
+Status RaySteps::begin(VkCommandBuffer commands, const RayBatch& batch) try {
     GLINT_TRY_DO(checkBatch(*state_, batch));
+    if (state_->scene.shared != nullptr && state_->scene.shared->package.records != state_->scene.records) {
+        return makeError("package-replaced", "",
+                         "a renderer has replaced the package of the GpuScene whose records these are",
+                         "make the EngineScene and the RaySteps anew with the new package");
+    }
     GLINT_TRY_DO(adoptPipelines(state_->context, state_->pipelines));
     state_->timed.clear();
     state_->timing = batch.timing;
@@ -184,7 +189,7 @@ Status RaySteps::begin(VkCommandBuffer commands, const RayBatch& batch) {
     }
     state_->timer.recordReset(commands);
     PassRecorder passes(*state_, commands, batch.timing);
-    passes.beginLabel("glint begin");
+    beginLabel(state_->context, commands, "begin");
     passes.barrier(kAllToAll);
     state_->whole = passes.beginStretch({"rays", Pass::Hits});
     clearLists(*state_, commands);
@@ -196,28 +201,29 @@ Status RaySteps::begin(VkCommandBuffer commands, const RayBatch& batch) {
     setRayCount(*state_, commands, batch);
     passes.barrier(passes.dependencies().clearToPasses);
     HitPasses(*state_, passes).dispatchOfList();
-    passes.endLabel();
+    endLabel(state_->context, commands);
     state_->recorded = true;
     return okStatus();
 }
+GLINT_CATCH
 
 void RaySteps::trace(VkCommandBuffer commands) {
     PassRecorder passes(*state_, commands, state_->timing);
-    passes.beginLabel("glint trace");
+    beginLabel(state_->context, commands, "trace");
     HitPasses(*state_, passes).trace();
-    passes.endLabel();
+    endLabel(state_->context, commands);
 }
 
 void RaySteps::order(VkCommandBuffer commands) {
     PassRecorder passes(*state_, commands, state_->timing);
-    passes.beginLabel("glint order");
+    beginLabel(state_->context, commands, "order");
     HitPasses(*state_, passes).order();
-    passes.endLabel();
+    endLabel(state_->context, commands);
 }
 
 void RaySteps::shade(VkCommandBuffer commands) {
     PassRecorder passes(*state_, commands, state_->timing);
-    passes.beginLabel("glint shade");
+    beginLabel(state_->context, commands, "shade");
     HitPasses(*state_, passes).shade();
     passes.endStretch(state_->whole);
     // The counters go to host memory, and the answers to the host's next commands.
@@ -233,18 +239,19 @@ void RaySteps::shade(VkCommandBuffer commands) {
              counterBytes(state_->size));
     }
     passes.barrier(kCopyToHost);
-    passes.endLabel();
+    endLabel(state_->context, commands);
 }
 
-Status RaySteps::record(VkCommandBuffer commands, const RayBatch& batch) {
+Status RaySteps::record(VkCommandBuffer commands, const RayBatch& batch) try {
     GLINT_TRY_DO(begin(commands, batch));
     trace(commands);
     order(commands);
     shade(commands);
     return okStatus();
 }
+GLINT_CATCH
 
-Result<RayStepsCounters> RaySteps::counters() {
+Result<RaySteps::Counters> RaySteps::counters() try {
     if (!state_->recorded) {
         return frameNotRecorded();
     }
@@ -254,7 +261,7 @@ Result<RayStepsCounters> RaySteps::counters() {
         std::memcpy(&value, read + index * sizeof value, sizeof value);
         return value;
     };
-    RayStepsCounters result;
+    Counters result;
     result.rays = counter(gpu::kCounterRays);
     result.shadowRays = counter(gpu::kCounterShadowRays);
     result.unknownShader = counter(gpu::kCounterUnknownShader);
@@ -265,10 +272,10 @@ Result<RayStepsCounters> RaySteps::counters() {
     }
     return result;
 }
+GLINT_CATCH
 
-Result<std::vector<PassTiming>> RaySteps::timings() {
-    return passTimings(*state_);
-}
+Result<std::vector<PassTiming>> RaySteps::timings() try { return passTimings(*state_); }
+GLINT_CATCH
 
 package::Tracer RaySteps::tracer() const {
     return state_->choice.tracer;

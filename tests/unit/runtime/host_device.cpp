@@ -93,7 +93,7 @@ bool HostDevice::createDevice() {
     if (instance_.CreateDevice(handles_.physicalDevice, &info, nullptr, &handles_.device) != VK_SUCCESS) {
         return false;
     }
-    device_ = *loadDeviceTable(instance_, handles_.device, handles_.debugUtils);
+    device_ = *loadDeviceTable(instance_, handles_);
     device_.GetDeviceQueue(handles_.device, 0, 0, &handles_.queue);
     return true;
 }

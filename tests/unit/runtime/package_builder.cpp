@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 #include <system_error>
+#include <utility>
 
 namespace glint::test {
 
@@ -151,6 +152,19 @@ PackageSpec makeDeviceSpec() {
     return makeWithModules([](const std::string& name) { return readTestShader(name); });
 }
 
+PackageSpec makeOtherSpec() {
+    PackageSpec spec = makeDeviceSpec();
+    spec.caseCount = 2;
+    spec.cases.push_back({0, 0, "Other"});
+    const auto first = std::ranges::find(spec.modules, package::roleNamed("ShadeCase"),
+                                         [](const ModuleSpec& module) { return module.key.role; });
+    ModuleSpec second = *first;
+    second.key.index = 1;
+    spec.modules.insert(first + 1, std::move(second));
+    spec.primitives[0].shaderId = 1;
+    return spec;
+}
+
 std::vector<std::uint32_t> readTestShader(const std::string& name) {
     std::ifstream stream(std::filesystem::path(GLINT_TEST_SHADERS) / (name + ".spv"), std::ios::binary);
     const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
@@ -197,6 +211,7 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     header.tracers = spec.tracers;
     header.alpha = spec.alpha;
     header.precision = spec.precision;
+    header.environmentMap = spec.environmentMap ? 1 : 0;
     header.caseCount = spec.caseCount;
     header.maxBounces = 1;
     header.interopHash = spec.interopHash;

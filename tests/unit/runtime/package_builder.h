@@ -58,6 +58,7 @@ struct PackageSpec {
     std::uint32_t tracers = package::kTracerRayQuery;
     package::AlphaPolicy alpha = package::AlphaPolicy::Opaque;
     package::ShadingPrecision precision = package::ShadingPrecision::Single;
+    bool environmentMap = false;
     std::uint32_t caseCount = 0;
     std::uint32_t interopHash = 0;
     std::vector<ModuleSpec> modules;
@@ -76,6 +77,8 @@ struct PackageSpec {
 PackageSpec makeSpec();
 // Returns the same with modules of the folder into which tests/unit/runtime/shaders was compiled.
 PackageSpec makeDeviceSpec();
+// Returns makeDeviceSpec() with a second case, which shades the primitive.
+PackageSpec makeOtherSpec();
 // Returns the words of a module of that folder, or nothing if there is none.
 std::vector<std::uint32_t> readTestShader(const std::string& name);
 

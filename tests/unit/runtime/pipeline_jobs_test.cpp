@@ -74,7 +74,8 @@ TEST(BackgroundPipelines, CasesWithMostHitsComeFirst) {
             return UniquePipeline();
         }));
     }
-    BackgroundPipelines background(std::move(planned), 0, 1);
+    Jobs jobs;
+    BackgroundPipelines background(jobs, std::move(planned), 0, 1);
     begun.get_future().wait();
     const std::vector<std::uint32_t> missesAndHits{1000, 0, 5, 0, 9};
     background.setHits(missesAndHits);
@@ -108,7 +109,8 @@ TEST(BackgroundPipelines, FixedPassesComeFirstAndTogether) {
                      }};
         fixed.turn = PipelineTurn::Fixed;
     }
-    BackgroundPipelines background(std::move(planned), 0, 1);
+    Jobs jobs;
+    BackgroundPipelines background(jobs, std::move(planned), 0, 1);
     background.setPaused(true);
     EXPECT_TRUE(background.takeFixed().empty());
     go.set_value();
@@ -131,7 +133,8 @@ TEST(BackgroundPipelines, AFixedPassThatFailsKeepsTheOthersBack) {
         fixed.job = job(0, 1, fails);
         fixed.turn = PipelineTurn::Fixed;
     }
-    BackgroundPipelines background(std::move(planned), 0, 1);
+    Jobs jobs;
+    BackgroundPipelines background(jobs, std::move(planned), 0, 1);
     background.wait();
     EXPECT_TRUE(background.takeFixed().empty());
     EXPECT_TRUE(background.progress().error);
@@ -144,7 +147,8 @@ TEST(BackgroundPipelines, ErrorsAreToldAndTheRestIsMade) {
             return id == 1 ? Result<UniquePipeline>(makeError("job", "", "failed")) : UniquePipeline();
         }));
     }
-    BackgroundPipelines background(std::move(planned), 0, 2);
+    Jobs jobs;
+    BackgroundPipelines background(jobs, std::move(planned), 0, 2);
     background.wait();
     EXPECT_EQ(background.take(9).size(), 2U);
     const PipelineProgress progress = background.progress();
