@@ -1,5 +1,6 @@
 #include "verify/concrete.h"
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -95,19 +96,27 @@ double evaluateInteger(const Node& node, double a, double b) {
                                  : static_cast<double>(y > 31U ? 0U : x >> y);
         case Op::BitReverse:
             return asInteger(reverseBits(x), node.isSigned);
+        case Op::FromInteger:
+            return toFormat(a, node.format);
+        case Op::OfBits:
+            return std::bit_cast<float>(x);
+        case Op::ChangeSign:
+            return asInteger(x, node.isSigned);
         default:
             return 0.0;
     }
-}
-
-double signOf(double a) {
-    return a > 0.0 ? 1.0 : a < 0.0 ? -1.0 : 0.0;
 }
 
 double splitHigh(double a) {
     const auto x = static_cast<float>(a);
     const float big = 4097.0F * x;
     return big - (big - x);
+}
+
+double sumError(double a, double b, Format format) {
+    const double sum = toFormat(a + b, format);
+    const double part = toFormat(sum - a, format);
+    return toFormat(toFormat(a - toFormat(sum - part, format), format) + toFormat(b - part, format), format);
 }
 
 double mixOf(const Node& node, double x, double y, double t) {
@@ -134,10 +143,31 @@ bool holds(Relation relation, double a, double b) {
     return false;
 }
 
+// Comparisons, and operations on truth values.
+bool isTrue(Op op, double a, double b) {
+    switch (op) {
+        case Op::Less:
+            return a < b;
+        case Op::LessEqual:
+            return a <= b;
+        case Op::Equal:
+            return a == b;
+        case Op::And:
+            return a > 0.0 && b > 0.0;
+        case Op::Or:
+            return a > 0.0 || b > 0.0;
+        default:
+            return a == 0.0;
+    }
+}
+
 }  // namespace
 
 double evaluateNode(const Node& node, double a, double b, double c) {
     const Format format = node.format;
+    if (isBound(node.op)) {
+        return std::array{a, b, c}[boundedOperand(node.op)];
+    }
     switch (node.op) {
         case Op::Constant:
         case Op::Input:
@@ -191,52 +221,23 @@ double evaluateNode(const Node& node, double a, double b, double c) {
             return toFormat(a - splitHigh(a), format);
         case Op::ProductError:
             return toFormat(a * b - toFormat(a * b, format), format);
-        case Op::SumError: {
-            const double sum = toFormat(a + b, format);
-            const double part = toFormat(sum - a, format);
-            return toFormat(toFormat(a - toFormat(sum - part, format), format) + toFormat(b - part, format),
-                            format);
-        }
-        case Op::CircleSum:
-            return c;
-        case Op::SquareOfRoot:
-        case Op::SphereSum:
-            return b;
-        case Op::Bounded:
-        case Op::UnitSum:
-        case Op::WeightedUnit:
-        case Op::UnitQuotient:
-        case Op::TriangleSum:
-        case Op::MirroredSum:
-        case Op::Share:
-        case Op::PartOfUnit:
-            return a;
+        case Op::SumError:
+            return sumError(a, b, format);
         case Op::Less:
-            return a < b ? 1.0 : 0.0;
         case Op::LessEqual:
-            return a <= b ? 1.0 : 0.0;
         case Op::Equal:
-            return a == b ? 1.0 : 0.0;
         case Op::And:
-            return a > 0.0 && b > 0.0 ? 1.0 : 0.0;
         case Op::Or:
-            return a > 0.0 || b > 0.0 ? 1.0 : 0.0;
         case Op::Not:
-            return a == 0.0 ? 1.0 : 0.0;
+            return isTrue(node.op, a, b) ? 1.0 : 0.0;
         case Op::Select:
             return a > 0.0 ? b : c;
         case Op::Refine:
             return holds(node.relation, a, b) ? a : std::nan("");
         case Op::ToInteger:
             return std::trunc(a);
-        case Op::FromInteger:
-            return toFormat(a, format);
         case Op::BitsOf:
             return asInteger(std::bit_cast<std::uint32_t>(static_cast<float>(a)), node.isSigned);
-        case Op::OfBits:
-            return std::bit_cast<float>(bitsOf(a));
-        case Op::ChangeSign:
-            return asInteger(bitsOf(a), node.isSigned);
         default:
             return evaluateInteger(node, a, b);
     }

@@ -10,6 +10,10 @@
 
 namespace glint::verify {
 
+inline double signOf(double a) {
+    return a > 0.0 ? 1.0 : a < 0.0 ? -1.0 : 0.0;
+}
+
 // The value of an operation for values of its operands: floats of the node's format, integers and truth
 // values.
 double evaluateNode(const Node& node, double a, double b, double c);

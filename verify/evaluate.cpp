@@ -81,6 +81,43 @@ double after(double value, Format format) {
     return -before(-value, format);
 }
 
+// A conversion between floats and integers.
+Interval converted(const Node& node, const Interval& a, Hazard& hazard) {
+    const Interval all = rangeOfInteger(node.isSigned);
+    switch (node.op) {
+        case Op::ToInteger: {
+            const Interval truncated = monotone(a, std::trunc);
+            if (!truncated.isWithin(all)) {
+                hazard |= Hazard::Conversion;
+            }
+            const Interval held = meet(truncated, all);
+            return held.isEmpty() ? all : held;
+        }
+        case Op::FromInteger: {
+            Hazard none = Hazard::None;
+            return Arithmetic(node.format).convert(a, none);
+        }
+        case Op::BitsOf:
+            if (a.low >= 0.0) {
+                return {bitsOf(a.low, node.isSigned), bitsOf(a.high, node.isSigned)};
+            }
+            return a.high < 0.0 ? Interval{bitsOf(a.high, node.isSigned), bitsOf(a.low, node.isSigned)} : all;
+        case Op::OfBits: {
+            constexpr double kInfinityBits = 0x7F800000;
+            if (a.low >= 0.0 && a.high < kInfinityBits) {
+                return {ofBits(a.low), ofBits(a.high)};
+            }
+            if (a.low >= kLeastInt && a.high < kLeastInt + kInfinityBits && a.high < 0.0) {
+                return {ofBits(a.high), ofBits(a.low)};
+            }
+            hazard |= Hazard::Overflow;
+            return {};
+        }
+        default:
+            return all;
+    }
+}
+
 }  // namespace
 
 const char* nameOf(Hazard hazard) {
@@ -206,6 +243,8 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
             return Interval::of(node.value);
         case Op::Input:
             return inputOf(node);
+        case Op::Merge:
+            return merged(node);
         case Op::Add:
             return arithmetic.add(a, b, hazard);
         case Op::Subtract:
@@ -221,12 +260,7 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
         case Op::Absolute:
             return absolute(a);
         case Op::Sign:
-            return {a.low > 0.0   ? 1.0
-                    : a.low < 0.0 ? -1.0
-                                  : 0.0,
-                    a.high > 0.0   ? 1.0
-                    : a.high < 0.0 ? -1.0
-                                   : 0.0};
+            return monotone(a, signOf);
         case Op::Floor:
             return monotone(a, std::floor);
         case Op::Ceil:
@@ -266,74 +300,53 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
             return roundingError(a.magnitude() * b.magnitude());
         case Op::SumError:
             return roundingError(std::max(std::abs(a.low + b.low), std::abs(a.high + b.high)));
-        case Op::CircleSum: {
-            // The sine, the cosine and the products on the way are off by less than this.
-            Hazard ignored = Hazard::None;
-            const Interval squares = hull(arithmetic.square(a, ignored), arithmetic.square(b, ignored));
-            const double error = 32.0 * unitRoundoff(node.format);
-            return meet(c,
-                        arithmetic.convert({squares.low * (1.0 - error) - 8.0 * halfDenormal(node.format),
-                                            squares.high * (1.0 + error) + 8.0 * halfDenormal(node.format)},
-                                           ignored));
-        }
-        case Op::SquareOfRoot: {
-            Hazard ignored = Hazard::None;
-            const double error = 4.0 * unitRoundoff(node.format);
-            return meet(b, arithmetic.convert({a.low * (1.0 - error) - 2.0 * halfDenormal(node.format),
-                                               a.high * (1.0 + error) + 2.0 * halfDenormal(node.format)},
+        default:
+            return isBound(node.op) ? bounded(node) : choice(node, hazard);
+    }
+}
+
+Interval BoxEvaluator::bounded(const Node& node) {
+    const Arithmetic arithmetic(node.format == Format::Half ? Format::Half : Format::Single);
+    const double unit = unitRoundoff(node.format);
+    const Interval& a = node.a == kNoNode ? kFalse : of(node.a);
+    const Interval& b = node.b == kNoNode ? kFalse : of(node.b);
+    const Interval& c = node.c == kNoNode ? kFalse : of(node.c);
+    // Narrows a value that lies in `exact` but for relative and absolute errors.
+    const auto narrowed = [&](const Interval& value, const Interval& exact, double relative,
+                              double absolute) {
+        Hazard ignored = Hazard::None;
+        return meet(value, arithmetic.convert({exact.low * (1.0 - relative) - absolute,
+                                               exact.high * (1.0 + relative) + absolute},
                                               ignored));
-        }
+    };
+    const auto square = [&](const Interval& x) {
+        Hazard ignored = Hazard::None;
+        return arithmetic.square(x, ignored);
+    };
+    switch (node.op) {
+        case Op::CircleSum:
+            // The sine, the cosine and the products on the way are off by less than this.
+            return narrowed(c, hull(square(a), square(b)), 32.0 * unit, 8.0 * halfDenormal(node.format));
+        case Op::SquareOfRoot:
+            return narrowed(b, a, 4.0 * unit, 2.0 * halfDenormal(node.format));
+        case Op::SphereSum:
+            return narrowed(b, square(a), 40.0 * unit, 0.0);
+        case Op::WeightedUnit:
+            // Each weight and each square is rounded a few times, and the sum twice.
+            return narrowed(a, {b.low, c.high}, 40.0 * unit, 0x1p-140);
         case Op::Bounded: {
             // The squared lengths are rounded down by less than this, and the sum up.
-            const double length =
-                std::sqrt(std::max(b.high, 0.0)) * (1.0 + 16.0 * unitRoundoff(node.format)) + 0x1p-60;
+            const double length = std::sqrt(std::max(b.high, 0.0)) * (1.0 + 16.0 * unit) + 0x1p-60;
             return meet(a, {roundDown(-length, node.format), roundUp(length, node.format)});
-        }
-        case Op::SphereSum: {
-            Hazard ignored = Hazard::None;
-            const double error = 40.0 * unitRoundoff(node.format);
-            const Interval radius2 = arithmetic.square(a, ignored);
-            return meet(
-                b, arithmetic.convert({radius2.low * (1.0 - error), radius2.high * (1.0 + error)}, ignored));
         }
         case Op::UnitSum:
         case Op::PartOfUnit: {
             // As for normalized(), the squared length must not underflow or overflow.
-            const double error = 32.0 * unitRoundoff(node.format);
+            const double error = 32.0 * unit;
             if (b.low < leastSquaredLength(node.value) || !b.isFinite() || node.format == Format::Half) {
                 return a;
             }
             return meet(a, {node.op == Op::UnitSum ? 1.0 - error : 0.0, 1.0 + error});
-        }
-        case Op::WeightedUnit: {
-            // Each weight and each square is rounded a few times, and the sum twice.
-            const double error = 40.0 * unitRoundoff(node.format);
-            Hazard ignored = Hazard::None;
-            return meet(
-                a, arithmetic.convert({b.low * (1.0 - error) - 0x1p-140, c.high * (1.0 + error) + 0x1p-140},
-                                      ignored));
-        }
-        case Op::Share: {
-            if (b.low < 0.0 || c.low < 0.0 || !b.isFinite()) {
-                return a;
-            }
-            // A quotient by a sum that is not 0 does not overflow.
-            if (const Node& quotient = program_.nodes[node.a];
-                quotient.op == Op::Divide && of(quotient.b).low > 0.0) {
-                std::erase_if(findings_, [&](const Finding& finding) {
-                    return finding.node == node.a && finding.hazard == Hazard::Overflow;
-                });
-            }
-            // Each term and the sum are rounded some ten times, all in the same direction at worst.
-            const double error = 48.0 * unitRoundoff(node.format);
-            const double least = b.low > 0.0 && std::isfinite(c.high) ? b.low / (b.low + c.high) : 0.0;
-            const double greatest = b.high > 0.0 ? b.high / (b.high + c.low) : 0.0;
-            Hazard ignored = Hazard::None;
-            // Small terms may have lost digits below the smallest normal number.
-            const double lost = b.low + c.low >= 0x1p-100 ? 0x1p-40 : 1.0;
-            return meet(a, arithmetic.convert({std::max(least * (1.0 - error) - lost, 0.0),
-                                               std::min(greatest + lost, 1.0) * (1.0 + error)},
-                                              ignored));
         }
         case Op::MirroredSum: {
             // The result is |v|² + 4 (v·h)² (|h|² - 1), where (v·h)² <= |v|² |h|²; rounding is relative to
@@ -341,16 +354,25 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
             const double most = b.high * (1.0 + 2.0 * c.high) * (1.0 + 2.0 * c.high);
             const double error =
                 4.0 * b.high * c.high * std::max(std::abs(c.low - 1.0), std::abs(c.high - 1.0)) +
-                64.0 * unitRoundoff(node.format) * most;
+                64.0 * unit * most;
             if (!std::isfinite(error) || b.low < 0.0 || c.low < 0.0) {
                 return a;
             }
             return meet(a, {roundDown(b.low - error, node.format), roundUp(b.high + error, node.format)});
         }
         case Op::TriangleSum:
-            return meet(a, {a.low, roundUp(b.high * (1.0 + 40.0 * unitRoundoff(node.format)), node.format)});
+            return meet(a, {a.low, roundUp(b.high * (1.0 + 40.0 * unit), node.format)});
         case Op::UnitQuotient:
             return unitQuotient(node);
+        default:
+            return share(node);
+    }
+}
+
+Interval BoxEvaluator::choice(const Node& node, Hazard& hazard) {
+    const Interval& a = of(node.a);
+    const Interval& b = node.b == kNoNode ? kFalse : of(node.b);
+    switch (node.op) {
         case Op::Less:
         case Op::LessEqual:
         case Op::Equal:
@@ -368,13 +390,42 @@ Interval BoxEvaluator::valueOf(const Node& node, Hazard& hazard) {
             return notOf(a);
         case Op::Select:
             return selected(node);
-        case Op::Merge:
-            return merged(node);
         case Op::Refine:
             return refined(node);
         default:
             return integer(node, hazard);
     }
+}
+
+// A quotient by a sum that is not 0 does not overflow.
+void BoxEvaluator::forgiveOverflow(NodeId id) {
+    std::erase_if(findings_, [&](const Finding& finding) {
+        return finding.node == id && finding.hazard == Hazard::Overflow;
+    });
+}
+
+Interval BoxEvaluator::share(const Node& node) {
+    const Interval& a = of(node.a);
+    const Interval& b = of(node.b);
+    const Interval& c = of(node.c);
+    if (b.low < 0.0 || c.low < 0.0 || !b.isFinite()) {
+        return a;
+    }
+    if (const Node& quotient = program_.nodes[node.a];
+        quotient.op == Op::Divide && of(quotient.b).low > 0.0) {
+        forgiveOverflow(node.a);
+    }
+    // Each term and the sum are rounded some ten times, all in the same direction at worst.
+    const double error = 48.0 * unitRoundoff(node.format);
+    const double least = b.low > 0.0 && std::isfinite(c.high) ? b.low / (b.low + c.high) : 0.0;
+    const double greatest = b.high > 0.0 ? b.high / (b.high + c.low) : 0.0;
+    // Small terms may have lost digits below the smallest normal number.
+    const double lost = b.low + c.low >= 0x1p-100 ? 0x1p-40 : 1.0;
+    Hazard ignored = Hazard::None;
+    return meet(a, Arithmetic(node.format)
+                       .convert({std::max(least * (1.0 - error) - lost, 0.0),
+                                 std::min(greatest + lost, 1.0) * (1.0 + error)},
+                                ignored));
 }
 
 Interval BoxEvaluator::unitQuotient(const Node& node) {
@@ -392,9 +443,7 @@ Interval BoxEvaluator::unitQuotient(const Node& node) {
         result = meet(result,
                       Arithmetic(node.format).normalized(of(isFirst ? quotient.a : quotient.b), of(node.b)));
     }
-    std::erase_if(findings_, [&](const Finding& finding) {
-        return finding.node == node.a && finding.hazard == Hazard::Overflow;
-    });
+    forgiveOverflow(node.a);
     return result;
 }
 
@@ -499,37 +548,8 @@ Interval BoxEvaluator::integer(const Node& node, Hazard& hazard) const {
     const Interval& a = of(node.a);
     const Interval b = node.b == kNoNode ? kFalse : of(node.b);
     const Interval all = rangeOfInteger(node.isSigned);
-    switch (node.op) {
-        case Op::ToInteger: {
-            const Interval truncated = monotone(a, std::trunc);
-            if (!truncated.isWithin(all)) {
-                hazard |= Hazard::Conversion;
-            }
-            const Interval held = meet(truncated, all);
-            return held.isEmpty() ? all : held;
-        }
-        case Op::FromInteger: {
-            Hazard none = Hazard::None;
-            return Arithmetic(node.format).convert(a, none);
-        }
-        case Op::BitsOf:
-            if (a.low >= 0.0) {
-                return {bitsOf(a.low, node.isSigned), bitsOf(a.high, node.isSigned)};
-            }
-            return a.high < 0.0 ? Interval{bitsOf(a.high, node.isSigned), bitsOf(a.low, node.isSigned)} : all;
-        case Op::OfBits: {
-            constexpr double kInfinityBits = 0x7F800000;
-            if (a.low >= 0.0 && a.high < kInfinityBits) {
-                return {ofBits(a.low), ofBits(a.high)};
-            }
-            if (a.low >= kLeastInt && a.high < kLeastInt + kInfinityBits && a.high < 0.0) {
-                return {ofBits(a.high), ofBits(a.low)};
-            }
-            hazard |= Hazard::Overflow;
-            return {};
-        }
-        default:
-            break;
+    if (node.op >= Op::ToInteger && node.op <= Op::OfBits) {
+        return converted(node, a, hazard);
     }
     if (a.isPoint() && b.isPoint()) {
         return Interval::of(evaluateNode(node, a.low, b.low, 0.0));

@@ -48,7 +48,11 @@ private:
     void evaluateForm(NodeId id);
     Interval valueOf(const Node& node, Hazard& hazard);
     Interval inputOf(const Node& node) const;
+    Interval bounded(const Node& node);
+    Interval choice(const Node& node, Hazard& hazard);
+    Interval share(const Node& node);
     Interval unitQuotient(const Node& node);
+    void forgiveOverflow(NodeId id);
     Interval difference(const Node& node, const Interval& plain) const;
     Interval compared(const Node& node);
     Interval merged(const Node& node) const;
@@ -56,6 +60,10 @@ private:
     Interval integer(const Node& node, Hazard& hazard) const;
     Interval selected(const Node& node) const;
     bool formOf(const Node& node, Affine& result);
+    void formOfInput(const Node& node, Affine& result);
+    void formOfMix(const Node& node, Affine& result);
+    void formOfNormalized(const Node& node, Affine& result);
+    void formOfBound(const Node& node, Affine& result);
     void formOfFunction(const Node& node, Affine& result);
     void formOfMerge(const Node& node, Affine& result);
     void formOfPower(const Node& node, Affine& result);

@@ -114,23 +114,60 @@ void BoxEvaluator::formOfPower(const Node& node, Affine& result) {
     }
 }
 
+void BoxEvaluator::formOfInput(const Node& node, Affine& result) {
+    const auto found = std::find(symbols_.begin(), symbols_.end(), static_cast<std::size_t>(node.value));
+    result.set(inputOf(node));
+    if (found != symbols_.end()) {
+        result.slopes[static_cast<std::size_t>(found - symbols_.begin())] = result.error;
+        result.error = 0.0;
+    }
+}
+
+// a + c (b - a), with some more roundings.
+void BoxEvaluator::formOfMix(const Node& node, Affine& result) {
+    Affine difference;
+    difference.slopes = scratch_[0];
+    addAffine(forms_[node.b], forms_[node.a], -1.0, difference);
+    Affine product;
+    product.slopes = scratch_[1];
+    multiplyAffine(difference, forms_[node.c], product);
+    addAffine(forms_[node.a], product, 1.0, result);
+    if (result.isValid) {
+        result.error += 0x1p-21 * (node.format == Format::Half ? 0x1p13 : 1.0) *
+                        (of(node.a).magnitude() + of(node.b).magnitude()) * (1.0 + of(node.c).magnitude());
+    }
+}
+
+void BoxEvaluator::formOfNormalized(const Node& node, Affine& result) {
+    Affine scale;
+    scale.slopes = scratch_[0];
+    applyAffine(Function::InverseSqrt, forms_[node.c], of(node.c), scale);
+    if (scale.isValid) {
+        multiplyAffine(forms_[node.a], scale, result);
+    }
+}
+
+void BoxEvaluator::formOfBound(const Node& node, Affine& result) {
+    if (isRoundedSquare(node)) {
+        squareAffine(forms_[node.a], result);
+        roundAffine(result, node.format, node.op == Op::SphereSum ? 20.0 : 16.0);
+    } else if (node.op == Op::SquareOfRoot) {
+        copyAffine(forms_[node.a], result);
+        roundAffine(result, node.format, 4.0);
+    } else {
+        copyAffine(forms_[node.op == Op::CircleSum ? node.c : node.a], result);
+    }
+}
+
 // Returns whether there is a rule for the operation.
 bool BoxEvaluator::formOf(const Node& node, Affine& result) {
     const auto form = [this](NodeId id) -> const Affine& { return forms_[id]; };
     result.isValid = false;
     double furtherUnits = 0.0;
     switch (node.op) {
-        case Op::Input: {
-            const auto found =
-                std::find(symbols_.begin(), symbols_.end(), static_cast<std::size_t>(node.value));
-            const Interval range = inputOf(node);
-            result.set(range);
-            if (found != symbols_.end()) {
-                result.slopes[static_cast<std::size_t>(found - symbols_.begin())] = result.error;
-                result.error = 0.0;
-            }
+        case Op::Input:
+            formOfInput(node, result);
             return true;
-        }
         case Op::Add:
         case Op::Subtract:
             addAffine(form(node.a), form(node.b), node.op == Op::Add ? 1.0 : -1.0, result);
@@ -159,32 +196,13 @@ bool BoxEvaluator::formOf(const Node& node, Affine& result) {
             maximumAffine(form(node.a), form(node.b), node.op == Op::Maximum ? 1.0 : -1.0, scratch_[0],
                           result);
             return true;
-        case Op::Mix: {
-            // a + c (b - a), with some more roundings.
-            Affine difference;
-            difference.slopes = scratch_[0];
-            addAffine(form(node.b), form(node.a), -1.0, difference);
-            Affine product;
-            product.slopes = scratch_[1];
-            multiplyAffine(difference, form(node.c), product);
-            addAffine(form(node.a), product, 1.0, result);
-            if (result.isValid) {
-                result.error += 0x1p-21 * (node.format == Format::Half ? 0x1p13 : 1.0) *
-                                (of(node.a).magnitude() + of(node.b).magnitude()) *
-                                (1.0 + of(node.c).magnitude());
-            }
+        case Op::Mix:
+            formOfMix(node, result);
             break;
-        }
-        case Op::Normalized: {
-            Affine scale;
-            scale.slopes = scratch_[0];
-            applyAffine(Function::InverseSqrt, form(node.c), of(node.c), scale);
-            if (scale.isValid) {
-                multiplyAffine(form(node.a), scale, result);
-            }
+        case Op::Normalized:
+            formOfNormalized(node, result);
             furtherUnits = 3.0;
             break;
-        }
         case Op::Apply:
             formOfFunction(node, result);
             furtherUnits = node.function == Function::Sqrt ? 0.0 : 2.0;
@@ -194,32 +212,8 @@ bool BoxEvaluator::formOf(const Node& node, Affine& result) {
             furtherUnits = 2.0;
             break;
         case Op::Refine:
-        case Op::Bounded:
-        case Op::UnitSum:
-        case Op::WeightedUnit:
-        case Op::UnitQuotient:
-        case Op::TriangleSum:
-        case Op::MirroredSum:
-        case Op::Share:
-        case Op::PartOfUnit:
             copyAffine(form(node.a), result);
             return true;
-        case Op::CircleSum:
-            if (node.a == node.b) {
-                squareAffine(form(node.a), result);
-                furtherUnits = 16.0;
-                break;
-            }
-            copyAffine(form(node.c), result);
-            return true;
-        case Op::SphereSum:
-            squareAffine(form(node.a), result);
-            furtherUnits = 20.0;
-            break;
-        case Op::SquareOfRoot:
-            copyAffine(form(node.a), result);
-            furtherUnits = 4.0;
-            break;
         case Op::Select:
         case Op::Merge:
             formOfMerge(node, result);
@@ -232,7 +226,10 @@ bool BoxEvaluator::formOf(const Node& node, Affine& result) {
             }
             break;
         default:
-            return false;
+            if (isBound(node.op)) {
+                formOfBound(node, result);
+            }
+            return isBound(node.op);
     }
     roundAffine(result, node.format, furtherUnits);
     return true;

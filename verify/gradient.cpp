@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace glint::verify {
 namespace {
@@ -70,6 +71,63 @@ Interval sineOf(const Interval& a) {
 
 constexpr Interval kOne{1.0, 1.0};
 
+// The derivative of z = function(a).
+Interval slopeOf(Function function, const Interval& a, const Interval& z) {
+    switch (function) {
+        case Function::Sqrt:
+            return times({0.5, 0.5}, inverse(z));
+        case Function::InverseSqrt:
+            return times({-0.5, -0.5}, times(z, inverse(a)));
+        case Function::Exp:
+            return z;
+        case Function::Exp2:
+            return times({0.69314718, 0.69314719}, z);
+        case Function::Log:
+            return inverse(a);
+        case Function::Log2:
+            return times({1.44269504, 1.44269505}, inverse(a));
+        case Function::Sin:
+            return cosineOf(a);
+        case Function::Cos:
+            return negative(sineOf(a));
+        case Function::Tan:
+            return plusOne(squared(z), 1.0);
+        case Function::Atan:
+            return inverse(plusOne(squared(a), 1.0));
+        case Function::Asin:
+            return inverse(squareRoot(plusOne(squared(a), -1.0)));
+        case Function::Acos:
+            return negative(inverse(squareRoot(plusOne(squared(a), -1.0))));
+    }
+    return {};
+}
+
+// The derivative of an operation z on one operand. Integers and steps have none: they are points, or they
+// jump.
+std::optional<Interval> slopeOf(const Node& node, const Interval& a, const Interval& z) {
+    switch (node.op) {
+        case Op::Square:
+            return times({2.0, 2.0}, a);
+        case Op::Negate:
+            return Interval{-1.0, -1.0};
+        case Op::Absolute:
+            return Interval{a.low >= 0.0 ? 1.0 : -1.0, a.high <= 0.0 ? -1.0 : 1.0};
+        case Op::Apply:
+            return slopeOf(node.function, a, z);
+        case Op::Convert:
+            // One rounding of 16 bits exceeds the slack above.
+            return node.format == Format::Half ? Interval{1.0 - 0x1p-10, 1.0 + 0x1p-10} : kOne;
+        case Op::Refine:
+            return kOne;
+        case Op::SplitHigh:
+            return Interval{1.0 - 0x1p-12, 1.0 + 0x1p-12};
+        case Op::SplitLow:
+            return Interval{-0x1p-12, 0x1p-12};
+        default:
+            return std::nullopt;
+    }
+}
+
 }  // namespace
 
 void GradientEvaluator::give(NodeId to, const Interval& adjoint, const Interval& factor) {
@@ -93,48 +151,52 @@ bool GradientEvaluator::run(const BoxEvaluator& values, NodeId of, std::size_t i
     return true;
 }
 
-bool GradientEvaluator::spreadFunction(const BoxEvaluator& values, const Node& node, const Interval& z,
+void GradientEvaluator::spreadExtremum(const Node& node, const Interval& a, const Interval& b,
                                        const Interval& adjoint) {
-    const Interval& a = values.value(node.a);
-    switch (node.function) {
-        case Function::Sqrt:
-            give(node.a, adjoint, times({0.5, 0.5}, inverse(z)));
-            return true;
-        case Function::InverseSqrt:
-            give(node.a, adjoint, times({-0.5, -0.5}, times(z, inverse(a))));
-            return true;
-        case Function::Exp:
-            give(node.a, adjoint, z);
-            return true;
-        case Function::Exp2:
-            give(node.a, adjoint, times({0.69314718, 0.69314719}, z));
-            return true;
-        case Function::Log:
-            give(node.a, adjoint, inverse(a));
-            return true;
-        case Function::Log2:
-            give(node.a, adjoint, times({1.44269504, 1.44269505}, inverse(a)));
-            return true;
-        case Function::Sin:
-            give(node.a, adjoint, cosineOf(a));
-            return true;
-        case Function::Cos:
-            give(node.a, adjoint, negative(sineOf(a)));
-            return true;
-        case Function::Tan:
-            give(node.a, adjoint, plusOne(squared(z), 1.0));
-            return true;
-        case Function::Atan:
-            give(node.a, adjoint, inverse(plusOne(squared(a), 1.0)));
-            return true;
-        case Function::Asin:
-        case Function::Acos: {
-            const Interval slope = inverse(squareRoot(plusOne(squared(a), -1.0)));
-            give(node.a, adjoint, node.function == Function::Asin ? slope : negative(slope));
-            return true;
-        }
+    const bool isMaximum = node.op == Op::Maximum;
+    const bool isA = isMaximum ? a.low >= b.high : a.high <= b.low;
+    const bool isB = isMaximum ? b.low >= a.high : b.high <= a.low;
+    const Interval either{0.0, 1.0};
+    give(node.a, adjoint, isA ? kOne : isB ? kFalse : either);
+    give(node.b, adjoint, isA ? kFalse : isB ? kOne : either);
+}
+
+bool GradientEvaluator::spreadPower(const Node& node, const Interval& a, const Interval& b, const Interval& z,
+                                    const Interval& adjoint) {
+    if (a.low <= 0.0) {
+        return false;
     }
-    return false;
+    give(node.a, adjoint, times(times(b, z), inverse(a)));
+    give(node.b, adjoint, times(z, widened({std::log(a.low), std::log(a.high)})));
+    return true;
+}
+
+bool GradientEvaluator::spreadChoice(const BoxEvaluator& values, const Node& node, const Interval& adjoint) {
+    const NodeId only = onlyChoice(values, node);
+    if (only != kNoNode) {
+        give(only, adjoint, kOne);
+    }
+    return only != kNoNode;
+}
+
+NodeId GradientEvaluator::onlyChoice(const BoxEvaluator& values, const Node& node) const {
+    if (node.op == Op::Select) {
+        const Interval& condition = values.value(node.a);
+        return condition.isTrue() ? node.b : condition.isFalse() ? node.c : kNoNode;
+    }
+    NodeId only = kNoNode;
+    for (std::uint32_t k = 0; k < node.count; ++k) {
+        const Edge& edge = program_.edges[node.first + k];
+        const Interval guard = edge.guard == kNoNode ? kTrue : values.value(edge.guard);
+        if (guard.isFalse() || guard.isEmpty()) {
+            continue;
+        }
+        if (only != kNoNode) {
+            return kNoNode;
+        }
+        only = edge.value;
+    }
+    return only;
 }
 
 bool GradientEvaluator::spread(const BoxEvaluator& values, NodeId id) {
@@ -142,6 +204,12 @@ bool GradientEvaluator::spread(const BoxEvaluator& values, NodeId id) {
     const Interval adjoint = adjoints_[id];
     const Interval& z = values.value(id);
     const auto value = [&](NodeId of) -> const Interval& { return values.value(of); };
+    if (isBound(node.op)) {
+        const bool isSquare = isRoundedSquare(node);
+        give(node.op == Op::CircleSum && !isSquare ? node.c : node.a, adjoint,
+             isSquare ? times({2.0, 2.0}, value(node.a)) : kOne);
+        return true;
+    }
     switch (node.op) {
         case Op::Constant:
             return true;
@@ -161,46 +229,18 @@ bool GradientEvaluator::spread(const BoxEvaluator& values, NodeId id) {
             give(node.a, adjoint, value(node.b));
             give(node.b, adjoint, value(node.a));
             return true;
-        case Op::Square:
-            give(node.a, adjoint, times({2.0, 2.0}, value(node.a)));
-            return true;
         case Op::Divide: {
             const Interval over = inverse(value(node.b));
             give(node.a, adjoint, over);
             give(node.b, adjoint, negative(times(z, over)));
             return true;
         }
-        case Op::Negate:
-            give(node.a, adjoint, {-1.0, -1.0});
-            return true;
-        case Op::Absolute: {
-            const Interval& a = value(node.a);
-            give(node.a, adjoint, {a.low >= 0.0 ? 1.0 : -1.0, a.high <= 0.0 ? -1.0 : 1.0});
-            return true;
-        }
-        case Op::Apply:
-            return spreadFunction(values, node, z, adjoint);
-        case Op::Power: {
-            const Interval& a = value(node.a);
-            if (a.low <= 0.0) {
-                return false;
-            }
-            give(node.a, adjoint, times(times(value(node.b), z), inverse(a)));
-            give(node.b, adjoint, times(z, widened({std::log(a.low), std::log(a.high)})));
-            return true;
-        }
+        case Op::Power:
+            return spreadPower(node, value(node.a), value(node.b), z, adjoint);
         case Op::Minimum:
-        case Op::Maximum: {
-            const Interval& a = value(node.a);
-            const Interval& b = value(node.b);
-            const bool isMaximum = node.op == Op::Maximum;
-            const bool isA = isMaximum ? a.low >= b.high : a.high <= b.low;
-            const bool isB = isMaximum ? b.low >= a.high : b.high <= a.low;
-            const Interval either{0.0, 1.0};
-            give(node.a, adjoint, isA ? kOne : isB ? kFalse : either);
-            give(node.b, adjoint, isA ? kFalse : isB ? kOne : either);
+        case Op::Maximum:
+            spreadExtremum(node, value(node.a), value(node.b), adjoint);
             return true;
-        }
         case Op::Mix:
         case Op::Lerp:
             give(node.a, adjoint, plusOne(value(node.c), -1.0));
@@ -217,44 +257,6 @@ bool GradientEvaluator::spread(const BoxEvaluator& values, NodeId id) {
             give(node.b, adjoint, times({-0.5, -0.5}, times(value(node.a), over)));
             return true;
         }
-        case Op::Convert:
-            if (node.format == Format::Half) {
-                // One rounding of 16 bits exceeds the slack above.
-                give(node.a, adjoint, {1.0 - 0x1p-10, 1.0 + 0x1p-10});
-                return true;
-            }
-            give(node.a, adjoint, kOne);
-            return true;
-        case Op::Refine:
-        case Op::Bounded:
-        case Op::UnitSum:
-        case Op::WeightedUnit:
-        case Op::UnitQuotient:
-        case Op::TriangleSum:
-        case Op::MirroredSum:
-        case Op::Share:
-        case Op::PartOfUnit:
-            give(node.a, adjoint, kOne);
-            return true;
-        case Op::CircleSum:
-            if (node.a == node.b) {
-                give(node.a, adjoint, times({2.0, 2.0}, value(node.a)));
-            } else {
-                give(node.c, adjoint, kOne);
-            }
-            return true;
-        case Op::SphereSum:
-            give(node.a, adjoint, times({2.0, 2.0}, value(node.a)));
-            return true;
-        case Op::SquareOfRoot:
-            give(node.a, adjoint, kOne);
-            return true;
-        case Op::SplitHigh:
-            give(node.a, adjoint, {1.0 - 0x1p-12, 1.0 + 0x1p-12});
-            return true;
-        case Op::SplitLow:
-            give(node.a, adjoint, {-0x1p-12, 0x1p-12});
-            return true;
         case Op::ProductError:
             give(node.a, adjoint, times({-0x1p-24, 0x1p-24}, value(node.b)));
             give(node.b, adjoint, times({-0x1p-24, 0x1p-24}, value(node.a)));
@@ -264,33 +266,16 @@ bool GradientEvaluator::spread(const BoxEvaluator& values, NodeId id) {
             give(node.b, adjoint, {-0x1p-24, 0x1p-24});
             return true;
         case Op::Select:
-            if (value(node.a).isTrue() || value(node.a).isFalse()) {
-                give(value(node.a).isTrue() ? node.b : node.c, adjoint, kOne);
-                return true;
-            }
-            return false;
-        case Op::Merge: {
-            NodeId only = kNoNode;
-            for (std::uint32_t k = 0; k < node.count; ++k) {
-                const Edge& edge = program_.edges[node.first + k];
-                const Interval guard = edge.guard == kNoNode ? kTrue : value(edge.guard);
-                if (guard.isFalse() || guard.isEmpty()) {
-                    continue;
-                }
-                if (only != kNoNode) {
-                    return false;
-                }
-                only = edge.value;
-            }
-            if (only != kNoNode) {
-                give(only, adjoint, kOne);
-            }
-            return only != kNoNode;
-        }
+        case Op::Merge:
+            return spreadChoice(values, node, adjoint);
         default:
-            // Integers and steps: they are points, or they jump.
-            return false;
+            break;
     }
+    const std::optional<Interval> slope = slopeOf(node, value(node.a), z);
+    if (slope) {
+        give(node.a, adjoint, *slope);
+    }
+    return slope.has_value();
 }
 
 }  // namespace glint::verify

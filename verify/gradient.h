@@ -27,8 +27,12 @@ public:
 
 private:
     bool spread(const BoxEvaluator& values, NodeId id);
-    bool spreadFunction(const BoxEvaluator& values, const Node& node, const Interval& z,
-                        const Interval& adjoint);
+    void spreadExtremum(const Node& node, const Interval& a, const Interval& b, const Interval& adjoint);
+    bool spreadPower(const Node& node, const Interval& a, const Interval& b, const Interval& z,
+                     const Interval& adjoint);
+    bool spreadChoice(const BoxEvaluator& values, const Node& node, const Interval& adjoint);
+    // Returns the operand of a choice that counts for all inputs of the box, or kNoNode.
+    NodeId onlyChoice(const BoxEvaluator& values, const Node& node) const;
     void give(NodeId to, const Interval& adjoint, const Interval& factor);
 
     const Program& program_;

@@ -171,26 +171,29 @@ Interval Arithmetic::divide(const Interval& a, const Interval& b, Hazard& hazard
         std::max({up(a.low, b.low), up(a.low, b.high), up(a.high, b.low), up(a.high, b.high)}), hazard);
 }
 
+Interval Arithmetic::root(Function function, Interval a, Hazard& hazard) const {
+    if (a.low < 0.0) {
+        hazard |= Hazard::RootOfNegative;
+        a = {0.0, std::max(a.high, 0.0)};
+    }
+    const double low = rootDown(a.low);
+    const double high = rootUp(a.high);
+    if (function == Function::Sqrt) {
+        return rounded(low, high, hazard);
+    }
+    if (a.low == 0.0) {
+        hazard |= Hazard::DivisionByZero;
+        return {high == 0.0 ? 0.0 : roundDown(1.0 / high, format_), kInfinity};
+    }
+    return widened(1.0 / high, 1.0 / low, hazard);
+}
+
 Interval Arithmetic::apply(Function function, const Interval& given, Hazard& hazard) const {
     Interval a = given;
     switch (function) {
         case Function::Sqrt:
-        case Function::InverseSqrt: {
-            if (a.low < 0.0) {
-                hazard |= Hazard::RootOfNegative;
-                a = {0.0, std::max(a.high, 0.0)};
-            }
-            const double low = rootDown(a.low);
-            const double high = rootUp(a.high);
-            if (function == Function::Sqrt) {
-                return rounded(low, high, hazard);
-            }
-            if (a.low == 0.0) {
-                hazard |= Hazard::DivisionByZero;
-                return {high == 0.0 ? 0.0 : roundDown(1.0 / high, format_), kInfinity};
-            }
-            return widened(1.0 / high, 1.0 / low, hazard);
-        }
+        case Function::InverseSqrt:
+            return root(function, a, hazard);
         case Function::Log:
         case Function::Log2: {
             if (a.low <= 0.0) {

@@ -241,6 +241,7 @@ public:
     }
 
 private:
+    Interval root(Function function, Interval a, Hazard& hazard) const;
     Interval rounded(double low, double high, Hazard& hazard) const;
     Interval widened(double low, double high, Hazard& hazard) const;
 

@@ -91,6 +91,15 @@ enum class Op : std::uint8_t {
     ChangeSign,  // between int and uint, bits unchanged
 };
 
+// Whether the operation is one of the bounds of sums as a whole.
+constexpr bool isBound(Op op) {
+    return op >= Op::CircleSum && op <= Op::SphereSum;
+}
+// Returns which operand such an operation bounds: 0 for a, to 2 for c.
+constexpr std::size_t boundedOperand(Op op) {
+    return op == Op::CircleSum ? 2 : op == Op::SquareOfRoot || op == Op::SphereSum ? 1 : 0;
+}
+
 enum class Relation : std::uint8_t { Less, LessEqual, Greater, GreaterEqual, Equal, NotEqual };
 
 struct Node {
@@ -111,6 +120,11 @@ struct Node {
     std::uint32_t first = 0;  // of Merge: its edges
     std::uint32_t count = 0;
 };
+
+// Whether the operation is the square of its first operand, but for rounding.
+constexpr bool isRoundedSquare(const Node& node) {
+    return node.op == Op::SphereSum || (node.op == Op::CircleSum && node.a == node.b);
+}
 
 struct Edge {
     NodeId guard = kNoNode;

@@ -3,6 +3,7 @@
 #include "verify/concrete.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -130,13 +131,8 @@ NodeId ProgramBuilder::make(Node node) {
 
 NodeId ProgramBuilder::remake(const Node& node) {
     // The builder knows as much of the operation as the other one did, or more.
-    const NodeId known = node.op == Op::CircleSum                                  ? node.c
-                         : node.op == Op::SquareOfRoot || node.op == Op::SphereSum ? node.b
-                         : node.op == Op::Bounded || node.op == Op::UnitSum || node.op == Op::PartOfUnit ||
-                                 node.op == Op::WeightedUnit || node.op == Op::UnitQuotient ||
-                                 node.op == Op::Share || node.op == Op::TriangleSum
-                             ? node.a
-                             : kNoNode;
+    const NodeId known =
+        isBound(node.op) ? std::array{node.a, node.b, node.c}[boundedOperand(node.op)] : kNoNode;
     if (known != kNoNode && (isConstant(known) || this->node(known).op == node.op)) {
         return known;
     }
@@ -166,77 +162,66 @@ NodeId ProgramBuilder::folded(const Node& node) {
     return std::isfinite(value) ? constant(value, node.format, node.isSigned) : kNoNode;
 }
 
+NodeId ProgramBuilder::firstOf(const Node& node, std::initializer_list<Pattern> patterns) {
+    for (const Pattern pattern : patterns) {
+        if (const NodeId found = (this->*pattern)(node); found != kNoNode) {
+            return found;
+        }
+    }
+    return kNoNode;
+}
+
+NodeId ProgramBuilder::product(const Node& node) {
+    if (node.a == node.b) {
+        return make(Op::Square, node.format, node.a);
+    }
+    if (isConstant(node.a, 1.0) || isConstant(node.b, 1.0)) {
+        return isConstant(node.a, 1.0) ? node.b : node.a;
+    }
+    // Factors are finite, or the operation that made them fails.
+    if (isConstant(node.a, 0.0) || isConstant(node.b, 0.0)) {
+        return constant(0.0, node.format);
+    }
+    return firstOf(node,
+                   {&ProgramBuilder::intoChoice, &ProgramBuilder::unitQuotient, &ProgramBuilder::share});
+}
+
+NodeId ProgramBuilder::sum(const Node& node) {
+    if (isConstant(node.a, 0.0) || isConstant(node.b, 0.0)) {
+        return isConstant(node.a, 0.0) ? node.b : node.a;
+    }
+    return firstOf(
+        node, {&ProgramBuilder::intoChoice, &ProgramBuilder::sumOfShares, &ProgramBuilder::interpolation,
+               &ProgramBuilder::errorFree, &ProgramBuilder::sumOfSquares, &ProgramBuilder::sumOfNormalized,
+               &ProgramBuilder::squaredRadius, &ProgramBuilder::sumOfScaled, &ProgramBuilder::mirroredSum,
+               &ProgramBuilder::triangleSum, &ProgramBuilder::dotProduct});
+}
+
+NodeId ProgramBuilder::square(const Node& node) {
+    const Node of = this->node(node.a);
+    if (of.op == Op::Select) {
+        const NodeId yes = make(Op::Square, node.format, of.b);
+        return make(Op::Select, node.format, of.a, yes, make(Op::Square, node.format, of.c));
+    }
+    if (of.op == Op::Negate) {
+        return make(Op::Square, node.format, of.a);
+    }
+    return of.op == Op::Apply && of.function == Function::Sqrt
+               ? make(Op::SquareOfRoot, node.format, of.a, appendOnce(node))
+               : kNoNode;
+}
+
 NodeId ProgramBuilder::simplified(const Node& node) {
     if (const NodeId value = folded(node); value != kNoNode) {
         return value;
     }
     switch (node.op) {
         case Op::Multiply:
-            if (node.a == node.b) {
-                return make(Op::Square, node.format, node.a);
-            }
-            if (isConstant(node.a, 1.0)) {
-                return node.b;
-            }
-            if (isConstant(node.b, 1.0)) {
-                return node.a;
-            }
-            // Factors are finite, or the operation that made them fails.
-            if (isConstant(node.a, 0.0) || isConstant(node.b, 0.0)) {
-                return constant(0.0, node.format);
-            }
-            if (const NodeId choice = intoChoice(node); choice != kNoNode) {
-                return choice;
-            }
-            if (const NodeId part = unitQuotient(node); part != kNoNode) {
-                return part;
-            }
-            return share(node);
+            return product(node);
         case Op::Add:
-            if (isConstant(node.a, 0.0)) {
-                return node.b;
-            }
-            if (isConstant(node.b, 0.0)) {
-                return node.a;
-            }
-            if (const NodeId choice = intoChoice(node); choice != kNoNode) {
-                return choice;
-            }
-            if (const NodeId sum = sumOfShares(node); sum != kNoNode) {
-                return sum;
-            }
-            if (const NodeId between = interpolation(node); between != kNoNode) {
-                return between;
-            }
-            if (const NodeId exact = errorFree(node); exact != kNoNode) {
-                return exact;
-            }
-            if (const NodeId sum = sumOfSquares(node); sum != kNoNode) {
-                return sum;
-            }
-            if (const NodeId sum = sumOfNormalized(node); sum != kNoNode) {
-                return sum;
-            }
-            for (const auto pattern : {&ProgramBuilder::squaredRadius, &ProgramBuilder::sumOfScaled,
-                                       &ProgramBuilder::mirroredSum, &ProgramBuilder::triangleSum}) {
-                if (const NodeId sum = (this->*pattern)(node); sum != kNoNode) {
-                    return sum;
-                }
-            }
-            return dotProduct(node);
+            return sum(node);
         case Op::Square:
-            if (const Node choice = this->node(node.a); choice.op == Op::Select) {
-                const NodeId yes = make(Op::Square, node.format, choice.b);
-                return make(Op::Select, node.format, choice.a, yes, make(Op::Square, node.format, choice.c));
-            }
-            if (this->node(node.a).op == Op::Negate) {
-                return make(Op::Square, node.format, this->node(node.a).a);
-            }
-            if (this->node(node.a).op == Op::Apply && this->node(node.a).function == Function::Sqrt) {
-                const NodeId root = node.a;
-                return make(Op::SquareOfRoot, node.format, this->node(root).a, appendOnce(node));
-            }
-            return kNoNode;
+            return square(node);
         case Op::Subtract:
             if (this->node(node.b).op == Op::Floor && this->node(node.b).a == node.a) {
                 const NodeId rest = appendOnce(node);
@@ -245,33 +230,19 @@ NodeId ProgramBuilder::simplified(const Node& node) {
             }
             return isConstant(node.b, 0.0) ? node.a : errorFree(node);
         case Op::Divide:
-            if (isConstant(node.b, 1.0)) {
-                return node.a;
-            }
-            if (const NodeId part = unitQuotient(node); part != kNoNode) {
-                return part;
-            }
-            if (const NodeId less = quotientOfLess(node); less != kNoNode) {
-                return less;
-            }
-            return share(node);
+            return isConstant(node.b, 1.0)
+                       ? node.a
+                       : firstOf(node, {&ProgramBuilder::unitQuotient, &ProgramBuilder::quotientOfLess,
+                                        &ProgramBuilder::share});
         case Op::Minimum:
         case Op::Maximum:
             return node.a == node.b ? node.a : limited(node);
         case Op::And:
-            if (isConstant(node.a)) {
-                return isConstant(node.a, 0.0) ? node.a : node.b;
-            }
-            if (isConstant(node.b)) {
-                return isConstant(node.b, 0.0) ? node.b : node.a;
-            }
-            return node.a == node.b ? node.a : kNoNode;
         case Op::Or:
-            if (isConstant(node.a)) {
-                return isConstant(node.a, 0.0) ? node.b : node.a;
-            }
-            if (isConstant(node.b)) {
-                return isConstant(node.b, 0.0) ? node.a : node.b;
+            for (const auto& [one, other] : {std::pair(node.a, node.b), std::pair(node.b, node.a)}) {
+                if (isConstant(one)) {
+                    return isConstant(one, 0.0) == (node.op == Op::And) ? one : other;
+                }
             }
             return node.a == node.b ? node.a : kNoNode;
         case Op::Not:

@@ -3,6 +3,7 @@
 
 #include "verify/program.h"
 
+#include <initializer_list>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -63,6 +64,11 @@ private:
     NodeId append(const Node& node);
     NodeId appendOnce(const Node& node);
     NodeId simplified(const Node& node);
+    NodeId product(const Node& node);
+    NodeId sum(const Node& node);
+    NodeId square(const Node& node);
+    using Pattern = NodeId (ProgramBuilder::*)(const Node& node);
+    NodeId firstOf(const Node& node, std::initializer_list<Pattern> patterns);
     NodeId errorFree(const Node& node);
     // A factor of a product that is the sine or the cosine of an angle, and the rest of the product.
     struct Angular {

@@ -63,6 +63,19 @@ private:
     Status load(Frame& frame, const SymbolicState& state, const SpirvOperation& operation);
     Status store(Frame& frame, SymbolicState& state, const SpirvOperation& operation);
 
+    // Joins the values of ways that come together, scalar by scalar. `valueOf` returns a way's value.
+    template <typename Ways, typename ValueOf>
+    SymbolicValue joined(const std::vector<SymbolicState>& states, const Ways& ways, const ValueOf& valueOf) {
+        SymbolicValue all;
+        for (std::size_t k = 0; k < valueOf(ways.front())->nodes.size(); ++k) {
+            std::vector<NodeId> values;
+            for (const auto& way : ways) {
+                values.push_back(valueOf(way)->nodes[k]);
+            }
+            all.nodes.push_back(joinValues(builder_, states, values));
+        }
+        return all;
+    }
     SymbolicValue valueOf(const Frame& frame, const SymbolicState& state, SpirvId id);
     std::uint32_t newMemory(SymbolicState& state, std::vector<NodeId> scalars);
 
@@ -166,13 +179,7 @@ Result<Returned> Executor::call(const SpirvFunctionBody& function, std::vector<S
     // All ways through a function end in a return.
     result.state.guard = guard;
     builder_.setGuard(guard);
-    for (std::size_t k = 0; k < frame.returns.front().value.nodes.size(); ++k) {
-        std::vector<NodeId> values;
-        for (const Returned& returned : frame.returns) {
-            values.push_back(returned.value.nodes[k]);
-        }
-        result.value.nodes.push_back(joinValues(builder_, states, values));
-    }
+    result.value = joined(states, frame.returns, [](const Returned& one) { return &one.value; });
     return result;
 }
 
@@ -188,18 +195,11 @@ Status Executor::runBlock(Frame& frame, const SpirvBlock& block, std::vector<Inc
         return unsupported("a loop without a known end");
     }
     for (const auto& [id, first] : edges.front().phis) {
-        SymbolicValue joined;
         if (first.pointer) {
             return unsupported("a pointer that depends on a branch");
         }
-        for (std::size_t k = 0; k < first.nodes.size(); ++k) {
-            std::vector<NodeId> values;
-            for (const IncomingEdge& edge : edges) {
-                values.push_back(edge.phis.at(id).nodes[k]);
-            }
-            joined.nodes.push_back(joinValues(builder_, states, values));
-        }
-        frame.values[id] = std::move(joined);
+        frame.values[id] =
+            joined(states, edges, [key = id](const IncomingEdge& edge) { return &edge.phis.at(key); });
     }
     if (edges.size() > 1) {
         joinLoopValues(frame, edges, states);
@@ -276,18 +276,10 @@ void Executor::joinLoopValues(Frame& frame, const std::vector<IncomingEdge>& edg
         const bool inAll = std::all_of(edges.begin(), edges.end(), [key = id](const IncomingEdge& edge) {
             return edge.kept.contains(key);
         });
-        if (!inAll) {
-            continue;
+        if (inAll) {
+            frame.values[id] =
+                joined(states, edges, [key = id](const IncomingEdge& edge) { return &edge.kept.at(key); });
         }
-        SymbolicValue joined;
-        for (std::size_t k = 0; k < first.nodes.size(); ++k) {
-            std::vector<NodeId> values;
-            for (const IncomingEdge& edge : edges) {
-                values.push_back(edge.kept.at(id).nodes[k]);
-            }
-            joined.nodes.push_back(joinValues(builder_, states, values));
-        }
-        frame.values[id] = std::move(joined);
     }
 }
 
