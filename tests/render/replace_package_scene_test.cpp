@@ -176,7 +176,7 @@ TEST_F(ReplacePackageScene, AnEditableSceneKeepsItsPackage) {
     expectNoValidationMessages();
 }
 
-TEST_F(ReplacePackageScene, AnotherRendererOfTheSceneSaysThatItIsStale) {
+TEST_F(ReplacePackageScene, AllRenderersOfTheSceneSwitch) {
     const compiler::CompileSettings uber = roomSettings(package::kStrategyUber);
     const std::shared_ptr<const Package> original = packageOf(before_, uber);
     // Its records of materials have another size, so that they move to another buffer.
@@ -190,9 +190,10 @@ TEST_F(ReplacePackageScene, AnotherRendererOfTheSceneSaysThatItIsStale) {
     draw(*other);
     const LinearImage image = draw(*renderer);
     expectEqualImage(image, fresh(extendedRoom(), *extended, options), "longer records");
-    const Result<LinearImage> stale = other->render(setup_.frame);
+    expectEqualImage(draw(*other), image, "the other renderer");
+    const auto stale = Renderer::create(sharedContext(), *original, *scene, options);
     ASSERT_FALSE(stale);
-    EXPECT_EQ(stale.error().id, "package-replaced");
+    EXPECT_EQ(stale.error().id, "scene-package");
     const std::unique_ptr<Renderer> anew = makeRenderer(*extended, *scene, options);
     ASSERT_NE(anew, nullptr);
     expectEqualImage(draw(*anew), image, "made anew");

@@ -39,7 +39,9 @@ void VulkanHooks::look(const std::string& name, A argument) {
 }
 
 VkResult VulkanHooks::strike(const std::string& name) {
-    if (!failing.empty() && name != failing) {
+    canFail.insert(name);
+    const bool isLost = struck > 0 && failure == VK_ERROR_DEVICE_LOST;
+    if (!failing.empty() && name != failing && !isLost) {
         return VK_SUCCESS;
     }
     ++calls;

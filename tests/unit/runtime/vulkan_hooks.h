@@ -24,7 +24,7 @@ public:
     VulkanHooks& operator=(const VulkanHooks&) = delete;
 
     // The call that fails with `failure`, by its number from 1 among those that return a VkResult, or among
-    // those of the function `failing`. 0: none does.
+    // those of the function `failing`. 0: none does. A lost device stays lost for all functions.
     std::uint64_t failAt = 0;
     std::string failing;
     VkResult failure = VK_ERROR_DEVICE_LOST;
@@ -41,6 +41,7 @@ public:
     std::multiset<std::string> bypasses;        // the functions that did
 
     std::map<std::string, std::uint64_t> callsOf;
+    std::set<std::string> canFail;
     // The handles of objects that were made, with the functions that made them, and of those that were named.
     std::map<std::uint64_t, std::string> made;
     std::set<std::uint64_t> named;
