@@ -28,11 +28,16 @@ namespace fs = std::filesystem;
 
 using Words = std::vector<std::string>;
 
+// Returns the path of a file of the test beside a folder that is watched. After a failure any file in the
+// folder counts.
+fs::path beside(const fs::path& folder, const std::string& name) {
+    return (folder / name).lexically_normal().parent_path().string() + "." + name;
+}
+
 // A command that runs beside the test.
 class Running {
 public:
-    Running(const fs::path& folder, Words words)
-        : out_(folder.string() + ".watch.out"), err_(folder.string() + ".watch.err") {
+    Running(const fs::path& folder, Words words) : out_(beside(folder, "out")), err_(beside(folder, "err")) {
         words.insert(words.begin(), commandPath());
         const std::string cache = (folder / "cache").string();
         child_ = fork();
@@ -138,15 +143,19 @@ protected:
     }
     // Writes a file as editors do.
     void replace(const std::string& name, const std::string& text) const {
-        writeText(path("edited.tmp"), text);
-        fs::rename(path("edited.tmp"), path(name));
+        const fs::path edited = beside(path("."), "edited");
+        writeText(edited, text);
+        fs::rename(edited, path(name));
     }
     static std::string settingsText(const std::string& merge) {
         return R"({"format": "glint-settings", "version": 1, "settings": {"merge": ")" + merge + "\"}}";
     }
     std::string mud(double shade) const {
-        writeMudPack(path("other"), shade);
-        return readText(path("other/mud.glsl"));
+        const fs::path other = beside(path("."), "other");
+        writeMudPack(other, shade);
+        std::string text = readText(other / "mud.glsl");
+        fs::remove_all(other);
+        return text;
     }
 };
 
