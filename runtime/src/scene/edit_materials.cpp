@@ -1,4 +1,5 @@
 // SceneEditor: textures and materials.
+#include "context/parallel.h"
 #include "data/materials.h"
 #include "data/scene_checks.h"
 #include "package/package.h"
@@ -233,7 +234,7 @@ void addTo(EditReport& report, const SceneStore& store, MaterialHandle material,
     }
 }
 
-Result<TextureHandle> SceneEditor::addTexture(const ImageView& image, bool srgb) {
+Result<TextureHandle> SceneEditor::addTexture(const ImageView& image, bool srgb) try {
     GpuScene::State& scene = store_->scene;
     const TextureHandle next = store_->textures.next();
     if (next.index >= scene.textureRoom) {
@@ -250,8 +251,9 @@ Result<TextureHandle> SceneEditor::addTexture(const ImageView& image, bool srgb)
     store_->setDirty = true;
     return texture;
 }
+GLINT_CATCH
 
-Status SceneEditor::replaceTexture(TextureHandle texture, const ImageView& image) {
+Status SceneEditor::replaceTexture(TextureHandle texture, const ImageView& image) try {
     StoredTexture* const entry = store_->textures.find(texture);
     if (entry == nullptr) {
         return unknownHandle("texture");
@@ -287,8 +289,9 @@ Status SceneEditor::replaceTexture(TextureHandle texture, const ImageView& image
     });
     return okStatus();
 }
+GLINT_CATCH
 
-Status SceneEditor::removeTexture(TextureHandle texture) {
+Status SceneEditor::removeTexture(TextureHandle texture) try {
     const StoredTexture* const entry = store_->textures.find(texture);
     if (entry == nullptr) {
         return unknownHandle("texture");
@@ -307,8 +310,9 @@ Status SceneEditor::removeTexture(TextureHandle texture) {
     store_->setDirty = true;
     return okStatus();
 }
+GLINT_CATCH
 
-Result<MaterialHandle> SceneEditor::addMaterial(const MaterialSource& source) {
+Result<MaterialHandle> SceneEditor::addMaterial(const MaterialSource& source) try {
     const std::string where = placeOf("material", store_->materialSlots.next().index);
     GLINT_TRY_DO(checkSource(*store_, source, where));
     GLINT_TRY(auto record, makeRecord(*store_, source));
@@ -318,8 +322,9 @@ Result<MaterialHandle> SceneEditor::addMaterial(const MaterialSource& source) {
     store_->materials.writeBytes(material.index, record);
     return material;
 }
+GLINT_CATCH
 
-Result<EditReport> SceneEditor::setMaterial(MaterialHandle material, const MaterialSource& source) {
+Result<EditReport> SceneEditor::setMaterial(MaterialHandle material, const MaterialSource& source) try {
     StoredMaterial* const entry = store_->materialSlots.find(material);
     if (entry == nullptr) {
         return unknownHandle("material");
@@ -348,8 +353,9 @@ Result<EditReport> SceneEditor::setMaterial(MaterialHandle material, const Mater
     }
     return report;
 }
+GLINT_CATCH
 
-Status SceneEditor::setMaterialValues(MaterialHandle material, std::span<const std::uint8_t> record) {
+Status SceneEditor::setMaterialValues(MaterialHandle material, std::span<const std::uint8_t> record) try {
     if (store_->materialSlots.find(material) == nullptr) {
         return unknownHandle("material");
     }
@@ -363,8 +369,9 @@ Status SceneEditor::setMaterialValues(MaterialHandle material, std::span<const s
     writeMaterial(*store_, material.index, taken);
     return okStatus();
 }
+GLINT_CATCH
 
-Status SceneEditor::removeMaterial(MaterialHandle material) {
+Status SceneEditor::removeMaterial(MaterialHandle material) try {
     const StoredMaterial* const entry = store_->materialSlots.find(material);
     if (entry == nullptr) {
         return unknownHandle("material");
@@ -385,5 +392,6 @@ Status SceneEditor::removeMaterial(MaterialHandle material) {
     store_->materials.shrink(store_->materialSlots.end());
     return okStatus();
 }
+GLINT_CATCH
 
 }  // namespace glint

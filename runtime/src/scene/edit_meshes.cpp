@@ -1,4 +1,5 @@
 // SceneEditor: meshes and their BLASes, and instances.
+#include "context/parallel.h"
 #include "data/geometry.h"
 #include "data/instance_math.h"
 #include "data/scene_checks.h"
@@ -93,7 +94,7 @@ AttributeMask attributesOf(const Package& package, const PrimitiveView& primitiv
     return mask;
 }
 
-Result<AddedMesh> SceneEditor::addMesh(std::span<const EditedPrimitive> primitives, MeshUse use) {
+Result<AddedMesh> SceneEditor::addMesh(std::span<const EditedPrimitive> primitives, MeshUse use) try {
     if (primitives.empty()) {
         return makeError("scene-edit-value", "", "the mesh has no primitive", "give at least one");
     }
@@ -130,8 +131,9 @@ Result<AddedMesh> SceneEditor::addMesh(std::span<const EditedPrimitive> primitiv
     }
     return added;
 }
+GLINT_CATCH
 
-Status SceneEditor::setVertices(MeshHandle mesh, std::uint32_t primitive, const VertexValues& vertices) {
+Status SceneEditor::setVertices(MeshHandle mesh, std::uint32_t primitive, const VertexValues& vertices) try {
     const StoredMesh* const entry = store_->meshes.find(mesh);
     if (entry == nullptr) {
         return unknownHandle("mesh");
@@ -161,9 +163,10 @@ Status SceneEditor::setVertices(MeshHandle mesh, std::uint32_t primitive, const 
     }
     return changeVertices(*store_, mesh, primitive, vertices);
 }
+GLINT_CATCH
 
 Result<EditReport> SceneEditor::setMeshMaterial(MeshHandle mesh, std::uint32_t primitive,
-                                                MaterialHandle material) {
+                                                MaterialHandle material) try {
     StoredMesh* const entry = store_->meshes.find(mesh);
     if (entry == nullptr) {
         return unknownHandle("mesh");
@@ -184,8 +187,9 @@ Result<EditReport> SceneEditor::setMeshMaterial(MeshHandle mesh, std::uint32_t p
     }
     return report;
 }
+GLINT_CATCH
 
-Status SceneEditor::removeMesh(MeshHandle mesh) {
+Status SceneEditor::removeMesh(MeshHandle mesh) try {
     const StoredMesh* const entry = store_->meshes.find(mesh);
     if (entry == nullptr) {
         return unknownHandle("mesh");
@@ -201,6 +205,7 @@ Status SceneEditor::removeMesh(MeshHandle mesh) {
     retireMesh(*store_, mesh);
     return okStatus();
 }
+GLINT_CATCH
 
 namespace {
 
@@ -236,7 +241,7 @@ Status checkPose(const StoredMesh& mesh, const InstanceView& pose, const std::st
 
 }  // namespace
 
-Result<AddedInstance> SceneEditor::addInstance(const PlacedMesh& placed) {
+Result<AddedInstance> SceneEditor::addInstance(const PlacedMesh& placed) try {
     const std::string where = placeOf("instance", store_->instanceSlots.next().index);
     const StoredMesh* const mesh = store_->meshes.find(placed.mesh);
     if (mesh == nullptr) {
@@ -260,8 +265,9 @@ Result<AddedInstance> SceneEditor::addInstance(const PlacedMesh& placed) {
               placeInstance(*store_, &store_->cases->package(), std::move(instance), pose));
     return AddedInstance{handle, std::move(report)};
 }
+GLINT_CATCH
 
-Status SceneEditor::moveInstance(InstanceHandle instance, const std::array<float, 12>& objectToWorld) {
+Status SceneEditor::moveInstance(InstanceHandle instance, const std::array<float, 12>& objectToWorld) try {
     const StoredInstance* const entry = store_->instanceSlots.find(instance);
     if (entry == nullptr) {
         return unknownHandle("instance");
@@ -272,9 +278,10 @@ Status SceneEditor::moveInstance(InstanceHandle instance, const std::array<float
     glint::moveInstance(*store_, instance, objectToWorld, entry->visible);
     return okStatus();
 }
+GLINT_CATCH
 
 Status SceneEditor::poseInstance(InstanceHandle instance, std::span<const std::array<float, 12>> joints,
-                                 std::span<const float> morphWeights) {
+                                 std::span<const float> morphWeights) try {
     const StoredInstance* const entry = store_->instanceSlots.find(instance);
     if (entry == nullptr) {
         return unknownHandle("instance");
@@ -285,8 +292,9 @@ Status SceneEditor::poseInstance(InstanceHandle instance, std::span<const std::a
     GLINT_TRY_DO(checkPose(*store_->meshes.find(entry->mesh), pose, placeOf("instance", instance.index)));
     return glint::poseInstance(*store_, &store_->cases->package(), instance, pose);
 }
+GLINT_CATCH
 
-Status SceneEditor::showInstance(InstanceHandle instance, bool visible) {
+Status SceneEditor::showInstance(InstanceHandle instance, bool visible) try {
     const StoredInstance* const entry = store_->instanceSlots.find(instance);
     if (entry == nullptr) {
         return unknownHandle("instance");
@@ -297,9 +305,10 @@ Status SceneEditor::showInstance(InstanceHandle instance, bool visible) {
     }
     return okStatus();
 }
+GLINT_CATCH
 
 Result<EditReport> SceneEditor::setInstanceMesh(InstanceHandle instance, MeshHandle mesh,
-                                                std::span<const MaterialHandle> materials) {
+                                                std::span<const MaterialHandle> materials) try {
     const StoredMesh* const wanted = store_->meshes.find(mesh);
     const bool known = store_->instanceSlots.find(instance) != nullptr;
     if (!known || wanted == nullptr) {
@@ -311,9 +320,10 @@ Result<EditReport> SceneEditor::setInstanceMesh(InstanceHandle instance, MeshHan
     exchangeMesh(*store_, instance, mesh, materials);
     return report;
 }
+GLINT_CATCH
 
 Result<EditReport> SceneEditor::setInstanceMaterial(InstanceHandle instance, std::uint32_t primitive,
-                                                    MaterialHandle material) {
+                                                    MaterialHandle material) try {
     StoredInstance* const entry = store_->instanceSlots.find(instance);
     if (entry == nullptr) {
         return unknownHandle("instance");
@@ -331,13 +341,15 @@ Result<EditReport> SceneEditor::setInstanceMaterial(InstanceHandle instance, std
     setOwnMaterial(*store_, instance, primitive, material);
     return report;
 }
+GLINT_CATCH
 
-Status SceneEditor::removeInstance(InstanceHandle instance) {
+Status SceneEditor::removeInstance(InstanceHandle instance) try {
     if (store_->instanceSlots.find(instance) == nullptr) {
         return unknownHandle("instance");
     }
     glint::removeInstance(*store_, instance);
     return okStatus();
 }
+GLINT_CATCH
 
 }  // namespace glint

@@ -1,5 +1,6 @@
 // GpuScene: uploads, and what programs see of a scene.
 #include "context/commands.h"
+#include "context/parallel.h"
 #include "data/scene_checks.h"
 #include "package/package.h"
 #include "scene/scene_store.h"
@@ -63,13 +64,14 @@ constexpr VkDeviceSize kMostStaged = VkDeviceSize{64} << 20;
 
 Result<std::unique_ptr<GpuScene>> GpuScene::record(Context& context, const Package& package,
                                                    const SceneView& scene, VkCommandBuffer commands,
-                                                   std::uint64_t frame) {
+                                                   std::uint64_t frame) try {
     GLINT_TRY(auto state, makeScene(context, package, scene, commands, frame, Uploader::kUnlimited));
     return std::unique_ptr<GpuScene>(new GpuScene(std::move(state)));
 }
+GLINT_CATCH
 
 Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Package& package,
-                                                   const SceneView& scene) {
+                                                   const SceneView& scene) try {
     Result<std::unique_ptr<GpuScene>> uploaded =
         makeOnce(context.state(), [&](VkCommandBuffer commands) -> Result<std::unique_ptr<GpuScene>> {
             GLINT_TRY(auto state, makeScene(context, package, scene, commands, 0, kMostStaged));
@@ -88,6 +90,7 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
     (*uploaded)->complete(0);
     return uploaded;
 }
+GLINT_CATCH
 
 GpuScene::State::State(Context::State& contextState) : context(contextState), pool(contextState) {}
 GpuScene::State::~State() = default;
@@ -127,29 +130,31 @@ bool GpuScene::isUploaded() const {
     return state_->upload == nullptr;
 }
 
-Result<bool> GpuScene::recordCompaction(VkCommandBuffer commands, std::uint64_t frame) {
+Result<bool> GpuScene::recordCompaction(VkCommandBuffer commands, std::uint64_t frame) try {
     return glint::recordCompaction(*state_, commands, frame);
 }
+GLINT_CATCH
 
 const GpuScene::Statistics& GpuScene::statistics() const {
     return state_->statistics;
 }
 
-Status GpuScene::update(VkCommandBuffer commands, const MotionView& motion, std::uint64_t frame) {
+Status GpuScene::update(VkCommandBuffer commands, const MotionView& motion, std::uint64_t frame) try {
     return recordPose(*state_, commands, motion, frame);
 }
+GLINT_CATCH
 
-Status GpuScene::updateAndWait(const MotionView& motion) {
+Status GpuScene::updateAndWait(const MotionView& motion) try {
     const std::uint64_t frame = state_->store->lastFrame;
     GLINT_TRY_DO(
         runOnce(state_->context, [&](VkCommandBuffer commands) { return update(commands, motion, frame); }));
     complete(frame);
     return okStatus();
 }
+GLINT_CATCH
 
-Result<MotionStatistics> GpuScene::motion() const {
-    return readMotion(*state_);
-}
+Result<MotionStatistics> GpuScene::motion() const try { return readMotion(*state_); }
+GLINT_CATCH
 
 GpuScene::State& GpuScene::state() {
     return *state_;

@@ -1,4 +1,5 @@
 // SceneEditor: handles of the upload, lights, and the recording of edits.
+#include "context/parallel.h"
 #include "data/scene_checks.h"
 #include "scene/scene_store.h"
 
@@ -35,12 +36,13 @@ LightHandle SceneEditor::light(std::uint32_t number) const {
     return stillThere(store_->lightSlots, std::span<const LightHandle>(store_->firstLights), number);
 }
 
-Result<LightHandle> SceneEditor::addLight(const LightView& light) {
+Result<LightHandle> SceneEditor::addLight(const LightView& light) try {
     GLINT_TRY_DO(checkLights(std::span(&light, 1)));
     return glint::addLight(*store_, light);
 }
+GLINT_CATCH
 
-Status SceneEditor::setLight(LightHandle light, const LightView& view) {
+Status SceneEditor::setLight(LightHandle light, const LightView& view) try {
     if (store_->lightSlots.find(light) == nullptr) {
         return unknownHandle("light");
     }
@@ -48,19 +50,22 @@ Status SceneEditor::setLight(LightHandle light, const LightView& view) {
     glint::setLight(*store_, light, view);
     return okStatus();
 }
+GLINT_CATCH
 
-Status SceneEditor::removeLight(LightHandle light) {
+Status SceneEditor::removeLight(LightHandle light) try {
     if (store_->lightSlots.find(light) == nullptr) {
         return unknownHandle("light");
     }
     glint::removeLight(*store_, light);
     return okStatus();
 }
+GLINT_CATCH
 
-Status SceneEditor::record(VkCommandBuffer commands, std::uint64_t frame) {
+Status SceneEditor::record(VkCommandBuffer commands, std::uint64_t frame) try {
     GLINT_TRY_DO(checkFrame(*store_, frame));
     return recordChanges(*store_, commands, frame);
 }
+GLINT_CATCH
 
 void SceneEditor::complete(std::uint64_t frame) {
     store_->retired.complete(frame);

@@ -1,5 +1,6 @@
 #include "scene/texture_stream.h"
 
+#include "context/parallel.h"
 #include "scene/scene_store.h"
 
 #include <algorithm>
@@ -124,7 +125,7 @@ TextureStream::State& TextureStream::state() {
 }
 
 Result<std::uint32_t> TextureStream::record(VkCommandBuffer commands, std::uint64_t frame,
-                                            std::uint64_t mostBytes) {
+                                            std::uint64_t mostBytes) try {
     if (frame < state_->lastFrame) {
         return makeError("stream-frame", "",
                          "the frame " + std::to_string(frame) + " comes after the frame " +
@@ -162,6 +163,7 @@ Result<std::uint32_t> TextureStream::record(VkCommandBuffer commands, std::uint6
     state_->lastFrame = frame;
     return advance.completed;
 }
+GLINT_CATCH
 
 void TextureStream::complete(std::uint64_t frame) {
     state_->retired.complete(frame);
