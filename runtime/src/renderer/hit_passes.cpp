@@ -1,6 +1,6 @@
 #include "renderer/hit_passes.h"
 
-#include "renderer/tile_sort.h"
+#include "renderer/renderer_choice.h"
 
 #include <cstddef>
 #include <string>

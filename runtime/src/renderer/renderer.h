@@ -10,7 +10,6 @@
 #include "renderer/hit_passes.h"
 #include "renderer/pipelines.h"
 #include "scene/gpu_scene_state.h"
-#include "scene/scene_package.h"
 
 #include <glint/renderer.h>
 #include <glint/renderer_options.h>

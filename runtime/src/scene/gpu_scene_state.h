@@ -8,6 +8,7 @@
 #include "data/geometry.h"
 #include "data/light_tree.h"
 #include "data/materials.h"
+#include "data/retired.h"
 #include "scene/scene_upload.h"
 
 #include <glint/package.h>
@@ -166,5 +167,25 @@ Result<UniqueSetLayout> createSceneSetLayout(Context::State& context, const Scen
 // `absent` is bound where a texture has no image or there is no texture.
 Result<DescriptorSet> makeSceneSet(const GpuScene::State& state, VkAccelerationStructureKHR tlas,
                                    VkImageView absent);
+
+// --- The package that a scene is drawn with, and its replacement (scene_package.cpp) ---
+
+// Returns the data that an upload has taken.
+ScenePackage describePackage(const Package& package, const SceneView& scene);
+
+// Returns the index of the scene in `package`. Errors: "scene-package" (it has no such scene, or differs in
+// data that only an upload can change), "position-fetch", "half-precision".
+Result<std::uint32_t> findScene(const GpuScene::State& scene, const Package& package);
+
+// Returns the shader ID of each geometry record in `package`. Requires findScene().
+std::vector<std::uint32_t> shaderIdsIn(const GpuScene::State& scene, const PackageScene& known);
+
+// Records the copies that bring the scene's records of geometries and materials to `package`, which must run
+// before all commands that read them, and makes `scene` one of that package. Values of materials that the
+// host has given stay. Returns the resources that commands use which were recorded until then, or that these
+// commands use. Requires findScene(), which gave `index`. With an error nothing changes. Errors: those
+// of buffers.
+Result<RetiredLot> recordReplacement(GpuScene::State& scene, const Package& package, std::uint32_t index,
+                                     VkCommandBuffer commands);
 
 }  // namespace glint

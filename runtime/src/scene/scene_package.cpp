@@ -1,5 +1,4 @@
-#include "scene/scene_package.h"
-
+// ScenePackage: what the upload has taken of a package, and another package in its place.
 #include "data/materials.h"
 #include "data/opacity_split.h"
 #include "data/scene_checks.h"

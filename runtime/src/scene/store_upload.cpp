@@ -3,7 +3,6 @@
 #include "data/opacity_split.h"
 #include "data/traversal_order.h"
 #include "package/package.h"
-#include "scene/scene_package.h"
 #include "scene/scene_store.h"
 #include "scene/texture_stream.h"
 

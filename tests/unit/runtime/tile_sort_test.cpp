@@ -1,5 +1,5 @@
 // Tests which workgroups the ordering tile-sort uses on a device.
-#include "renderer/tile_sort.h"
+#include "renderer/renderer_choice.h"
 
 #include "interop/frame.h"
 
