@@ -5,7 +5,7 @@
 #include "context/vulkan_table.h"
 #include "emit/context.h"
 #include "emit/modules.h"
-#include "renderer/renderer_choice.h"
+#include "renderer/pipeline_jobs.h"
 #include "support/effect_bits.h"
 #include "support/shared_modules.h"
 

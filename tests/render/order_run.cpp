@@ -3,7 +3,7 @@
 #include "render/order_buffers.h"
 #include "render/order_kernel.h"
 #include "renderer/hit_passes.h"
-#include "renderer/renderer_choice.h"
+#include "renderer/pipeline_jobs.h"
 
 #include <algorithm>
 #include <utility>

@@ -290,8 +290,9 @@ TEST(Structure, UnitsOfTheToolIncludeNoCycles) {
     expectNoCycles(includes);
 }
 
-// Returns the units of the runtime by folder and name, such as "scene/gpu_scene". A public header belongs to
-// the source of its name, or to the folder of its name. All others are plain, as the package's modules are.
+// Returns the units of the runtime by folder and name, such as "scene/gpu_scene". A public header is a unit
+// by itself, which sources below that of its name may include, too. It is in the folder of that source, or in
+// the folder of its own name. All others are plain, as the package's modules are.
 Units unitsOfTheRuntime() {
     std::map<std::string, std::string> folders;  // by the name of a public header
     visitSources("runtime/src", [&](const fs::path& source) {
@@ -307,7 +308,7 @@ Units unitsOfTheRuntime() {
             return path.parent_path().filename().string() + "/" + name;
         }
         const auto found = folders.find(name);
-        return (found == folders.end() ? "modules" : found->second) + "/" + name;
+        return (found == folders.end() ? "modules" : found->second) + "/glint/" + name;
     };
     Units includes;
     visitSources("runtime", [&](const fs::path& source) {

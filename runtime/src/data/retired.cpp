@@ -34,6 +34,7 @@ void discard(MemoryPool& pool, AccelerationStructure&& structure) {
 RetiredLot& RetiredLot::operator=(RetiredLot&& other) noexcept {
     free();
     pool_ = other.pool_;
+    owner_ = std::move(other.owner_);
     structures_ = std::move(other.structures_);
     buffers_ = std::move(other.buffers_);
     images_ = std::move(other.images_);

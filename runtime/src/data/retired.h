@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -16,7 +17,7 @@ void discard(MemoryPool& pool, Buffer&& buffer);
 void discard(MemoryPool& pool, DeviceImage&& image);
 void discard(MemoryPool& pool, AccelerationStructure&& structure);
 
-// Resources that are freed together, with the object. Their pool must outlive it.
+// Resources that are freed together, with the object. Their pool must outlive it, unless it keeps the pool.
 class RetiredLot {
 public:
     RetiredLot() = default;
@@ -32,6 +33,10 @@ public:
     void add(AccelerationStructure&& structure);
     void add(UniqueDescriptorPool&& descriptors);
     void add(UniqueImageView&& view);
+    // Lets the lot outlive everything else that uses its pool.
+    void keep(std::shared_ptr<MemoryPool> pool) {
+        owner_ = std::move(pool);
+    }
     bool isEmpty() const;
     std::uint64_t bytes() const;
     std::uint32_t count() const;  // of buffers and images
@@ -39,6 +44,7 @@ public:
 private:
     void free();
 
+    std::shared_ptr<MemoryPool> owner_;  // may be null; destroyed last
     MemoryPool* pool_ = nullptr;
     std::vector<AccelerationStructure> structures_;
     std::vector<Buffer> buffers_;

@@ -1,6 +1,6 @@
 #include "renderer/hit_passes.h"
 
-#include "renderer/renderer_choice.h"
+#include "renderer/pipeline_jobs.h"
 
 #include <cstddef>
 #include <string>

@@ -5,7 +5,6 @@
 #include "context/vulkan_table.h"
 #include "frame/frame_resources.h"
 #include "renderer/background_pipelines.h"
-#include "renderer/renderer_choice.h"
 
 #include <algorithm>
 #include <array>

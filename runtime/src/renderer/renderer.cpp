@@ -192,13 +192,14 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
 GLINT_CATCH
 
 Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {
-    const std::lock_guard lock(state_->scene.renderersMutex);
-    state_->scene.renderers.push_back(this);
+    state_->renderers = state_->scene.renderers;
+    const std::lock_guard lock(state_->renderers->mutex);
+    state_->renderers->all.push_back(this);
 }
 
 Renderer::~Renderer() {
-    const std::lock_guard lock(state_->scene.renderersMutex);
-    std::erase(state_->scene.renderers, this);
+    const std::lock_guard lock(state_->renderers->mutex);
+    std::erase(state_->renderers->all, this);
 }
 
 namespace {

@@ -108,6 +108,7 @@ struct Renderer::State : PassState {
         : PassState(contextState, std::move(passTimer)), scene(sceneState), disposal(contextState.jobs) {}
 
     GpuScene::State& scene;
+    std::shared_ptr<GpuScene::State::Renderers> renderers{};  // of the scene
     std::vector<EffectName> effects;
     // The environment in set 1. It stays alive as long as a recording may read it.
     std::shared_ptr<const Environment::State> environment;

@@ -183,9 +183,9 @@ Status joinPasses(Renderer::State& state, NextPackage& next) {
 
 // Returns the renderers of the scene.
 std::vector<Renderer::State*> usersOf(GpuScene::State& scene) {
-    const std::lock_guard lock(scene.renderersMutex);
+    const std::lock_guard lock(scene.renderers->mutex);
     std::vector<Renderer::State*> users;
-    for (Renderer* const renderer : scene.renderers) {
+    for (Renderer* const renderer : scene.renderers->all) {
         users.push_back(&renderer->state());
     }
     return users;

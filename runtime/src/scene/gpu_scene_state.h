@@ -96,13 +96,19 @@ struct GpuScene::State {
     State& operator=(const State&) = delete;
 
     Context::State& context;
-    MemoryPool pool;
+    // Renderers keep it for what a replaced package leaves to them.
+    std::shared_ptr<MemoryPool> sharedPool;
+    MemoryPool& pool;
     std::unique_ptr<Compaction> compaction;  // null if there is nothing more to compact
     std::unique_ptr<SceneUpload> upload;     // null when the device has completed it
     ScenePackage package;                    // the package that draws the scene
-    // The renderers of the scene, which add and remove themselves. They replace its package together.
-    std::vector<Renderer*> renderers;
-    std::mutex renderersMutex;
+    // The renderers of the scene, which add and remove themselves, also when the scene is gone. They replace
+    // its package together.
+    struct Renderers {
+        std::mutex mutex;
+        std::vector<Renderer*> all;
+    };
+    std::shared_ptr<Renderers> renderers = std::make_shared<Renderers>();
     std::array<double, 3> origin{};                     // SceneView::origin, or that of the last MotionView
     std::map<std::uint32_t, DeviceMicromap> micromaps;  // by index into SceneView::primitives
     AccelerationStructure tlas;

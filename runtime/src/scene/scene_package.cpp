@@ -298,6 +298,7 @@ Result<RetiredLot> recordReplacement(GpuScene::State& scene, const Package& pack
         writeEntries(store, before);
         return status.error();
     }
+    leftovers.keep(scene.sharedPool);
     scene.shaderIds = shaderIdsIn(scene, known);
     scene.package.entries.assign(known.primitives.begin(), known.primitives.end());
     scene.package.records = recordsHash(package, known);

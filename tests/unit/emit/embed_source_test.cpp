@@ -20,6 +20,8 @@ namespace fs = std::filesystem;
 constexpr const char* kDump = R"(
 #include "sample_package.h"
 
+#include <fstream>
+#include <string>
 
 int main(int, char** argv) {
     for (const glint::package::EmbeddedFile& file : glint::scene_sample::embeddedPackage()) {

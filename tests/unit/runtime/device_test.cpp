@@ -4,7 +4,7 @@
 #include "device_fixture.h"
 #include "host_device.h"
 #include "interop/scene.h"
-#include "scene/gpu_scene_state.h"
+#include "scene/scene_store.h"
 
 #include <functional>
 #include <limits>
@@ -305,7 +305,7 @@ TEST_F(UploadTest, OrdersForCpus) {
         context().state().limits.deviceType = type;
         scene.traversalOrder = order;
         const std::unique_ptr<GpuScene> uploaded = upload(package, scene);
-        return uploaded != nullptr && uploaded->state().instanceOrder != nullptr &&
+        return uploaded != nullptr && uploaded->state().store->leafOrder != nullptr &&
                uploaded->statistics().orderMs > 0.0;
     };
     constexpr VkPhysicalDeviceType kCpu = VK_PHYSICAL_DEVICE_TYPE_CPU;

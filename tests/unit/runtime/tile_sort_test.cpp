@@ -1,7 +1,6 @@
 // Tests which workgroups the ordering tile-sort uses on a device.
-#include "renderer/renderer_choice.h"
-
 #include "interop/frame.h"
+#include "renderer/pipeline_jobs.h"
 
 #include <gtest/gtest.h>
 

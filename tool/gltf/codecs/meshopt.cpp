@@ -1,4 +1,8 @@
-#include "gltf/codecs/meshopt.h"
+// Document: buffer views that are compressed with EXT_meshopt_compression or KHR_meshopt_compression.
+#include "base/files.h"
+#include "gltf/document/document.h"
+#include "gltf/document/model.h"
+#include "gltf/scene.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,6 @@
 #include "gltf/document/document.h"
 
 #include "base/json.h"
-#include "gltf/codecs/meshopt.h"
 #include "gltf/document/validate.h"
 
 #include <fmt/format.h>

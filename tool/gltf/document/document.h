@@ -127,4 +127,12 @@ private:
     std::vector<std::optional<base::Bytes>> unpackedViews_;
 };
 
+// Decodes the bytes of a buffer view that is compressed with EXT_meshopt_compression or
+// KHR_meshopt_compression (codecs/meshopt.cpp). `packed` are the bytes; checkDocument() must have accepted
+// the members of the extension. `byteLength` and `pointer` are those of the buffer view. Errors:
+// "meshopt-layout" (members that contradict each other), "meshopt-decode", "meshopt-size" (more than the
+// packed bytes can hold, or than the budget of ImportOptions::maxFileBytes).
+Result<base::Bytes> unpackMeshopt(Document& document, const Value& extension, const std::string& pointer,
+                                  ByteView packed, std::uint64_t byteLength);
+
 }  // namespace glint::gltf
