@@ -294,8 +294,8 @@ std::size_t endOfInstance(std::span<const Draw> draws, std::size_t first) {
 }
 
 bool isAlike(const Draw& a, const Draw& b) {
-    return a.primitive == b.primitive && a.vertexCount == b.vertexCount && a.doubleSided == b.doubleSided &&
-           a.mirrored == b.mirrored && a.hidden == b.hidden;
+    return a.mesh == b.mesh && a.primitive == b.primitive && a.vertexCount == b.vertexCount &&
+           a.doubleSided == b.doubleSided && a.mirrored == b.mirrored && a.hidden == b.hidden;
 }
 
 }  // namespace

@@ -148,6 +148,7 @@ struct Draw {
     std::uint32_t instance = 0;   // of the scene
     bool hidden = false;          // the instance is flattened or not visible at present
     std::uint32_t primitive = 0;  // of the mesh
+    std::uint32_t mesh = 0;       // of the scene
 };
 
 // The primitives of a mesh, as indices [first, end). The primitives are sorted as SceneView::primitives are.

@@ -186,7 +186,10 @@ public:
     }
     // Lets the next copy take all records.
     void touchAll() {
-        dirty_ = {{0, count()}};
+        dirty_.clear();
+        if (count() > 0) {
+            dirty_.push_back({0, count()});
+        }
     }
 
     // The size of the array on the device, in records.

@@ -656,7 +656,7 @@ std::vector<Draw> drawsOf(SceneStore& store) {
                 }
                 const auto record = store.geometries.read<gpu::GeometryRecord>(geometry);
                 draws.push_back({geometry, 3 * range.drawn, (record.flags & gpu::kGeometryDoubleSided) != 0,
-                                 mirrored, handle.index, isHidden, range.primitive});
+                                 mirrored, handle.index, isHidden, range.primitive, instance.mesh.index});
                 triangles += range.drawn;
             });
     });

@@ -92,6 +92,12 @@ TEST(EditStorage, RecordsAreDirtyUntilTheyAreCopied) {
     store.clearDirty();
     EXPECT_TRUE(store.dirty().empty());
     EXPECT_EQ(store.read<int>(0), 7);
+    store.touchAll();
+    ASSERT_EQ(store.dirty().size(), 1U);
+    EXPECT_EQ(store.dirty()[0].end, 2U);
+    store.reset(sizeof(int));
+    store.touchAll();
+    EXPECT_TRUE(store.dirty().empty()) << "a copy of nothing is not allowed";
 }
 
 TEST(EditStorage, ReplacedRecordsAreDirtyWhereTheyDiffer) {
