@@ -82,9 +82,11 @@ struct StoredPrimitive {
 struct StoredMesh {
     std::vector<StoredPrimitive> primitives;
     std::vector<StoredPart> parts;
-    std::uint32_t geometryCount = 0;               // records of an instance
-    std::uint32_t jointCount = 0;                  // joints that a pose must have
-    std::uint32_t weightCount = 0;                 // the most morph targets of a primitive
+    std::uint32_t geometryCount = 0;  // records of an instance, without those of decided parts
+    std::uint32_t decidedCount = 0;   // records of the parts of triangles whose alpha test was decided
+    std::size_t mainParts = 0;        // the parts before those
+    std::uint32_t jointCount = 0;     // joints that a pose must have
+    std::uint32_t weightCount = 0;    // the most morph targets of a primitive
     std::shared_ptr<const MotionBounds> bounds{};  // if the mesh may change its shape
     std::vector<std::uint32_t> instances{};        // their indices, in no order
     bool changes = false;                          // edits may give it other vertices
@@ -120,7 +122,10 @@ struct StoredInstance {
     std::vector<MaterialHandle> materials;  // one for each primitive of the mesh; some may name nothing
     std::uint32_t firstGeometry = 0;
     std::uint32_t geometryCount = 0;  // 0 if a sealed scene that stays still leaves the instance out
-    std::uint32_t placeInMesh = 0;    // in StoredMesh::instances
+    // The records of decided parts follow those of all instances, so that a decision changes the number of no
+    // other record, on which the noise of blended alpha depends.
+    std::optional<std::uint32_t> firstDecided{};
+    std::uint32_t placeInMesh = 0;  // in StoredMesh::instances
     std::unique_ptr<OwnShape> shape{};
 
     bool isShown() const {
@@ -289,15 +294,30 @@ void writeDeforms(SceneStore& store, std::uint32_t instance, VkDeviceAddress pos
 // The draws of all instances.
 std::vector<Draw> drawsOf(SceneStore& store);
 
+// Calls visit(index, geometry) for the parts of an instance, with their first geometry records.
+template <typename Visit>
+void forEachPart(const StoredMesh& mesh, const StoredInstance& instance, const Visit& visit) {
+    std::uint32_t geometry = instance.firstGeometry;
+    const std::size_t end = instance.geometryCount == 0 ? 0
+                            : instance.firstDecided     ? mesh.parts.size()
+                                                        : mesh.mainParts;
+    for (std::size_t part = 0; part < end; ++part) {
+        if (part == mesh.mainParts) {
+            geometry = *instance.firstDecided;
+        }
+        visit(part, geometry);
+        geometry += static_cast<std::uint32_t>(mesh.parts[part].ranges.size());
+    }
+}
+
 // Calls visit(range, primitive, geometry) for all geometry records of an instance.
 template <typename Visit>
 void forEachGeometry(const StoredMesh& mesh, const StoredInstance& instance, const Visit& visit) {
-    std::uint32_t geometry = instance.firstGeometry;
-    for (std::size_t part = 0; part < mesh.parts.size() && instance.geometryCount > 0; ++part) {
+    forEachPart(mesh, instance, [&](std::size_t part, std::uint32_t geometry) {
         for (const TriangleRange& range : mesh.parts[part].ranges) {
             visit(range, mesh.primitives[range.primitive], geometry++);
         }
-    }
+    });
 }
 
 // The structure of a part: of a mesh, or of an instance with its own shape. Null if edits have removed it.

@@ -124,7 +124,10 @@ Status makeParts(SceneStore& store, const MeshContent& content, StoredMesh& mesh
         StoredPart& made = mesh.parts.emplace_back();
         static_cast<MeshPart&>(made) = std::move(part);
         made.box = boxOfPart(made, content);
-        mesh.geometryCount += static_cast<std::uint32_t>(made.ranges.size());
+        const bool isDecided = made.ranges.front().drawn == 0;
+        mesh.mainParts += isDecided ? 0 : 1;
+        (isDecided ? mesh.decidedCount : mesh.geometryCount) +=
+            static_cast<std::uint32_t>(made.ranges.size());
         if (mesh.mayDeform()) {
             const std::uint32_t first = made.ranges.front().primitive;
             made.bounds.emplace(content.primitives.subspan(first, made.ranges.back().primitive - first + 1));
@@ -306,11 +309,8 @@ void releaseShape(SceneStore& store, std::uint32_t index, StoredInstance& instan
 // Takes the instance out of the TLAS and gives back its records and uses.
 void unlink(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
     StoredMesh& mesh = *store.meshes.find(instance.mesh);
-    std::uint32_t geometry = instance.firstGeometry;
-    for (const StoredPart& part : mesh.parts) {
-        store.topLevel.remove(geometry);
-        geometry += static_cast<std::uint32_t>(part.ranges.size());
-    }
+    forEachPart(mesh, instance,
+                [&](std::size_t /*part*/, std::uint32_t geometry) { store.topLevel.remove(geometry); });
     store.geometryRuns.release(instance.firstGeometry, instance.geometryCount);
     const std::uint32_t last = mesh.instances.back();
     mesh.instances[instance.placeInMesh] = last;
@@ -496,11 +496,10 @@ void writeGeometries(SceneStore& store, InstanceHandle handle, const StoredInsta
 
 void placeParts(SceneStore& store, const StoredInstance& instance) {
     const StoredMesh& mesh = *store.meshes.find(instance.mesh);
-    const bool isPlaced = instance.isShown() && instance.geometryCount > 0;
+    const bool isPlaced = instance.isShown();
     const OwnShape* const shape = instance.shape.get();
     const InstanceView pose = poseOf(store, instance);
-    std::uint32_t geometry = instance.firstGeometry;
-    for (std::size_t i = 0; i < mesh.parts.size() && instance.geometryCount > 0; ++i) {
+    forEachPart(mesh, instance, [&](std::size_t i, std::uint32_t geometry) {
         const StoredPart& part = mesh.parts[i];
         if (isPlaced) {
             const VkDeviceAddress blas = shape != nullptr ? shape->blases[i].address : part.blas.address;
@@ -510,8 +509,7 @@ void placeParts(SceneStore& store, const StoredInstance& instance) {
         } else {
             store.topLevel.remove(geometry);
         }
-        geometry += static_cast<std::uint32_t>(part.ranges.size());
-    }
+    });
 }
 
 InstanceView poseOf(const SceneStore& store, const StoredInstance& instance) {
@@ -647,10 +645,10 @@ std::vector<Draw> drawsOf(SceneStore& store) {
         const bool mirrored =
             (store.instances.read<gpu::InstanceRecord>(handle.index).flags & gpu::kInstanceMirrored) != 0;
         const bool isHidden = !instance.isShown();
-        geometries += instance.geometryCount;
         forEachGeometry(
             *store.meshes.find(instance.mesh), instance,
             [&](const TriangleRange& range, const StoredPrimitive&, std::uint32_t geometry) {
+                ++geometries;
                 if (range.drawn == 0) {
                     return;
                 }

@@ -311,7 +311,20 @@ private:
                                  "join primitives of a material, or use fewer instances");
             }
         }
+        addDecided();
         return okStatus();
+    }
+
+    // Places the parts of decided triangles, after all others.
+    void addDecided() {
+        for (const InstanceHandle handle : store_.firstInstances) {
+            StoredInstance& instance = store_.instanceSlots.at(handle.index);
+            const std::uint32_t count = store_.meshes.find(instance.mesh)->decidedCount;
+            if (count > 0 && instance.geometryCount > 0) {
+                instance.firstDecided = store_.geometryRuns.allocate(count);
+                writeGeometries(store_, handle, instance);
+            }
+        }
     }
 
     // Takes what a sealed scene keeps of its package.
