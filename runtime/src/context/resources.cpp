@@ -48,7 +48,7 @@ std::vector<std::uint32_t> suitableTypes(const VkPhysicalDeviceMemoryProperties&
             types.push_back(type);
         }
     }
-    std::ranges::stable_partition(types, [&](std::uint32_t type) {
+    std::stable_partition(types.begin(), types.end(), [&](std::uint32_t type) {
         return (memory.memoryTypes[type].propertyFlags & preferredFlags(use)) == preferredFlags(use);
     });
     return types;

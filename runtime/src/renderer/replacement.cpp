@@ -293,7 +293,7 @@ Result<Renderer::Replacement> beginReplacement(Renderer::State& state,
         if (user->pipelines.background) {
             GLINT_TRY_DO(adoptPipelines(user->context, user->pipelines));
         }
-        if (!waitsFor(*user, package)) {
+        if (user == &state || !waitsFor(*user, package)) {
             GLINT_TRY(auto next, makeNext(*user, package));
             made.emplace_back(user, std::move(next));
         }
@@ -307,8 +307,9 @@ Result<Renderer::Replacement> beginReplacement(Renderer::State& state,
 bool isReplacementReady(const Renderer::State& state) {
     return std::ranges::all_of(usersOf(state.scene), [&](const Renderer::State* user) {
         const auto* const background = user->next ? user->next->pipelines.background.get() : nullptr;
-        return waitsFor(*user, state.next->package) && user->pipelines.adoptedAtOnce > 0 &&
-               (background == nullptr || (background->missing() == 0 && !background->progress().error));
+        return waitsFor(*user, state.next->package) &&
+               (background == nullptr || (user->pipelines.adoptedAtOnce > 0 && background->missing() == 0 &&
+                                          !background->progress().error));
     });
 }
 
