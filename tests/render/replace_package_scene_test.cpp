@@ -71,7 +71,7 @@ TEST_F(ReplacePackageScene, AFallbackLeavesEmissiveTrianglesAsTheyAre) {
     gltf::Scene lamps = roomScene();
     lamps.materials[kGlossy]["emissiveFactor"] = {1.0F, 1.0F, 1.0F};
     compiler::CompileSettings settings = roomSettings(package::kStrategyVisibility);
-    settings.tracers = package::kTracerRayQuery;
+    settings.tracers = tracerOfDevice();
     settings.plan.merge = compiler::MergePolicy::All;
     settings.effects = {false, compiler::builtinEffects({"shadow", "reflection"})};
     settings.emissiveLights = compiler::EmissiveLights::On;
