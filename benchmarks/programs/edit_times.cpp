@@ -1,5 +1,5 @@
-// glint_edit_times: measures how long the host takes to record edits of a scene, and how many bytes they bring
-// to the device.
+// glint_edit_times: measures how long the host takes to record edits of a scene, and how many bytes they
+// bring to the device.
 #include "base/clock.h"
 #include "context/commands.h"
 #include "gltf/scene.h"
@@ -88,8 +88,8 @@ std::array<float, 12> placeOf(int round) {
     return {1, 0, 0, x, 0, 1, 0, 2.0F, 0, 0, 1, 0.5F * x};
 }
 
-// Prints the milliseconds of an edit and of SceneEditor::record() after it, and the bytes of its staging memory
-// and of everything else that it replaces: the medians, and the least and the most time.
+// Prints the milliseconds of an edit and of SceneEditor::record() after it, and the bytes of its staging
+// memory and of everything else that it replaces: the medians, and the least and the most time.
 Status measureEdit(Context& context, SceneEditor& editor, const std::string& name, int rounds,
                    std::uint64_t& frame, const std::function<Status(int)>& edit) {
     GLINT_TRY(auto runner, CommandRunner::create(context.state()));

@@ -1,4 +1,5 @@
-// Compiles scenes to a package: plan, GLSL, SPIR-V, tables. It writes no files: see emit/package/compiled_package.h.
+// Compiles scenes to a package: plan, GLSL, SPIR-V, tables. It writes no files: see
+// emit/package/compiled_package.h.
 #pragma once
 
 #include "emit/package/compiled_package.h"
