@@ -247,7 +247,7 @@ struct MeshContent {
     std::span<const PrimitiveView> primitives;
     std::span<const GridPositions> positions;
     std::span<const std::vector<std::uint32_t>> ordered{};
-    // Of sealed meshes.
+    // Sealed meshes have the next three, by primitive.
     std::vector<const package::PrimitiveEntry*> entries{};
     std::vector<std::optional<OpacitySplit>> splits{};
     std::vector<const DeviceMicromap*> micromaps{};
