@@ -86,7 +86,7 @@ TEST(GltfFuzz, DamagedFilesAreRefusedOrRead) {
     // If all mutations failed early, or all succeeded, they would test nothing.
     EXPECT_GT(tally.imported, kContentMutations / 4);
     EXPECT_GT(tally.refused, kContentMutations / 4);
-    EXPECT_GT(tally.ids.size(), nightly() ? 20U : 15U);
+    EXPECT_GT(tally.ids.size(), 20U);
 }
 
 TEST(GltfFuzz, EveryTruncationOfAGlbIsRefused) {

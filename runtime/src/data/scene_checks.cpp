@@ -345,7 +345,7 @@ bool isFinite(std::span<const float> values) {
     return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
 }
 
-Status checkPose(const InstanceView& instance, const std::string& where) {
+Status checkFinite(const InstanceView& instance, const std::string& where) {
     for (const std::array<float, 12>& joint : instance.joints) {
         if (!isFinite(joint)) {
             return makeError("scene-motion", where, "a joint has a number that is not finite",
@@ -368,6 +368,24 @@ Diagnostic otherCount(const std::string& where, const std::string& what, std::si
 
 }  // namespace
 
+Status checkPose(const InstanceView& pose, std::size_t joints, std::size_t targets,
+                 const std::string& where) {
+    GLINT_TRY_DO(checkFinite(pose, where));
+    if (!pose.joints.empty() && joints > pose.joints.size()) {
+        return makeError("scene-index", where,
+                         "a vertex follows joint " + std::to_string(joints - 1) + ", there are " +
+                             std::to_string(pose.joints.size()),
+                         "give every joint that the mesh follows");
+    }
+    if (pose.morphWeights.size() > targets) {
+        return makeError("scene-motion", where,
+                         "there are " + std::to_string(pose.morphWeights.size()) + " weights for " +
+                             std::to_string(targets) + " morph targets",
+                         "give one weight for each target");
+    }
+    return okStatus();
+}
+
 Status checkDeformation(const SceneView& scene) {
     for (const PrimitiveView& view : scene.primitives) {
         GLINT_TRY_DO(checkTargets(view));
@@ -376,27 +394,15 @@ Status checkDeformation(const SceneView& scene) {
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
         const InstanceView& instance = scene.instances[i];
         const std::string where = "instance " + std::to_string(i);
-        GLINT_TRY_DO(checkPose(instance, where));
         const PrimitiveRange own = primitivesOf(scene.primitives, instance.mesh);
         const std::span<const PrimitiveView> primitives =
             scene.primitives.subspan(own.first, own.end - own.first);
-        const std::size_t needed = instance.joints.empty() ? 0 : jointsNeeded(primitives);
-        if (needed > instance.joints.size()) {
-            return makeError("scene-index", where,
-                             "a vertex follows joint " + std::to_string(needed - 1) + ", there are " +
-                                 std::to_string(instance.joints.size()),
-                             "give every joint that the mesh follows");
-        }
         std::size_t targets = 0;
         for (const PrimitiveView& view : primitives) {
             targets = std::max(targets, view.targets.size());
         }
-        if (instance.morphWeights.size() > targets) {
-            return makeError("scene-motion", where,
-                             "there are " + std::to_string(instance.morphWeights.size()) + " weights for " +
-                                 std::to_string(targets) + " morph targets",
-                             "give one weight for each target");
-        }
+        GLINT_TRY_DO(
+            checkPose(instance, instance.joints.empty() ? 0 : jointsNeeded(primitives), targets, where));
     }
     return okStatus();
 }
@@ -420,7 +426,7 @@ Status checkMotion(const MotionView& motion, const MotionShape& shape) {
         if (instance.morphWeights.size() != shape.weightCounts[i]) {
             return otherCount(where, "morph weights", instance.morphWeights.size(), shape.weightCounts[i]);
         }
-        GLINT_TRY_DO(checkPose(instance, where));
+        GLINT_TRY_DO(checkFinite(instance, where));
     }
     for (std::size_t i = 0; i < motion.lights.size(); ++i) {
         if (static_cast<std::uint32_t>(motion.lights[i].type) != shape.lightTypes[i]) {

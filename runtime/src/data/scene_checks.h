@@ -41,6 +41,10 @@ Status checkScene(const Package& package, const PackageScene& known, const Scene
 // "scene-attribute", "scene-index", "scene-motion".
 Status checkDeformation(const SceneView& scene);
 
+// Checks joints and weights against the number of joints that the mesh follows, and of its morph targets.
+// Errors: "scene-index", "scene-motion".
+Status checkPose(const InstanceView& pose, std::size_t joints, std::size_t targets, const std::string& where);
+
 // The properties that a MotionView must share with the scene that was uploaded. They are listed in the order
 // of instances and of lights.
 struct MotionShape {

@@ -42,16 +42,6 @@ Status checkPrimitive(const SceneStore& store, const EditedPrimitive& primitive,
     return okStatus();
 }
 
-void countUse(SceneStore& store, MaterialHandle material, std::uint32_t mesh, bool adds) {
-    if (StoredMaterial* const entry = store.materialSlots.find(material); entry != nullptr) {
-        std::uint32_t& count = entry->meshes[mesh];
-        count = adds ? count + 1 : count - 1;
-        if (count == 0) {
-            entry->meshes.erase(mesh);
-        }
-    }
-}
-
 // Checks the materials of an instance of a mesh and reports those without a case. Materials of the mesh are
 // reported by the edits of the mesh.
 Result<EditReport> checkMaterials(const SceneStore& store, const StoredMesh& mesh,
@@ -127,7 +117,7 @@ Result<AddedMesh> SceneEditor::addMesh(std::span<const EditedPrimitive> primitiv
     StoredMesh& mesh = *store_->meshes.find(added.mesh);
     for (std::size_t i = 0; i < primitives.size(); ++i) {
         mesh.primitives[i].material = primitives[i].material;
-        countUse(*store_, primitives[i].material, added.mesh.index, true);
+        countUse(*store_, primitives[i].material, &StoredMaterial::meshes, added.mesh.index, true);
     }
     return added;
 }
@@ -179,8 +169,8 @@ Result<EditReport> SceneEditor::setMeshMaterial(MeshHandle mesh, std::uint32_t p
     GLINT_TRY(auto shading, shadingOf(*store_, material, place.attributes));
     EditReport report;
     addTo(report, *store_, material, shading);
-    countUse(*store_, place.material, mesh.index, false);
-    countUse(*store_, material, mesh.index, true);
+    countUse(*store_, place.material, &StoredMaterial::meshes, mesh.index, false);
+    countUse(*store_, material, &StoredMaterial::meshes, mesh.index, true);
     place.material = material;
     for (const std::uint32_t index : entry->instances) {
         writeGeometries(*store_, store_->instanceSlots.handleAt(index), store_->instanceSlots.at(index));
@@ -200,7 +190,7 @@ Status SceneEditor::removeMesh(MeshHandle mesh) try {
                          "remove them first, or give them another mesh");
     }
     for (const StoredPrimitive& primitive : entry->primitives) {
-        countUse(*store_, primitive.material, mesh.index, false);
+        countUse(*store_, primitive.material, &StoredMaterial::meshes, mesh.index, false);
     }
     retireMesh(*store_, mesh);
     return okStatus();
@@ -211,30 +201,7 @@ namespace {
 
 Status checkRoom(const SceneStore& store, const StoredMesh& mesh, const std::string& where) {
     if (store.geometryRuns.end() > kMostGeometries - mesh.geometryCount) {
-        return makeError("scene-geometries", where,
-                         "the scene's instances have more than 2^24 - 2 primitives altogether",
-                         "join primitives of a material, or use fewer instances");
-    }
-    return okStatus();
-}
-
-// Checks a pose against the joints and targets of the mesh.
-Status checkPose(const StoredMesh& mesh, const InstanceView& pose, const std::string& where) {
-    if (!std::ranges::all_of(pose.joints, isFinite) ||
-        !std::ranges::all_of(pose.morphWeights, [](float weight) { return std::isfinite(weight); })) {
-        return makeError("scene-motion", where, "a joint or a weight is not finite", "repair the pose");
-    }
-    if (!pose.joints.empty() && pose.joints.size() < mesh.jointCount) {
-        return makeError("scene-index", where,
-                         "a vertex follows joint " + std::to_string(mesh.jointCount - 1) + ", there are " +
-                             std::to_string(pose.joints.size()),
-                         "give every joint that the mesh follows");
-    }
-    if (pose.morphWeights.size() > mesh.weightCount) {
-        return makeError("scene-motion", where,
-                         "there are " + std::to_string(pose.morphWeights.size()) + " weights for " +
-                             std::to_string(mesh.weightCount) + " morph targets",
-                         "give one weight for each target");
+        return tooManyGeometries(where);
     }
     return okStatus();
 }
@@ -253,7 +220,7 @@ Result<AddedInstance> SceneEditor::addInstance(const PlacedMesh& placed) try {
     InstanceView pose;
     pose.joints = placed.joints;
     pose.morphWeights = placed.morphWeights;
-    GLINT_TRY_DO(checkPose(*mesh, pose, where));
+    GLINT_TRY_DO(checkPose(pose, mesh->jointCount, mesh->weightCount, where));
     GLINT_TRY(auto report, checkMaterials(*store_, *mesh, placed.materials, where));
     GLINT_TRY_DO(checkRoom(*store_, *mesh, where));
     StoredInstance instance;
@@ -289,7 +256,8 @@ Status SceneEditor::poseInstance(InstanceHandle instance, std::span<const std::a
     InstanceView pose;
     pose.joints = joints;
     pose.morphWeights = morphWeights;
-    GLINT_TRY_DO(checkPose(*store_->meshes.find(entry->mesh), pose, placeOf("instance", instance.index)));
+    const StoredMesh& mesh = *store_->meshes.find(entry->mesh);
+    GLINT_TRY_DO(checkPose(pose, mesh.jointCount, mesh.weightCount, placeOf("instance", instance.index)));
     return glint::poseInstance(*store_, &store_->cases->package(), instance, pose);
 }
 GLINT_CATCH

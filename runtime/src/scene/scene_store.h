@@ -49,13 +49,15 @@ struct StoredTexture {
     std::shared_ptr<const EmissionTexels> texels{};  // of a colour, if emission may have textures
 };
 
+// How many primitives have a material, by the index of their mesh or instance.
+using MaterialUsers = std::map<std::uint32_t, std::uint32_t>;
+
 // A material of a scene that is edited. Its record is in SceneStore::materials at the handle's index.
 struct StoredMaterial {
     std::vector<MaterialKey> keys;
     std::vector<TextureUse> textures;
-    // The primitives of meshes, and of instances, that have it: how many of each.
-    std::map<std::uint32_t, std::uint32_t> meshes{};     // by index
-    std::map<std::uint32_t, std::uint32_t> instances{};  // by index
+    MaterialUsers meshes{};
+    MaterialUsers instances{};  // that have it in the place of their mesh's own
 };
 
 // A part and its BLAS, which instances that keep their shape share.
@@ -281,6 +283,12 @@ Status poseInstance(SceneStore& store, const Package* package, InstanceHandle ha
                     const InstanceView& pose);
 // The joints and weights of an instance. The spans hold until the store changes.
 InstanceView poseOf(const SceneStore& store, const StoredInstance& instance);
+
+// Counts a use of the material more or less.
+void countUse(SceneStore& store, MaterialHandle material, MaterialUsers StoredMaterial::*users,
+              std::uint32_t user, bool adds);
+// Error "scene-geometries".
+Diagnostic tooManyGeometries(const std::string& where);
 
 // Writes the geometry records of an instance, whose materials have been checked.
 void writeGeometries(SceneStore& store, InstanceHandle handle, const StoredInstance& instance);

@@ -59,13 +59,17 @@ Status makeStructure(SceneStore& store, BlasBuild& build, const PartPlace& place
     return okStatus();
 }
 
+// The indices of a primitive, in the order of its triangles on the device.
+std::span<const std::uint32_t> indicesOf(const MeshContent& content, std::size_t index) {
+    const bool isOrdered = !content.ordered.empty() && !content.ordered[index].empty();
+    return isOrdered ? std::span(content.ordered[index]) : content.primitives[index].indices;
+}
+
 Status makePrimitive(SceneStore& store, const Package& package, const MeshContent& content, std::size_t index,
                      StoredPrimitive& made) {
     GpuScene::State& scene = store.scene;
     const PrimitiveView& view = content.primitives[index];
-    const bool isOrdered = !content.ordered.empty() && !content.ordered[index].empty();
-    const std::span<const std::uint32_t> indices =
-        isOrdered ? std::span(content.ordered[index]) : view.indices;
+    const std::span<const std::uint32_t> indices = indicesOf(content, index);
     if (!content.entries.empty()) {
         made.entry = *content.entries[index];
         made.micromap = content.micromaps[index];
@@ -109,11 +113,9 @@ std::vector<MeshPart> partsOf(const SceneStore& store, const StoredMesh& mesh, c
 Box boxOfPart(const MeshPart& part, const MeshContent& content) {
     Box box = Box::nothing();
     for (const TriangleRange& range : part.ranges) {
-        const PrimitiveView& view = content.primitives[range.primitive];
-        const bool isOrdered = !content.ordered.empty() && !content.ordered[range.primitive].empty();
-        const std::span<const std::uint32_t> indices =
-            isOrdered ? std::span(content.ordered[range.primitive]) : view.indices;
-        box.extend(boxOf(view, indices.subspan(std::size_t{3} * range.first, std::size_t{3} * range.count)));
+        const std::span<const std::uint32_t> indices = indicesOf(content, range.primitive);
+        box.extend(boxOf(content.primitives[range.primitive],
+                         indices.subspan(std::size_t{3} * range.first, std::size_t{3} * range.count)));
     }
     return box;
 }
@@ -265,19 +267,26 @@ void retireMesh(SceneStore& store, MeshHandle handle) {
     takeMesh(mesh, [&](auto&& resource) { store.retired.add(std::forward<decltype(resource)>(resource)); });
 }
 
-namespace {
-
-void countUse(SceneStore& store, MaterialHandle material, std::uint32_t instance, bool adds) {
+void countUse(SceneStore& store, MaterialHandle material, MaterialUsers StoredMaterial::*users,
+              std::uint32_t user, bool adds) {
     StoredMaterial* const entry = store.materialSlots.find(material);
     if (entry == nullptr) {
         return;
     }
-    std::uint32_t& count = entry->instances[instance];
+    std::uint32_t& count = (entry->*users)[user];
     count = adds ? count + 1 : count - 1;
     if (count == 0) {
-        entry->instances.erase(instance);
+        (entry->*users).erase(user);
     }
 }
+
+Diagnostic tooManyGeometries(const std::string& where) {
+    return makeError("scene-geometries", where,
+                     "the scene's instances have more than 2^24 - 2 primitives altogether",
+                     "join primitives of a material, or use fewer instances");
+}
+
+namespace {
 
 // Links the instance to its mesh and its materials, and gives it geometry records.
 void link(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
@@ -288,7 +297,7 @@ void link(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
     instance.placeInMesh = static_cast<std::uint32_t>(mesh.instances.size());
     mesh.instances.push_back(index);
     for (const MaterialHandle material : instance.materials) {
-        countUse(store, material, index, true);
+        countUse(store, material, &StoredMaterial::instances, index, true);
     }
 }
 
@@ -319,7 +328,7 @@ void unlink(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
         store.instanceSlots.at(last).placeInMesh = instance.placeInMesh;
     }
     for (const MaterialHandle material : instance.materials) {
-        countUse(store, material, index, false);
+        countUse(store, material, &StoredMaterial::instances, index, false);
     }
     releaseShape(store, index, instance);
     store.drawsDirty = true;
@@ -601,8 +610,8 @@ void setOwnMaterial(SceneStore& store, InstanceHandle handle, std::size_t primit
                     MaterialHandle material) {
     StoredInstance& instance = store.instanceSlots.at(handle.index);
     instance.materials.resize(store.meshes.find(instance.mesh)->primitives.size());
-    countUse(store, instance.materials[primitive], handle.index, false);
-    countUse(store, material, handle.index, true);
+    countUse(store, instance.materials[primitive], &StoredMaterial::instances, handle.index, false);
+    countUse(store, material, &StoredMaterial::instances, handle.index, true);
     instance.materials[primitive] = material;
     writeGeometries(store, handle, instance);
 }

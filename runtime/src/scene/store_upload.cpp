@@ -306,13 +306,11 @@ private:
             store_.lastRows.push_back(view.objectToWorld);
             store_.lastVisible.push_back(view.visible);
             if (store_.geometryRuns.end() > kMostGeometries) {
-                return makeError("scene-geometries", placeOf("instance", handle.index),
-                                 "the scene's instances have more than 2^24 - 2 primitives altogether",
-                                 "join primitives of a material, or use fewer instances");
+                return tooManyGeometries(placeOf("instance", handle.index));
             }
         }
         addDecided();
-        return okStatus();
+        return store_.geometryRuns.end() > kMostGeometries ? Status(tooManyGeometries("")) : okStatus();
     }
 
     // Places the parts of decided triangles, after all others.
