@@ -37,7 +37,9 @@ fs::path beside(const fs::path& folder, const std::string& name) {
 // A command that runs beside the test.
 class Running {
 public:
-    Running(const fs::path& folder, Words words) : out_(beside(folder, "out")), err_(beside(folder, "err")) {
+    // Other names than those of CommandTest::run(), which removes its files.
+    Running(const fs::path& folder, Words words)
+        : out_(beside(folder, "watch-out")), err_(beside(folder, "watch-err")) {
         words.insert(words.begin(), commandPath());
         const std::string cache = (folder / "cache").string();
         child_ = fork();
