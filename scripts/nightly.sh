@@ -25,7 +25,7 @@ Sets up, builds, and runs all parts, or those that are named:
             with lavapipe's LLVM passes, which scripts/test.sh leaves out
   timing    the tests that follow files, clocks and a window: ten times by themselves, and ten times
             beside programs that take every core
-  sanitize  scripts/sanitize.sh --all
+  sanitize  scripts/sanitize.sh --all, and --threads
   spec      every material of tests/oracle/spec against the glTF specification, from six
             views, where scripts/test.sh compares a short list from three; writes
             out/specification.json and out/specification.md
@@ -103,7 +103,10 @@ for part in "${parts[@]}"; do
             kill "${load[@]}"
             trap - EXIT
             ;;
-        sanitize) scripts/sanitize.sh --all ;;
+        sanitize)
+            scripts/sanitize.sh --all
+            scripts/sanitize.sh --threads
+            ;;
         spec)
             build glint_spec_oracle
             mkdir -p out

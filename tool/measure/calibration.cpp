@@ -2,6 +2,7 @@
 #include "base/fields.h"
 #include "base/files.h"
 #include "base/json.h"
+#include "base/parallel.h"
 #include "measure/calibration_measure.h"
 
 #include <glint/measure/calibration.h>
@@ -11,7 +12,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -118,24 +118,16 @@ private:
         std::vector<Result<CompiledGroup>> groups(plans.size(), Diagnostic{});
         observer_.progress(fmt::format("compiling {} packages", plans.size()));
         const std::uint32_t tracers = context_.handles().tracers;
-        std::atomic<std::size_t> next{0};
-        const auto work = [&] {
-            for (std::size_t i = next++; i < plans.size(); i = next++) {
-                // The largest group is started first, so that nothing has to wait for it in the end.
-                const std::size_t group = plans.size() - 1 - i;
-                groups[group] = compileGroup(settings_, tracers, plans[group], cache_);
-            }
-        };
         const int jobs = settings_.render.compile.jobs;
         const std::size_t cores =
             jobs > 0 ? static_cast<std::size_t>(jobs) : std::thread::hardware_concurrency();
-        const std::size_t wanted = std::min(plans.size(), cores / kCoresPerPackage);
-        std::vector<std::jthread> threads;
-        for (std::size_t i = 1; i < wanted; ++i) {
-            threads.emplace_back(work);
-        }
-        work();
-        threads.clear();  // waits for them
+        const int together = std::max(1, static_cast<int>(cores / kCoresPerPackage));
+        base::runParallel(plans.size(), together, [&](std::size_t i) {
+            // The largest group is started first, so that nothing has to wait for it in the end.
+            const std::size_t group = plans.size() - 1 - i;
+            groups[group] = compileGroup(settings_, tracers, plans[group], cache_);
+            return true;
+        });
         return groups;
     }
 

@@ -1,5 +1,6 @@
 #include "base/clock.h"
 #include "base/files.h"
+#include "base/parallel.h"
 #include "cache/store.h"
 #include "gltf/codecs/basisu.h"
 #include "gltf/codecs/codecs.h"
@@ -8,10 +9,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <utility>
 
 namespace glint::session {
@@ -90,17 +91,10 @@ public:
 
     Result<std::shared_ptr<const TextureSet>> load() {
         const base::Clock::time_point begin = base::Clock::now();
-        const std::uint32_t cores = std::max(std::thread::hardware_concurrency(), 1U);
-        const std::size_t threads =
-            std::min<std::size_t>(options_.threads == 0 ? cores : options_.threads, scene_.images.size());
-        std::vector<std::thread> others;
-        for (std::size_t i = 1; i < threads; ++i) {
-            others.emplace_back([this] { work(); });
-        }
-        work();
-        for (std::thread& thread : others) {
-            thread.join();
-        }
+        base::runParallel(images_.size(), static_cast<int>(options_.threads), [this](std::size_t i) {
+            images_[i] = read(scene_.images[i], uses_[i]);
+            return true;
+        });
         auto set = std::make_shared<TextureSet>();
         for (Result<gltf::FittedImage>& image : images_) {
             if (!image) {
@@ -115,12 +109,6 @@ public:
     }
 
 private:
-    void work() {
-        for (std::size_t i = next_++; i < images_.size(); i = next_++) {
-            images_[i] = read(scene_.images[i], uses_[i]);
-        }
-    }
-
     // Returns whether the blocks of the image are worth keeping: packing takes far longer than reading them.
     bool isKept(const gltf::Image& image) const {
         const gltf::Codec* const codec = gltf::findCodec(image.file);
@@ -166,7 +154,6 @@ private:
     const TextureOptions& options_;
     std::vector<gltf::ImageUse> uses_;
     std::vector<Result<gltf::FittedImage>> images_;
-    std::atomic<std::size_t> next_{0};
     std::atomic<std::uint32_t> found_{0};
 };
 

@@ -69,6 +69,18 @@ void forEach(std::size_t count, const Work& work, std::uint32_t threads = thread
     }
 }
 
+// Calls both functions: as forEach() does with two threads, if `together`.
+template <typename First, typename Second>
+void callBoth(bool together, const First& first, const Second& second) {
+    if (together) {
+        forEach(
+            2, [&](std::size_t i) { i == 0 ? first() : second(); }, 2);
+    } else {
+        first();
+        second();
+    }
+}
+
 // Runs jobs with HostServices::runJob, or on threads of its own, which it starts as jobs need them.
 class Jobs {
 public:

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <future>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -254,15 +253,11 @@ public:
         const std::size_t second = node + 2 * (middle - begin);
         LightBounds first;
         LightBounds last;
-        if (threads > 1 && end - begin > kLightsOfThread) {
-            std::future<LightBounds> other = std::async(
-                std::launch::async, [&] { return build(begin, middle, node + 1, depth + 1, threads / 2); });
-            last = build(middle, end, second, depth + 1, threads - threads / 2);
-            first = other.get();
-        } else {
-            first = build(begin, middle, node + 1, depth + 1, 1);
-            last = build(middle, end, second, depth + 1, 1);
-        }
+        const bool together = threads > 1 && end - begin > kLightsOfThread;
+        const int others = together ? threads / 2 : 1;
+        callBoth(
+            together, [&] { last = build(middle, end, second, depth + 1, together ? threads - others : 1); },
+            [&] { first = build(begin, middle, node + 1, depth + 1, others); });
         const LightBounds both = unite(first, last);
         nodes_[node] = makeLightNode(both, static_cast<std::uint32_t>(second));
         return both;

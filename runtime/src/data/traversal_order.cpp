@@ -6,8 +6,6 @@
 #include <array>
 #include <bit>
 #include <limits>
-#include <system_error>
-#include <thread>
 
 namespace glint {
 namespace {
@@ -105,18 +103,11 @@ public:
         }
         const std::size_t left = (count + 1) / 2;
         part(leaves, ranks_.subspan(first, count), left);
-        if (threads > 1 && count >= 2 * kLeavesPerThread) {
-            try {
-                std::thread helper([&] { order(first, left, threads / 2); });
-                order(first + left, count - left, threads - threads / 2);
-                helper.join();
-                return;
-            } catch (const std::system_error&) {
-                // The system gives no more threads, so this thread does all the work.
-            }
-        }
-        order(first, left, 1);
-        order(first + left, count - left, 1);
+        const bool together = threads > 1 && count >= 2 * kLeavesPerThread;
+        const std::uint32_t others = together ? threads / 2 : 1;
+        callBoth(
+            together, [&] { order(first + left, count - left, together ? threads - others : 1); },
+            [&] { order(first, left, others); });
     }
 
 private:
