@@ -6,7 +6,7 @@ other. The new module must have the bindings and push constants of the old one. 
 
     benchmarks/replace_module.py PACKAGE MODULE.spv OTHER.spv     MODULE.spv: a file of the package
 
-The layout of tables.bin is that of runtime/include/glint/package_format.h.
+The layout of tables.bin is that of runtime/include/glint/internal/package_format.h.
 """
 import pathlib
 import struct

@@ -32,6 +32,8 @@ if(GLINT_BUILD_COMPILER)
     cmake_path(GET header PARENT_PATH folder)
     install(FILES tool/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/compiler/${folder})
   endforeach()
+  install(FILES runtime/include/glint/internal/package_format.h runtime/include/glint/internal/package_modules.h
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/internal)
   install(DIRECTORY tool/session/include/glint tool/measure/include/glint DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endif()
 install(EXPORT GlintTargets NAMESPACE Glint:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Glint)

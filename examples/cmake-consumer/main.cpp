@@ -7,6 +7,7 @@
 
 #include <glint/context.h>
 
+#include <algorithm>
 #include <iostream>
 
 namespace {
@@ -26,14 +27,10 @@ void printShaders(const glint::Package& package) {
     }
 }
 
-// Returns whether both packages have the same modules with the same sizes.
+// Returns whether both packages have the same cases and the same materials.
 bool areAlike(const glint::Package& one, const glint::Package& other) {
-    bool alike = one.modules().size() == other.modules().size();
-    for (const glint::package::ModuleEntry& module : one.modules()) {
-        const glint::package::ModuleKey key{module.role, module.index, module.tracer};
-        alike = alike && one.spirv(key).size() == other.spirv(key).size();
-    }
-    return alike;
+    return one.caseCount() == other.caseCount() &&
+           std::ranges::equal(one.scene(0).materials.bytes, other.scene(0).materials.bytes);
 }
 
 }  // namespace

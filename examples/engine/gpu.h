@@ -1,7 +1,7 @@
 // The engine's own layer over Vulkan: as much as the example needs. An error ends the program with a message.
 #pragma once
 
-#include <glint/package_format.h>
+#include <glint/package_shape.h>
 
 #include <vulkan/vulkan.h>
 

@@ -3,7 +3,7 @@
 
 #include "gpu.h"
 
-#include <glint/package_format.h>
+#include <glint/package_shape.h>
 
 #include <string>
 

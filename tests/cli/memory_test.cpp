@@ -3,7 +3,7 @@
 #include "cli/command.h"
 #include "cli/tiny_scene.h"
 
-#include <glint/package_format.h>
+#include <glint/internal/package_format.h>
 
 #include <xxhash.h>
 

@@ -4,8 +4,8 @@
 #include "cli/render_command.h"
 #include "cli/schemas.h"
 
+#include <glint/internal/package_modules.h>
 #include <glint/measure/device_file.h>
-#include <glint/package_modules.h>
 
 #include <algorithm>
 #include <filesystem>

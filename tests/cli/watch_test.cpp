@@ -3,6 +3,7 @@
 #include "cli/many_keys.h"
 #include "cli/tiny_scene.h"
 
+#include <glint/internal/package_modules.h>
 #include <glint/package.h>
 
 #include <algorithm>

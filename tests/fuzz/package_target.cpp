@@ -3,8 +3,8 @@
 #include "fuzz/fuzz_target.h"
 #include "package/package.h"
 
+#include <glint/internal/package_format.h>
 #include <glint/package.h>
-#include <glint/package_format.h>
 
 #include <xxhash.h>
 

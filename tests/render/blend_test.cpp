@@ -5,7 +5,7 @@
 #include "render/pixel_test.h"
 #include "support/models.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 
 #include <algorithm>
 #include <array>

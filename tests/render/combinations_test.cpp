@@ -5,7 +5,7 @@
 #include "render/ways.h"
 #include "support/nightly.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -5,7 +5,7 @@
 #include "render/pixel_test.h"
 #include "settings/settings.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include "render/ways.h"
 #include "support/temporary_folder.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 #include <glint/session/session.h>
 
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 #include "support/nightly.h"
 #include "unit/gltf/gltf_builder.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 #include <glint/session/camera.h>
 
 #include <fmt/format.h>

@@ -6,7 +6,7 @@
 #include "render/ways.h"
 #include "scene/gpu_scene_state.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 #include <glint/session/scene_view.h>
 
 #include <optional>

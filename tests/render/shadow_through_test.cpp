@@ -3,7 +3,7 @@
 #include "render/pixel_test.h"
 #include "render/ways.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 
 #include <algorithm>
 #include <cmath>

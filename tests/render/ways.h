@@ -3,7 +3,7 @@
 
 #include "render/harness.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 
 #include <cstdint>
 #include <functional>

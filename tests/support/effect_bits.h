@@ -2,7 +2,7 @@
 // declarations.
 #pragma once
 
-#include <glint/package_format.h>
+#include <glint/internal/package_format.h>
 
 #include <cstdint>
 

@@ -5,8 +5,8 @@
 #include "gltf/codecs/basisu.h"
 #include "spirv/compiler.h"
 
+#include <glint/internal/package_format.h>
 #include <glint/measure/machine.h>
-#include <glint/package_format.h>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #include "cli/table.h"
 #include "emit/package/manifest.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 #include <glint/renderer_options.h>
 
 #include <fmt/format.h>

@@ -10,9 +10,9 @@
 #include "plan/plan.h"
 #include "resolve/build.h"
 
-#include <glint/frame_traffic.h>
+#include <glint/internal/frame_traffic.h>
+#include <glint/internal/package_modules.h>
 #include <glint/package.h>
-#include <glint/package_modules.h>
 #include <glint/result.h>
 
 #include <span>

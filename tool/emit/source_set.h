@@ -5,7 +5,7 @@
 #include "emit/glsl/text.h"
 #include "spirv/compiler.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 
 #include <functional>
 #include <map>

@@ -3,7 +3,7 @@
 
 #include "spirv/statistics.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 #include <glint/result.h>
 
 #include <cstddef>

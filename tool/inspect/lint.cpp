@@ -3,7 +3,7 @@
 #include "base/files.h"
 #include "base/json.h"
 
-#include <glint/package_format.h>
+#include <glint/internal/package_format.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

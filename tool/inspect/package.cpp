@@ -4,7 +4,7 @@
 #include "base/text.h"
 #include "spirv/compiler.h"
 
-#include <glint/package_format.h>
+#include <glint/internal/package_format.h>
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include "inspect/package.h"
 #include "resolve/resolve.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 
 #include <fmt/format.h>
 

@@ -10,8 +10,8 @@
 #include "plan/gpu_costs.h"
 
 #include <glint/context.h>
+#include <glint/internal/package_pipelines.h>
 #include <glint/package.h>
-#include <glint/pipeline_statistics.h>
 #include <glint/result.h>
 
 #include <cstddef>

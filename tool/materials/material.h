@@ -3,7 +3,7 @@
 
 #include "materials/material_model.h"
 
-#include <glint/package_format.h>
+#include <glint/internal/package_format.h>
 #include <glint/result.h>
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 
 #include "materials/expression.h"
 
-#include <glint/package_format.h>
+#include <glint/internal/package_format.h>
 
 #include <array>
 #include <cstdint>

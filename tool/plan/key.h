@@ -3,7 +3,7 @@
 
 #include "materials/material.h"
 
-#include <glint/package_format.h>
+#include <glint/internal/package_format.h>
 
 #include <cstdint>
 #include <span>

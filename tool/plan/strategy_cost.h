@@ -38,7 +38,7 @@
 // switch needs those of its largest case.
 #pragma once
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 
 #include <array>
 #include <cstdint>

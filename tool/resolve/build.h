@@ -9,7 +9,7 @@
 #include "plan/strategy_cost.h"
 #include "settings/settings.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 #include <glint/result.h>
 
 #include <cstdint>

@@ -8,7 +8,7 @@
 #include "resolve/resolve.h"
 #include "scene/deformed.h"
 
-#include <glint/embedded_file.h>
+#include <glint/package_shape.h>
 #include <glint/session/session.h>
 #include <glint/session/textures.h>
 

@@ -6,7 +6,7 @@
 #include "plan/plan.h"
 #include "plan/strategy_cost.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 #include <glint/renderer_options.h>
 #include <glint/result.h>
 #include <glint/scene_view.h>

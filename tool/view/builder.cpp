@@ -9,9 +9,9 @@
 #include "resolve/host.h"
 #include "resolve/light.h"
 
+#include <glint/internal/package_modules.h>
 #include <glint/measure/settings.h>
 #include <glint/measure/target.h>
-#include <glint/package_modules.h>
 #include <glint/session/session.h>
 
 #include <fmt/format.h>

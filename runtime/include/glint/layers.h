@@ -5,7 +5,7 @@
 // renderer, the bytes of --stats and the channels of OpenEXR files follow from its rows.
 #pragma once
 
-#include <glint/package_format.h>
+#include <glint/package_shape.h>
 
 #include <cstdint>
 #include <optional>

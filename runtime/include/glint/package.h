@@ -3,9 +3,7 @@
 // time.
 #pragma once
 
-#include <glint/embedded_file.h>
-#include <glint/layers.h>
-#include <glint/package_modules.h>
+#include <glint/package_shape.h>
 #include <glint/result.h>
 
 #include <cstdint>
@@ -16,6 +14,18 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+namespace glint::package {
+
+struct PackageLayer;  // glint/layers.h
+// For the runtime's own sources and Glint's tools.
+struct EmissionEntry;
+struct ModuleEntry;
+struct ModuleKey;
+struct OpacityEntry;
+struct PackageShape;
+
+}  // namespace glint::package
 
 namespace glint {
 

@@ -11,9 +11,7 @@
 #include <glint/image.h>
 #include <glint/layers.h>
 #include <glint/package.h>
-#include <glint/package_format.h>
-#include <glint/package_modules.h>
-#include <glint/pipeline_statistics.h>
+#include <glint/package_shape.h>
 #include <glint/renderer_options.h>
 #include <glint/result.h>
 #include <glint/scene.h>
@@ -28,6 +26,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 namespace glint {
@@ -80,6 +79,32 @@ struct FrameCounters {
 
     // Returns zeros for an effect that the package lacks.
     EffectCounters of(package::Effect effect) const;
+};
+
+// A driver's report about its pipelines, in the terms of VK_KHR_pipeline_executable_properties.
+
+// One number. The driver chooses the name and the description.
+struct PipelineStatistic {
+    std::string name;
+    std::string description;
+    std::variant<bool, std::int64_t, std::uint64_t, double> value;
+};
+
+// A piece of code of a pipeline on the device. A driver may make one for each stage, or fewer, or more.
+struct PipelineExecutable {
+    std::string name;
+    std::string description;
+    VkShaderStageFlags stages = 0;
+    std::uint32_t subgroupSize = 0;  // 0: it may vary, or the driver gives none
+    std::vector<PipelineStatistic> statistics;
+};
+
+struct PipelineStatistics {
+    std::string name;  // the role of its module in the manifest, and its case, effect or ordering
+    // These have no value if the driver does not report them.
+    std::optional<double> creationMs;
+    std::optional<bool> cacheHit;
+    std::vector<PipelineExecutable> executables;
 };
 
 // The source of a pixel's light from an effect.

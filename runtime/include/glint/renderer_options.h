@@ -1,8 +1,7 @@
 // The options of a renderer and of each of its frames, and what it reports of them.
 #pragma once
 
-#include <glint/package_format.h>
-#include <glint/package_modules.h>
+#include <glint/package_shape.h>
 #include <glint/result.h>
 #include <glint/scene_view.h>
 
@@ -97,25 +96,7 @@ constexpr std::span<const Named<Binning>> namesOf(Binning /*type*/) {
     return kBinningNames;
 }
 
-// A sky with a linear gradient: zenith above, ground below, horizon in between. Radiance is in the units of
-// the lights.
-struct SkyView {
-    std::array<float, 3> zenith{0.25F, 0.45F, 0.85F};
-    std::array<float, 3> horizon{0.75F, 0.80F, 0.85F};
-    std::array<float, 3> ground{0.20F, 0.18F, 0.16F};
-};
-
 class Environment;
-
-// The times that Renderer::timings() returns for a frame.
-enum class Timing : std::uint32_t {
-    // "frame" is the time of the whole frame. "hits" is the time of a round of rays, from the finished list
-    // of rays to the shaded hits.
-    Frame,
-    // Every pass has a time of its own. To measure it, a pass waits for the passes before it, so that passes
-    // do not overlap. The sum is therefore longer than the frame takes otherwise.
-    Passes,
-};
 
 struct FrameOptions {
     CameraView camera;
@@ -174,37 +155,6 @@ struct FrameOptions {
     // 1/1000 s after some two hours; wrap the time before that.
     float time = 0.0F;
     Timing timing = Timing::Frame;
-};
-
-// --- The times of a frame's passes ---
-
-// The part of a frame that a time belongs to. docs/design.md explains it in "Passes of a frame".
-enum class Pass : std::uint32_t {
-    Frame,  // the whole frame, with Timing::Frame
-    Hits,   // a round of rays, from their list to their shaded hits, with Timing::Frame
-    Gbuffer,
-    Lighting,
-    EffectWalk,
-    EffectRays,
-    PathRays,
-    RayDispatch,
-    Trace,
-    Count,
-    Offset,
-    Copy,
-    CheckOrder,
-    Shade,  // the shading of hits, except in passes of one case
-    ShadeCase,
-    ShadowDispatch,
-    Shadow,
-    Compose,
-};
-
-struct PassTiming {
-    std::string name;  // for people; it is also the debug label of the pass
-    double milliseconds = 0.0;
-    Pass pass = Pass::Frame;
-    std::uint32_t shaderId = 0;  // the shader ID of Pass::ShadeCase
 };
 
 // --- Pipelines that threads make while frames are drawn ---

@@ -349,6 +349,14 @@ constexpr std::span<const Named<MotionView::Builds>> namesOf(MotionView::Builds 
     return kBuildsNames;
 }
 
+// A sky with a linear gradient: zenith above, ground below, horizon in between. Radiance is in the units of
+// the lights.
+struct SkyView {
+    std::array<float, 3> zenith{0.25F, 0.45F, 0.85F};
+    std::array<float, 3> horizon{0.75F, 0.80F, 0.85F};
+    std::array<float, 3> ground{0.20F, 0.18F, 0.16F};
+};
+
 // The camera of a frame, in world space, right-handed. Its place is in the world's own coordinates, whichever
 // origin the scene has.
 struct CameraView {
@@ -360,6 +368,16 @@ struct CameraView {
     float halfWidth = 0.4F;   // the same for the width; halfWidth / halfHeight should be width / height
     float near = 0.01F;       // metres
     float far = 0.0F;         // metres; 0 means infinite (perspective only)
+};
+
+// The times that Renderer::timings() and RaySteps::timings() return.
+enum class Timing : std::uint32_t {
+    // "frame" is the time of the whole frame. "hits" is the time of a round of rays, from the finished list
+    // of rays to the shaded hits.
+    Frame,
+    // Every pass has a time of its own. To measure it, a pass waits for the passes before it, so that passes
+    // do not overlap. The sum is therefore longer than the frame takes otherwise.
+    Passes,
 };
 
 }  // namespace glint

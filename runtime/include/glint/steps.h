@@ -9,9 +9,8 @@
 
 #include <glint/context.h>
 #include <glint/package.h>
-#include <glint/renderer_options.h>
+#include <glint/package_shape.h>
 #include <glint/result.h>
-#include <glint/scene.h>
 #include <glint/scene_view.h>
 
 #include <vulkan/vulkan_core.h>
@@ -24,6 +23,9 @@
 #include <vector>
 
 namespace glint {
+
+class Environment;
+class GpuScene;
 
 // --- The scene of a host ---
 

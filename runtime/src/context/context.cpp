@@ -2,7 +2,7 @@
 
 #include "context/vulkan_table.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 
 #include <algorithm>
 #include <utility>

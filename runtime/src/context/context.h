@@ -6,7 +6,7 @@
 #include "context/vulkan_table.h"
 
 #include <glint/context.h>
-#include <glint/package_format.h>
+#include <glint/internal/package_format.h>
 #include <glint/result.h>
 #include <glint/scene_view.h>
 

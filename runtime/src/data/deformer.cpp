@@ -4,6 +4,8 @@
 #include "context/shader_modules.h"
 #include "context/vulkan_table.h"
 
+#include <glint/internal/package_modules.h>
+
 #include <algorithm>
 
 namespace glint {

@@ -6,8 +6,8 @@
 #include "data/motion_bounds.h"
 #include "interop/scene.h"
 
+#include <glint/internal/package_format.h>
 #include <glint/package.h>
-#include <glint/package_format.h>
 #include <glint/scene_view.h>
 
 #include <array>

@@ -5,9 +5,9 @@
 #include "interop/frame.h"
 #include "sky/environment.h"
 
+#include <glint/internal/package_format.h>
+#include <glint/internal/package_modules.h>
 #include <glint/layers.h>
-#include <glint/package_format.h>
-#include <glint/package_modules.h>
 
 #include <array>
 #include <cstddef>

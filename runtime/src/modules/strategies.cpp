@@ -1,4 +1,4 @@
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 
 #include <algorithm>
 #include <array>

@@ -4,8 +4,9 @@
 #include "interop/scene.h"
 
 #include <glint/context.h>
+#include <glint/internal/package_modules.h>
+#include <glint/layers.h>
 #include <glint/package.h>
-#include <glint/package_modules.h>
 #include <glint/result.h>
 
 #include <array>

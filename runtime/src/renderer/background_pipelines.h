@@ -4,7 +4,7 @@
 #include "context/parallel.h"
 #include "renderer/pipeline_jobs.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 #include <glint/renderer_options.h>
 
 #include <condition_variable>

@@ -2,9 +2,9 @@
 #include "interop/frame.h"
 #include "renderer/renderer_choice.h"
 
-#include <glint/frame_traffic.h>
+#include <glint/internal/frame_traffic.h>
+#include <glint/internal/package_modules.h>
 #include <glint/package.h>
-#include <glint/package_modules.h>
 #include <glint/renderer.h>
 
 #include <algorithm>

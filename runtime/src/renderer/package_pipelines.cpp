@@ -7,7 +7,7 @@
 #include "renderer/renderer_choice.h"
 #include "scene/gpu_scene_state.h"
 
-#include <glint/pipeline_statistics.h>
+#include <glint/internal/package_pipelines.h>
 
 #include <algorithm>
 #include <map>

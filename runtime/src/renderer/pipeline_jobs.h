@@ -5,8 +5,9 @@
 #include "context/resources.h"
 #include "context/shader_modules.h"
 
+#include <glint/internal/package_modules.h>
 #include <glint/package.h>
-#include <glint/pipeline_statistics.h>
+#include <glint/renderer.h>
 
 #include <vulkan/vulkan_core.h>
 

@@ -4,8 +4,8 @@
 #include "frame/frame_resources.h"
 #include "renderer/pipelines.h"
 
+#include <glint/internal/package_modules.h>
 #include <glint/package.h>
-#include <glint/package_modules.h>
 #include <glint/renderer_options.h>
 
 #include <cstdint>

@@ -3,6 +3,8 @@
 #include "data/scene_checks.h"
 #include "interop/scene.h"
 
+#include <glint/internal/package_modules.h>
+
 #include <bit>
 #include <optional>
 

@@ -2,7 +2,7 @@
 #include "base/json.h"
 #include "resolve/light.h"
 
-#include <glint/package_format.h>
+#include <glint/internal/package_format.h>
 
 #include <gtest/gtest.h>
 

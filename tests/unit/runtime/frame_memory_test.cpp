@@ -2,8 +2,8 @@
 #include "frame/frame_resources.h"
 #include "renderer/renderer_choice.h"
 
-#include <glint/frame_traffic.h>
-#include <glint/package_modules.h>
+#include <glint/internal/frame_traffic.h>
+#include <glint/internal/package_modules.h>
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include "interop/scene.h"
 #include "support/temporary_folder.h"
 
+#include <glint/internal/package_modules.h>
 #include <glint/package.h>
-#include <glint/package_modules.h>
 
 #include <cstddef>
 #include <cstdint>

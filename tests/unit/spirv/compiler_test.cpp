@@ -4,7 +4,7 @@
 #include "spirv/reader.h"
 #include "spirv/statistics.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 
 #include <glslang/SPIRV/spirv.hpp>
 #include <gtest/gtest.h>

@@ -12,7 +12,6 @@
 #include <glint/context.h>
 #include <glint/environment.h>
 #include <glint/measure/views.h>
-#include <glint/pipeline_statistics.h>
 #include <glint/renderer.h>
 #include <glint/scene_view.h>
 #include <glint/session/sky.h>

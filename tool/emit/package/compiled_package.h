@@ -6,7 +6,7 @@
 #include "plan/plan.h"
 #include "spirv/statistics.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 #include <glint/result.h>
 
 #include <cstdint>

@@ -298,7 +298,7 @@ std::string firstLine(const gltf::SceneList& scenes) {
 std::string makeHeaderText(const gltf::SceneList& scenes, const std::string& scope) {
     return firstLine(scenes) + fmt::format(
                                    "#pragma once\n\n"
-                                   "#include <glint/embedded_file.h>\n\n"
+                                   "#include <glint/package_shape.h>\n\n"
                                    "#include <span>\n\n"
                                    "namespace glint::{} {{\n\n"
                                    "// The package, for Package::load(). Static storage.\n"

@@ -11,7 +11,7 @@
 #include "settings/settings.h"
 #include "spirv/statistics.h"
 
-#include <glint/package_modules.h>
+#include <glint/internal/package_modules.h>
 
 #include <cstdint>
 #include <filesystem>

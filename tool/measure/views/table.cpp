@@ -2,6 +2,7 @@
 #include "image/text.h"
 #include "plan/cost.h"
 
+#include <glint/internal/package_modules.h>
 #include <glint/measure/views.h>
 
 #include <fmt/format.h>

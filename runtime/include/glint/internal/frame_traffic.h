@@ -4,9 +4,9 @@
 // counters and buckets are not in them, and caches and tiles on the chip may save part of them.
 #pragma once
 
+#include <glint/internal/package_format.h>
+#include <glint/internal/package_modules.h>
 #include <glint/layers.h>
-#include <glint/package_format.h>
-#include <glint/package_modules.h>
 #include <glint/result.h>
 
 #include <cstdint>

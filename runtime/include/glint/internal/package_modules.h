@@ -2,11 +2,10 @@
 // checks it and the renderer draws from it.
 #pragma once
 
-#include <glint/package_format.h>
+#include <glint/internal/package_format.h>
 #include <glint/result.h>
 
 #include <cstdint>
-#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,18 +17,6 @@ namespace glint::package {
 // A strategy is one row of the table in runtime/src/modules/strategies.cpp and one folder with its GLSL,
 // shaders/strategies/<strategy>/. The compiler, the loader, the renderer, the cost model and the tools act on
 // the row's fields.
-
-// A bit of a set of strategies, by the strategy's place in the table. These are names for programs; a
-// strategy works without one, as findStrategy() finds it by its name.
-enum Strategy : std::uint32_t {
-    kStrategyUber = 1,
-    kStrategyVisibility = 2,
-    kStrategySortedUber = 4,
-    kStrategyHitShaders = 8,
-};
-
-inline constexpr Strategy kDefaultStrategy = kStrategyVisibility;                         // of a renderer
-inline constexpr std::uint32_t kDefaultStrategies = kStrategyUber | kStrategyVisibility;  // of a package
 
 enum class ShaderKind : std::uint8_t {
     Vertex,
@@ -90,8 +77,6 @@ struct StrategyInfo {
 
 // The rows in their order. The others are measured against the first, which every device can run.
 std::span<const StrategyInfo> strategyTable();
-std::span<const Strategy> strategies();
-std::span<const Named<Strategy>> namesOf(Strategy type);
 
 // Returns null for a name that no strategy has.
 const StrategyInfo* findStrategy(std::string_view name);
@@ -176,91 +161,6 @@ struct RoleInfo {
     }
 };
 
-// Names on the command line and in the manifest.
-inline constexpr Named<Tracer> kTracerNames[] = {
-    {kTracerRayQuery, "ray-query", "compute shaders trace"},
-    {kTracerRayPipeline, "ray-pipeline", "ray generation shaders trace, for devices without ray queries"},
-};
-inline constexpr Named<ShadowPlacement> kShadowNames[] = {
-    {ShadowPlacement::Inline, "inline", "by the shader that shades the hit"},
-    {ShadowPlacement::Deferred, "deferred", "from a list, by a pass of their own"},
-};
-inline constexpr Named<AlphaPolicy> kAlphaNames[] = {
-    {AlphaPolicy::Opaque, "opaque", "ignored"},
-    {AlphaPolicy::Tested, "tested", "each candidate hit is tested; BLEND is opaque"},
-    {AlphaPolicy::Stochastic, "stochastic", "tested, and a ray stops at BLEND with the probability alpha"},
-};
-inline constexpr Named<ShadowThrough> kShadowThroughNames[] = {
-    {ShadowThrough::Opaque, "opaque", "glass and BLEND block"},
-    {ShadowThrough::Alpha, "alpha", "as --alpha says; glass blocks"},
-    {ShadowThrough::Glass, "glass", "coloured light passes glass and BLEND"},
-};
-inline constexpr Named<HitRecordFormat> kHitRecordNames[] = {
-    {HitRecordFormat::Full, "full", "20 bytes"},
-    {HitRecordFormat::Packed, "packed", "12 bytes, with less precision"},
-};
-inline constexpr Named<SampleRecordFormat> kSampleRecordNames[] = {
-    {SampleRecordFormat::Full, "full", "48 bytes"},
-    {SampleRecordFormat::Packed, "packed",
-     "24 bytes, with less precision, which hold the hit as well where that is possible"},
-};
-inline constexpr Named<ShadingPrecision> kPrecisionNames[] = {
-    {ShadingPrecision::Single, "32", "everything in 32-bit float"},
-    {ShadingPrecision::Half, "16",
-     "parameters of materials, Fresnel and weights of lobes in 16-bit float; geometry, densities and light "
-     "keep 32"},
-};
-inline constexpr Named<Ordering> kOrderingNames[] = {
-    {Ordering::GlobalAtomics, "global-atomics", "one atomic for each hit"},
-    {Ordering::WaveLoop, "wave-loop", "an atomic for each shader in a subgroup, found one after the other"},
-    {Ordering::WaveAggregated, "wave-aggregated", "a loop over all shaders, for few shaders only"},
-    {Ordering::WaveBallot, "wave-ballot", "an atomic for each shader in a subgroup, found by ballots"},
-    {Ordering::LocalHistogram, "local-histogram", "counts in shared memory, an atomic for each shader"},
-    {Ordering::TileSort, "tile-sort", "sorts thousands of hits in shared memory"},
-};
-static_assert(std::size(kOrderingNames) == static_cast<std::size_t>(Ordering::Count));
-
-inline constexpr Named<Passes> kPassesNames[] = {
-    {Passes::Frame, "frame", "a whole frame, for Renderer"},
-    {Passes::Steps, "steps", "passes that trace, order and shade an engine's own rays, for RaySteps"},
-};
-inline constexpr Named<HitAnswer> kAnswerNames[] = {
-    {HitAnswer::Radiance, "radiance", "the light that comes back along the ray"},
-    {HitAnswer::Surface, "surface", "the surface that the ray hits, which the engine lights"},
-};
-
-constexpr std::span<const Named<Tracer>> namesOf(Tracer /*type*/) {
-    return kTracerNames;
-}
-constexpr std::span<const Named<ShadowPlacement>> namesOf(ShadowPlacement /*type*/) {
-    return kShadowNames;
-}
-constexpr std::span<const Named<AlphaPolicy>> namesOf(AlphaPolicy /*type*/) {
-    return kAlphaNames;
-}
-constexpr std::span<const Named<ShadowThrough>> namesOf(ShadowThrough /*type*/) {
-    return kShadowThroughNames;
-}
-constexpr std::span<const Named<HitRecordFormat>> namesOf(HitRecordFormat /*type*/) {
-    return kHitRecordNames;
-}
-constexpr std::span<const Named<SampleRecordFormat>> namesOf(SampleRecordFormat /*type*/) {
-    return kSampleRecordNames;
-}
-constexpr std::span<const Named<ShadingPrecision>> namesOf(ShadingPrecision /*type*/) {
-    return kPrecisionNames;
-}
-constexpr std::span<const Named<Ordering>> namesOf(Ordering /*type*/) {
-    return kOrderingNames;
-}
-constexpr std::span<const Named<Passes>> namesOf(Passes /*type*/) {
-    return kPassesNames;
-}
-constexpr std::span<const Named<HitAnswer>> namesOf(HitAnswer /*type*/) {
-    return kAnswerNames;
-}
-using glint::nameOf;
-
 // The members of Bindings by name.
 struct NamedBinding {
     std::string_view name;
@@ -276,12 +176,6 @@ inline constexpr NamedBinding kBindingNames[] = {
     {"push-offset", &Bindings::pushOffset},
 };
 
-constexpr std::uint32_t bitsOf(ShadingPrecision precision) {
-    return precision == ShadingPrecision::Single ? 32 : 16;
-}
-
-inline constexpr auto kTracers = valuesOf(kTracerNames);
-
 // Returns every role, in the order of the list of modules: those that strategies share, then those of each
 // strategy.
 std::span<const RoleInfo> roles();
@@ -294,10 +188,6 @@ const RoleInfo* findRole(ModuleRole role);
 std::string_view roleName(ModuleRole role);
 // Returns ModuleRole::None for a name that no role has.
 ModuleRole roleNamed(std::string_view name);
-
-// Returns the Tracer bits that strategies use. Those with a pipeline of their own use the ray tracing
-// pipeline; the others use the package's tracers.
-std::uint32_t tracersOf(std::uint32_t strategies, std::uint32_t tracers);
 
 // Returns whether hits send rays further.
 bool hasPaths(const PackageShape& shape);

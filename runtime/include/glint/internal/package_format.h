@@ -8,42 +8,20 @@
 // people and scripts.
 #pragma once
 
+#include <glint/package_shape.h>
+
 #include <bit>
 #include <cstdint>
-#include <string_view>
 
 namespace glint::package {
 
-// --- Effects, the uses of rays in a picture ---
-// Each is declared by a folder of shaders/effects or of a pack (docs/effects.md); a package says which it
-// has.
-
-// One bit of a set of effects. The compiler numbers the effects, and a package keeps the numbers. Effects of
-// Glint's own have the same bit in every package. Package::effects() gives their names.
-using Effect = std::uint32_t;
-
-inline constexpr std::uint32_t kMostEffects = 32;
-inline constexpr std::uint32_t kAllEffects = 0xFFFFFFFFU;
-
-enum class EffectKind : std::uint32_t {
-    Light = 0,    // decides how much of a light reaches a surface, primary or hit
-    Surface = 1,  // decides how much of the sky's light reaches a primary surface
-    Rays = 2,     // sends rays from primary surfaces whose hits the package shades
-};
+// --- Sets of effects ---
 
 // The work that the renderer does for an effect beyond its kind, as bits of a set.
 enum EffectAbility : std::uint32_t {
     kEffectStartsOnScreen = 1,  // its rays may find their end in the picture: it keeps positions of pixels
     kEffectWalks = 2,           // a pass of its own follows its rays before the list takes them
     kAllEffectAbilities = 3,
-};
-
-// An effect of a package.
-struct EffectInfo {
-    Effect effect = 0;
-    EffectKind kind = EffectKind::Rays;
-    std::uint32_t abilities = 0;  // EffectAbility bits
-    std::string_view name{};      // on the command line, in the manifest and of passes
 };
 
 // The effects of a package as sets of bits, grouped by the renderer's work.
@@ -107,100 +85,6 @@ inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
 
-// The ways to trace rays, as bits of a set. Strategies with a pipeline of their own always use the ray
-// tracing pipeline, whichever tracers the package has for the others.
-enum Tracer : std::uint32_t {
-    kTracerRayQuery = 1,
-    kTracerRayPipeline = 2,  // ray generation shaders: for devices without ray queries
-    kAllTracers = 3,
-};
-
-// The pass that traces the shadow rays of hits.
-enum class ShadowPlacement : std::uint32_t {
-    Inline = 0,    // by the shader that shades the hit
-    Deferred = 1,  // by a pass of their own, from a list
-};
-
-// The treatment of a material's alpha by rays.
-enum class AlphaPolicy : std::uint32_t {
-    Opaque = 0,      // nothing: whatever they hit is opaque
-    Tested = 1,      // alphaMode MASK is tested, and BLEND is opaque
-    Stochastic = 2,  // as above, but a ray stops at BLEND with the probability alpha
-};
-
-// The ways in which the light of punctual lights passes through alpha and glass.
-enum class ShadowThrough : std::uint32_t {
-    Alpha = 0,   // as AlphaPolicy treats all rays; glass blocks it
-    Opaque = 1,  // glass and alphaMode BLEND block it
-    Glass = 2,   // a share of each colour
-};
-
-// The storage format of a hit between passes.
-enum class HitRecordFormat : std::uint32_t {
-    Full = 0,    // 20 bytes, gpu::HitRecord
-    Packed = 1,  // 12 bytes, gpu::PackedHitRecord
-};
-
-// The storage format of effects' samples between passes.
-enum class SampleRecordFormat : std::uint32_t {
-    Full = 0,    // 48 bytes, gpu::SampleStart, SampleAim and SampleWeight
-    Packed = 1,  // 24 bytes, gpu::SampleStart and gpu::uvec2
-};
-
-// The most bounces that a path may have. It stands for "unlimited": paths that carry little light end
-// earlier.
-inline constexpr std::uint32_t kMaxBounces = 64;
-
-// The passes that a package has.
-enum class Passes : std::uint32_t {
-    Frame = 0,  // a whole frame: the raster pass, lighting, effects, and the hits of their rays
-    Steps = 1,  // the passes that trace, order and shade a host's own rays (RaySteps)
-};
-
-// The answer that RaySteps returns for a host's ray.
-enum class HitAnswer : std::uint32_t {
-    Radiance = 0,  // the light that comes back along the ray
-    Surface = 1,   // gpu::SurfaceRecord: the surface that it hit, for a host that lights it
-};
-
-// Where shaders find a host's bindings. Renderer accepts the defaults only.
-struct Bindings {
-    std::uint32_t sceneSet = 0;        // descriptor set of the next three
-    std::uint32_t tlas = 0;            // accelerationStructureEXT
-    std::uint32_t textures = 1;        // texture2D[]
-    std::uint32_t samplers = 2;        // sampler[]
-    std::uint32_t environmentSet = 1;  // descriptor set of the next
-    std::uint32_t environment = 5;     // sampler2D, in packages that read an environment map
-    std::uint32_t pushOffset = 0;      // of gpu::PushConstants in the range of push constants, bytes
-
-    // The value of `tlas` without a descriptor: RayBatch::tlas has the structure's device address.
-    static constexpr std::uint32_t kByAddress = 0xFFFFFFFF;
-
-    friend bool operator==(const Bindings&, const Bindings&) = default;
-};
-
-// The precision of shading.
-enum class ShadingPrecision : std::uint32_t {
-    Single = 0,  // everything in 32-bit float
-    Half = 1,    // 16-bit float where that is exact enough; the device needs shaderFloat16
-};
-
-// The methods of counting hits into buckets and copying them in the order of the buckets. Each method gives
-// each hit one slot. Which one is fastest depends on the device and on the number of buckets.
-enum class Ordering : std::uint32_t {
-    GlobalAtomics = 0,  // one atomic for each hit
-    WaveLoop = 1,       // an atomic for each distinct bucket in a subgroup, found one after the other
-    WaveAggregated =
-        2,  // a loop over all buckets, with an atomic for each that the subgroup has: few buckets only
-    WaveBallot = 3,      // lanes of equal buckets by a ballot a bit; an atomic for each distinct bucket
-    LocalHistogram = 4,  // counts in shared memory, then an atomic for each bucket that the workgroup has
-    TileSort = 5,        // sorts thousands of hits in shared memory, then an atomic for each bucket they have
-    Count = 6,
-};
-
-// The most lights that a surface chooses by a hierarchy.
-inline constexpr std::uint32_t kMaxLightSamples = 64;
-
 struct PackageHeader {
     char magic[8];
     std::uint32_t version;
@@ -263,11 +147,6 @@ struct PackageSection {
     std::uint64_t count;   // elements
 };
 
-struct StringRef {
-    std::uint32_t offset;  // into the Strings section
-    std::uint32_t length;
-};
-
 // The purpose of a SPIR-V module. The values are stable. Each strategy has roles of its own, which follow
 // these (package_modules.h).
 enum class ModuleRole : std::uint32_t {
@@ -306,16 +185,6 @@ struct ModuleEntry {
     std::uint64_t hash;  // XXH3, 64 bits
 };
 
-// A shader ID. It is retired if a lock file keeps it and no material has it. A retired one has no keys, no
-// primitives and no modules.
-struct CaseEntry {
-    std::uint64_t always;
-    std::uint64_t sometimes;
-    StringRef name;
-    std::uint32_t keyCount;  // 0: retired
-    std::uint32_t pad;
-};
-
 // One of the scenes that share the package's cases. It names the scene's ranges in the sections that are
 // stored scene by scene; these ranges follow each other without gaps. Indices in their elements count from
 // the scene's own first element.
@@ -329,34 +198,6 @@ struct SceneEntry {
     std::uint32_t textureCount;
     std::uint32_t firstSampler;
     std::uint32_t samplerCount;
-};
-
-// One primitive of one mesh. The entries of each scene are sorted by (mesh, primitive).
-struct PrimitiveEntry {
-    std::uint32_t mesh;
-    std::uint32_t primitive;
-    std::uint32_t shaderId;
-    std::uint32_t materialIndex;
-    std::uint32_t featureLobes;
-    std::uint32_t featureInputs;
-    std::uint32_t geometryFlags;  // kGeometry* of shaders/interop/scene.h
-    std::uint32_t alphaMode;      // 0 opaque, 1 mask, 2 blend, as in the file
-};
-
-// An image viewed in one colour space. A glTF image that is used both as colour and as data has two entries.
-struct TextureEntry {
-    std::uint32_t image;  // index into the scene's images
-    std::uint32_t srgb;   // 1: 8-bit sRGB format, 0: 8-bit linear format
-};
-
-// An attribute of vertices that shaders read beside those of glTF's core. Each vertex of a primitive has the
-// values of all entries, one after the other, if the primitive's key has one of their features.
-struct AttributeEntry {
-    StringRef name;             // in glTF: "_WEAR"
-    std::uint32_t channels;     // 1 to 4
-    std::uint32_t hasFallback;  // 1: primitives may lack it
-    float fallback[4];
-    std::uint64_t feature;  // the bit of keys whose shaders read it
 };
 
 // An effect that the package has.
@@ -409,15 +250,6 @@ struct OpacityEntry {
 struct FeatureEntry {
     std::uint64_t mask;  // one bit of keys
     StringRef name;      // in the manifest: "baseColorTexture"
-};
-
-struct SamplerEntry {
-    std::uint32_t wrapU;  // 0 repeat, 1 clamp to edge, 2 mirrored repeat
-    std::uint32_t wrapV;
-    std::uint32_t magnification;  // 0 nearest, 1 linear
-    std::uint32_t minification;
-    std::uint32_t mip;
-    std::uint32_t mipmapped;
 };
 
 static_assert(sizeof(PackageHeader) == 160);
