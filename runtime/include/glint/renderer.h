@@ -142,6 +142,8 @@ public:
         // Buffers of the frame that have the size that the new package needs, and those that are made.
         std::uint32_t buffersKept = 0;
         std::uint32_t buffersMade = 0;
+        // In a scene that is edited: the materials that the fallback of the new package shades.
+        std::vector<MissingCase> missing{};
     };
 
     // The progress of the last replacement.
@@ -174,10 +176,16 @@ public:
     // recording of any of them after that switches all. Its commands must come before those of their later
     // recordings. `package` must not be null; the renderers keep it as long as it is needed.
     //
+    // In a scene that is edited, the textures, materials, meshes, instances and lights of edits stay; see
+    // docs/live.md, "Replacing a package". Edits after the recording that switches give records in the layout
+    // of the new package. So do poses (GpuScene::update()) that give values of materials.
+    //
     // With an error nothing changes. Errors: those of create() for package and options; "scene-package" (the
     // scene has another name, or vertices, textures or acceleration structures that do not suit the package,
     // so that it has to be uploaded anew), "position-fetch", "half-precision"; "package-frame" (its frames
-    // have other images). An error of making pipelines in the background is in replacementProgress().
+    // have other images); in a scene that is edited also "texture-trusted", and those of SceneEditor for
+    // materials that the package has no shader for. replacementProgress() has errors of making pipelines in
+    // the background, and those of edits after the call.
     Result<Replacement> replacePackage(std::shared_ptr<const Package> package);
     ReplacementProgress replacementProgress() const;
 

@@ -46,7 +46,7 @@ struct NextPackage {
 
     std::shared_ptr<const Package> package;
     Renderer::Replacement report;
-    std::uint32_t scene = 0;  // index in the package
+    PackageFit fit;
     PipelineChoice choice;
     FrameSize size;
     std::optional<Timer> timer;  // no value: the renderer's own is long enough

@@ -82,7 +82,7 @@ Status makePipelinesOf(Renderer::State& state, NextPackage& next) {
     PipelineChoice choice = next.choice;
     choice.background = false;
     choice.draft = false;
-    const std::vector<std::uint32_t> shaderIds = shaderIdsIn(state.scene, next.package->scene(next.scene));
+    const std::vector<std::uint32_t>& shaderIds = next.fit.shaderIds;
     pipelines.shadesUnknown = hasUnknown(*next.package, shaderIds);
     const KnownPipelines known = knownPipelines(state);
     std::vector<PlannedPipeline> missing;
@@ -125,10 +125,11 @@ Result<std::unique_ptr<NextPackage>> makeNext(Renderer::State& state,
                          "compile it with --passes frame");
     }
     GLINT_TRY(const auto choice, choosePipelines(state.context, *package, state.options));
-    GLINT_TRY(const auto scene, findScene(state.scene, *package));
+    GLINT_TRY(auto fit, fitPackage(state.scene, package));
     auto next = std::make_unique<NextPackage>(state.context);
     next->choice = choice;
-    next->scene = scene;
+    next->report.missing = fit.missing;
+    next->fit = std::move(fit);
     next->size = frameSize(*package, choice, state.options, textureCapacity(state.scene));
     GLINT_TRY_DO(checkFrameSize(state.context, next->size));
     if (!haveSameImages(state.size, next->size)) {
@@ -348,7 +349,7 @@ void switchPackage(Renderer::State& state, VkCommandBuffer commands) {
     }
     const auto left = std::make_shared<RetiredLot>();
     Result<RetiredLot> scene =
-        recordReplacement(state.scene, *state.next->package, state.next->scene, commands);
+        recordReplacement(state.scene, state.next->package, state.next->fit.scene, commands);
     if (!scene) {
         refuse(state, scene.error());
         return;

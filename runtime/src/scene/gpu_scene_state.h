@@ -73,8 +73,10 @@ struct ScenePackage {
     };
 
     std::uint64_t records = 0;  // recordsHash()
+    bool isEmpty = false;       // the scene began without anything: kNoPackageScene
     std::string scene;          // name in the package
     std::vector<package::PrimitiveEntry> entries;
+    std::vector<RecordField> fields;
     std::vector<package::TextureEntry> textures;
     std::vector<std::array<float, 2>> texels;  // sizes of the textures
     std::vector<package::SamplerEntry> samplers;
@@ -84,8 +86,6 @@ struct ScenePackage {
     std::optional<package::EmissionEntry> emission{};
     std::vector<Emission> emissions;  // by material
     std::vector<Decided> decided;
-    // The memory of GpuScene::State::materials, once it was replaced by a buffer of another size.
-    std::shared_ptr<MemoryPool> pool;
 };
 
 // Members are destroyed in reverse order: the pool's memory last.
@@ -176,22 +176,26 @@ Result<DescriptorSet> makeSceneSet(const GpuScene::State& state, VkAccelerationS
 
 // --- The package that a scene is drawn with, and its replacement (scene_package.cpp) ---
 
-// Returns the data that an upload has taken.
-ScenePackage describePackage(const Package& package, const SceneView& scene);
+// Returns the data that an upload has taken. `known` may be a scene without tables.
+ScenePackage describePackage(const Package& package, const PackageScene& known, const SceneView& scene);
 
-// Returns the index of the scene in `package`. Errors: "scene-package" (it has no such scene, or differs in
-// data that only an upload can change), "position-fetch", "half-precision".
-Result<std::uint32_t> findScene(const GpuScene::State& scene, const Package& package);
+// The way in which a package draws a scene.
+struct PackageFit {
+    std::uint32_t scene = 0;               // its index, or kNoPackageScene
+    std::vector<std::uint32_t> shaderIds;  // of the shader binding table
+    std::vector<MissingCase> missing;      // of a scene that is edited: materials that the fallback shades
+};
+// Checks that the package can draw the scene. Errors: "scene-package" (it has no such scene, or differs in
+// data that only an upload can change), "position-fetch", "half-precision"; of a scene that is edited also
+// those of editedTables().
+Result<PackageFit> fitPackage(const GpuScene::State& scene, const std::shared_ptr<const Package>& package);
 
-// Returns the shader ID of each geometry record in `package`. Requires findScene().
-std::vector<std::uint32_t> shaderIdsIn(const GpuScene::State& scene, const PackageScene& known);
-
-// Records the copies that bring the scene's records of geometries and materials to `package`, which must run
-// before all commands that read them, and makes `scene` one of that package. Values of materials that the
-// host has given stay. Returns the resources that commands use which were recorded until then, or that these
-// commands use. Requires findScene(), which gave `index`. With an error nothing changes. Errors: those
-// of buffers.
-Result<RetiredLot> recordReplacement(GpuScene::State& scene, const Package& package, std::uint32_t index,
-                                     VkCommandBuffer commands);
+// Records the copies that bring the scene's records to `package`, which must run before all commands that
+// read them, and makes `scene` one of that package. A scene that is edited keeps the package. Values of
+// materials that edits or the host have given stay. Returns the resources that commands use which were
+// recorded until then, or that these commands use. Requires fitPackage(), which gave `index`. With an error
+// nothing changes. Errors: those of buffers, and of materials that edits have changed since fitPackage().
+Result<RetiredLot> recordReplacement(GpuScene::State& scene, const std::shared_ptr<const Package>& package,
+                                     std::uint32_t index, VkCommandBuffer commands);
 
 }  // namespace glint

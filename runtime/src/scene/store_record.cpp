@@ -173,23 +173,24 @@ private:
         if (count > now) {
             return std::max(count, 2 * now);
         }
-        return store_.trims ? std::max(count, first) : now;
+        return store_.trims ? std::max({count, first, 1U}) : std::max(now, 1U);
     }
 
     Status prepareArrays() {
         std::size_t i = 0;
         for (const auto& [records, device, isRead, isKept, usage] : arrays()) {
-            // An array that is not kept is made for the recordings that read it.
-            const bool isIdle = !isKept && !(isRead && isNeeded(i));
+            // An array that nothing reads has no buffer. One that is not kept is made for the recordings that
+            // read it.
+            const bool isIdle = !isRead || (!isKept && !isNeeded(i));
             const std::uint32_t capacity =
                 isIdle ? records.capacity
                        : capacityFor(records.count(), records.capacity, records.firstCapacity);
             prepared_.capacities[i] = capacity;
-            if (isRead && !isIdle && capacity != records.capacity) {
+            if (!isIdle && capacity != records.capacity) {
                 GLINT_TRY(prepared_.arrays[i],
                           createBuffer(context_, isKept ? prepared_.kept : prepared_.brief,
                                        capacity * records.stride(), kRecordUsage | usage));
-                if (!isKept) {
+                if (device.handle.get() == VK_NULL_HANDLE) {
                     records.touchAll();
                 }
                 if (i == kPoseArray) {
