@@ -19,6 +19,7 @@
 #include "data/retired.h"
 #include "scene/case_table.h"
 #include "scene/gpu_scene_state.h"
+#include "scene/record_arrays.h"
 #include "scene/record_store.h"
 #include "scene/scene_upload.h"
 #include "scene/top_level.h"
