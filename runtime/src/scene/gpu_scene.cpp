@@ -92,7 +92,7 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
 GLINT_CATCH
 
 GpuScene::State::State(Context::State& contextState)
-    : context(contextState), sharedPool(std::make_shared<MemoryPool>(contextState)), pool(*sharedPool) {}
+    : DrawnScene(contextState), sharedPool(std::make_shared<MemoryPool>(contextState)), pool(*sharedPool) {}
 GpuScene::State::~State() = default;
 
 GpuScene::GpuScene(std::unique_ptr<State> state) : state_(std::move(state)) {}

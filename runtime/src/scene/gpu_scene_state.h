@@ -8,7 +8,7 @@
 #include "data/geometry.h"
 #include "data/light_tree.h"
 #include "data/materials.h"
-#include "data/retired.h"
+#include "scene/drawn_scene.h"
 #include "scene/scene_upload.h"
 
 #include <glint/package.h>
@@ -18,14 +18,12 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace glint {
 
-class Renderer;
 struct SceneStore;
 
 // The place of a geometry record's positions. Those that follow joints or morph weights are in a buffer of
@@ -72,9 +70,8 @@ struct ScenePackage {
         std::vector<std::uint8_t> inputs;
     };
 
-    std::uint64_t records = 0;  // recordsHash()
-    bool isEmpty = false;       // the scene began without anything: kNoPackageScene
-    std::string scene;          // name in the package
+    bool isEmpty = false;  // the scene began without anything: kNoPackageScene
+    std::string scene;     // name in the package
     std::vector<package::PrimitiveEntry> entries;
     std::vector<RecordField> fields;
     std::vector<package::TextureEntry> textures;
@@ -89,32 +86,24 @@ struct ScenePackage {
 };
 
 // Members are destroyed in reverse order: the pool's memory last.
-struct GpuScene::State {
+struct GpuScene::State final : DrawnScene {
     explicit State(Context::State& contextState);
-    ~State();
-    State(const State&) = delete;
-    State& operator=(const State&) = delete;
+    ~State() override;
 
-    Context::State& context;
+    Result<PackageFit> fit(const std::shared_ptr<const Package>& other) const override;
+    Result<RetiredLot> recordReplacement(const std::shared_ptr<const Package>& other, std::uint32_t index,
+                                         VkCommandBuffer commands) override;
+
     // Renderers keep it for what a replaced package leaves to them.
     std::shared_ptr<MemoryPool> sharedPool;
     MemoryPool& pool;
-    std::unique_ptr<Compaction> compaction;  // null if there is nothing more to compact
-    std::unique_ptr<SceneUpload> upload;     // null when the device has completed it
-    ScenePackage package;                    // the package that draws the scene
-    // The renderers of the scene, which add and remove themselves, also when the scene is gone. They replace
-    // its package together.
-    struct Renderers {
-        std::mutex mutex;
-        std::vector<Renderer*> all;
-    };
-    std::shared_ptr<Renderers> renderers = std::make_shared<Renderers>();
+    std::unique_ptr<Compaction> compaction;             // null if there is nothing more to compact
+    std::unique_ptr<SceneUpload> upload;                // null when the device has completed it
+    ScenePackage package;                               // the package that draws the scene
     std::array<double, 3> origin{};                     // SceneView::origin, or that of the last MotionView
     std::map<std::uint32_t, DeviceMicromap> micromaps;  // by index into SceneView::primitives
     AccelerationStructure tlas;
     Buffer geometries;
-    // The shader IDs of the shader binding table: one for each geometry record of a sealed scene.
-    std::vector<std::uint32_t> shaderIds;
     Buffer instances;
     Buffer materials;
     Buffer lights;
@@ -174,28 +163,9 @@ Result<UniqueSetLayout> createSceneSetLayout(Context::State& context, const Scen
 Result<DescriptorSet> makeSceneSet(const GpuScene::State& state, VkAccelerationStructureKHR tlas,
                                    VkImageView absent);
 
-// --- The package that a scene is drawn with, and its replacement (scene_package.cpp) ---
+// --- The package that a scene is drawn with (scene_package.cpp implements its replacement, too) ---
 
 // Returns the data that an upload has taken. `known` may be a scene without tables.
 ScenePackage describePackage(const Package& package, const PackageScene& known, const SceneView& scene);
-
-// The way in which a package draws a scene.
-struct PackageFit {
-    std::uint32_t scene = 0;               // its index, or kNoPackageScene
-    std::vector<std::uint32_t> shaderIds;  // of the shader binding table
-    std::vector<MissingCase> missing;      // of a scene that is edited: materials that the fallback shades
-};
-// Checks that the package can draw the scene. Errors: "scene-package" (it has no such scene, or differs in
-// data that only an upload can change), "position-fetch", "half-precision"; of a scene that is edited also
-// those of editedTables().
-Result<PackageFit> fitPackage(const GpuScene::State& scene, const std::shared_ptr<const Package>& package);
-
-// Records the copies that bring the scene's records to `package`, which must run before all commands that
-// read them, and makes `scene` one of that package. A scene that is edited keeps the package. Values of
-// materials that edits or the host have given stay. Returns the resources that commands use which were
-// recorded until then, or that these commands use. Requires fitPackage(), which gave `index`. With an error
-// nothing changes. Errors: those of buffers, and of materials that edits have changed since fitPackage().
-Result<RetiredLot> recordReplacement(GpuScene::State& scene, const std::shared_ptr<const Package>& package,
-                                     std::uint32_t index, VkCommandBuffer commands);
 
 }  // namespace glint

@@ -62,7 +62,6 @@ std::vector<ScenePackage::Emission> emissionsOf(const Package& package, const Ma
 
 // Takes what follows from the package alone.
 void takeTables(const Package& package, const PackageScene& known, ScenePackage& described) {
-    described.records = recordsHash(package, known);
     described.entries.assign(known.primitives.begin(), known.primitives.end());
     described.fields = recordFields(package);
     described.emission.reset();
@@ -247,6 +246,7 @@ PackageScene sceneOf(const Package& package, std::uint32_t index) {
 // The scene's content by another package. Exchanging it twice changes nothing.
 struct OtherPackage {
     ScenePackage package;
+    std::uint64_t records = 0;
     std::vector<std::uint32_t> shaderIds;
     MaterialTable layout;  // without records
     std::vector<ChangingMaterial> changing{};
@@ -260,6 +260,7 @@ void exchange(SceneStore& store, OtherPackage& other) {
     GpuScene::State& scene = store.scene;
     store.lightsDirty = store.lightsDirty || store.buildsTree != other.buildsTree;
     std::swap(scene.package, other.package);
+    std::swap(scene.records, other.records);
     std::swap(scene.shaderIds, other.shaderIds);
     std::swap(scene.materialLayout, other.layout);
     std::swap(scene.changing, other.changing);
@@ -297,7 +298,8 @@ Result<OtherPackage> otherPackage(const GpuScene::State& scene, const std::share
                                   std::uint32_t index) {
     const SceneStore& store = *scene.store;
     const PackageScene known = sceneOf(*package, index);
-    OtherPackage other{scene.package, {}, package->scene(0).materials.part(0, 0)};
+    OtherPackage other{
+        scene.package, recordsHash(*package, known), {}, package->scene(0).materials.part(0, 0)};
     takeTables(*package, known, other.package);
     std::vector<std::uint8_t> materials = materialsWithSizes(scene.context, known, scene.package.texels);
     GLINT_TRY(other.changing, keepHostValues(scene, *package, known, materials));
@@ -338,51 +340,50 @@ ScenePackage describePackage(const Package& package, const PackageScene& known, 
     return described;
 }
 
-Result<PackageFit> fitPackage(const GpuScene::State& scene, const std::shared_ptr<const Package>& package) {
-    const ScenePackage& now = scene.package;
+Result<PackageFit> GpuScene::State::fit(const std::shared_ptr<const Package>& other) const {
+    const ScenePackage& now = package;
     const std::optional<std::uint32_t> index =
-        now.isEmpty ? std::optional(kNoPackageScene) : package->findScene(now.scene);
+        now.isEmpty ? std::optional(kNoPackageScene) : other->findScene(now.scene);
     if (!index) {
         return otherScene(now.scene, "the package has no scene of this name");
     }
-    if (package->positionFetch() && !now.positionFetch) {
+    if (other->positionFetch() && !now.positionFetch) {
         return makeError(
             "position-fetch", "",
             "the package's shaders read positions from acceleration structures, which were built "
             "without them",
             "upload the scene anew, or compile without --position-fetch");
     }
-    GLINT_TRY_DO(checkDevice(*package, scene.context.handles));
-    const PackageScene known = sceneOf(*package, *index);
+    GLINT_TRY_DO(checkDevice(*other, context.handles));
+    const PackageScene known = sceneOf(*other, *index);
     if (!sameBytes(known.textures, std::span<const package::TextureEntry>(now.textures)) ||
         !sameBytes(known.samplers, std::span<const package::SamplerEntry>(now.samplers))) {
         return otherScene(now.scene, "the package reads other textures or samplers");
     }
-    if (attributesOf(*package) != now.attributes) {
+    if (attributesOf(*other) != now.attributes) {
         return otherScene(now.scene, "the package's packs read other attributes of vertices");
     }
-    GLINT_TRY_DO(checkPrimitives(scene, *package, known));
-    GLINT_TRY_DO(checkEmission(scene, *package, known));
-    GLINT_TRY_DO(checkDecided(scene, *package, known));
-    GLINT_TRY(auto other, otherPackage(scene, package, *index));
-    PackageFit fit{*index, std::move(other.shaderIds), {}};
-    if (other.edited) {
-        fit.missing = std::move(other.edited->report.missing);
+    GLINT_TRY_DO(checkPrimitives(*this, *other, known));
+    GLINT_TRY_DO(checkEmission(*this, *other, known));
+    GLINT_TRY_DO(checkDecided(*this, *other, known));
+    GLINT_TRY(auto content, otherPackage(*this, other, *index));
+    PackageFit fit{*index, std::move(content.shaderIds)};
+    if (content.edited) {
+        fit.missing = std::move(content.edited->report.missing);
     }
     return fit;
 }
 
-Result<RetiredLot> recordReplacement(GpuScene::State& scene, const std::shared_ptr<const Package>& package,
-                                     std::uint32_t index, VkCommandBuffer commands) {
-    SceneStore& store = *scene.store;
-    GLINT_TRY(auto other, otherPackage(scene, package, index));
-    exchange(store, other);
+Result<RetiredLot> GpuScene::State::recordReplacement(const std::shared_ptr<const Package>& other,
+                                                      std::uint32_t index, VkCommandBuffer commands) {
+    GLINT_TRY(auto content, otherPackage(*this, other, index));
+    exchange(*store, content);
     RetiredLot leftovers;
-    if (Status status = recordChanges(store, commands, store.lastFrame, {}, &leftovers); !status) {
-        exchange(store, other);
+    if (Status status = recordChanges(*store, commands, store->lastFrame, {}, &leftovers); !status) {
+        exchange(*store, content);
         return status.error();
     }
-    leftovers.keep(scene.sharedPool);
+    leftovers.keep(sharedPool);
     return leftovers;
 }
 

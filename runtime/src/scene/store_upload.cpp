@@ -78,6 +78,7 @@ public:
         }
         scene_.statistics.narrowedTextures = countNarrowed(scene_.context, known_.textures, view_.images);
         scene_.package = describePackage(package_, known_, view_);
+        scene_.records = recordsHash(package_, known_);
         if (store_.editable) {
             scene_.shaderIds = store_.cases->shaderIds();
         } else {
