@@ -226,10 +226,7 @@ void writeEntries(SceneStore& store) {
                     const bool isSeenAlike = (record.flags & kEntryFlags) == entry.geometryFlags;
                     changes = changes || !isSeenAlike || keyOf(record) != keyOf(entry);
                 } else if (keyOf(record) != keyOf(entry)) {
-                    record.shaderId = entry.shaderId;
-                    record.materialIndex = entry.materialIndex;
-                    record.featureLobes = entry.featureLobes;
-                    record.featureInputs = entry.featureInputs;
+                    takeEntry(entry, record);
                     store.geometries.write(geometry, record);
                 }
             });
