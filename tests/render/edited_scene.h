@@ -69,14 +69,16 @@ private:
     std::uint64_t completed_ = 0;
 };
 
-// Tells a renderer which of its recordings are done.
+// Tells a Renderer or RaySteps which of its recordings are done.
 class FinishedRecordings {
 public:
-    // Notes that the frame, which is to be submitted, has the renderer's last recording.
-    void recorded(const Renderer& renderer, std::uint64_t frame) {
+    // Notes that the frame, which is to be submitted, has its last recording.
+    template <typename Drawing>
+    void recorded(const Drawing& renderer, std::uint64_t frame) {
         frames_[frame % 2] = {frame, renderer.recordings()};
     }
-    void completed(Renderer& renderer, std::uint64_t frame) const {
+    template <typename Drawing>
+    void completed(Drawing& renderer, std::uint64_t frame) const {
         for (const auto& [number, recording] : frames_) {
             if (number <= frame) {
                 renderer.finished(recording);
