@@ -126,7 +126,7 @@ void Engine::State::record(std::uint32_t number, const std::vector<std::array<fl
     check(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
     gpu.barrier(commands);  // the frame before has used the same lists
     recordStructure(commands, slot);
-    expect(scene->update(commands, stored, lights()));
+    expect(scene->update(commands, stored, lights(), frames));
     vkCmdFillBuffer(commands, rayCount.handle, 0, VK_WHOLE_SIZE, 0);
     gpu.barrier(commands);
     draw(commands, slot);
@@ -176,6 +176,9 @@ void Engine::frame(const std::vector<std::array<float, 12>>& transforms) {
     Slot& slot = state_->slots[number];
     check(vkWaitForFences(state_->gpu.device, 1, &slot.fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
     check(vkResetFences(state_->gpu.device, 1, &slot.fence), "vkResetFences");
+    if (state_->frames > kInFlight) {
+        state_->scene->complete(state_->frames - kInFlight);
+    }
     std::vector<std::array<float, 12>> stored;
     for (std::size_t i = 0; i < transforms.size(); ++i) {
         stored.push_back(storedToWorld(state_->world, {state_->world.instances[i].mesh, transforms[i]}));

@@ -2,6 +2,10 @@
 
 #include "context/context.h"
 #include "render/scene_builder.h"
+#include "resolve/resolve.h"
+#include "support/shared_modules.h"
+
+#include <glint/session/session.h>
 
 #include <algorithm>
 #include <cstring>
@@ -80,6 +84,28 @@ gltf::Scene sceneFor(const EditedSceneOptions& options) {
     if (options.lamps) {
         makeLamps(scene);
     }
+    return scene;
+}
+
+// Returns null if the scenes can't be compiled, and the test fails.
+std::shared_ptr<const Package> packageFor(std::span<const gltf::Scene> scenes,
+                                          const compiler::CompileSettings& settings) {
+    auto package = session::compileAndLoad(*compiler::resolve(scenes, settings), &sharedModules());
+    EXPECT_TRUE(package) << (package ? "" : toString(package.error()));
+    return package ? *package : nullptr;
+}
+
+// A scene of materials that no other scene here has.
+gltf::Scene furtherScene() {
+    gltf::Scene scene = emptyScene();
+    scene.path = "further.gltf";
+    addCamera(scene);
+    materials::Material cloth = glossy({0.5F, 0.5F, 0.5F}, 0.5F);
+    cloth.give("KHR_materials_sheen");
+    cloth["sheenColorFactor"] = {0.5F, 0.4F, 0.3F};
+    cloth["sheenRoughnessFactor"] = 0.5F;
+    addInstance(scene,
+                addMesh(scene, makeQuad(addMaterial(scene, cloth), {-1, -1, -3}, {2, 0, 0}, {0, 2, 0})));
     return scene;
 }
 
@@ -224,8 +250,8 @@ EditedSceneOptions EditedSceneOptions::withLamps(std::uint32_t samples) {
 
 EditedScene::EditedScene(EditedSceneOptions options)
     : scene(sceneFor(options)), original(scene), options_(std::move(options)) {
-    loaded_ = std::make_unique<LoadedScene>(scene, options_.settings);
-    if (!loaded_->ok()) {
+    packages_ = {packageFor(std::span(&scene, 1), options_.settings)};
+    if (packages_.front() == nullptr) {
         return;
     }
     data_ = session::makeSceneView(scene);
@@ -276,6 +302,24 @@ EditedScene::EditedScene(EditedSceneOptions options)
     renderer_ = makeRenderer(package(), *gpuScene_, renderer);
 }
 
+void EditedScene::switchPackage() {
+    if (packages_.size() == 1) {
+        compiler::CompileSettings settings = options_.settings;
+        settings.plan.merge = compiler::MergePolicy::All;
+        packages_.push_back(packageFor(std::array{furtherScene(), original}, settings));
+        ASSERT_NE(packages_.back(), nullptr);
+        ASSERT_NE(packages_.back()->scene(0).materials.recordBytes, package().scene(0).materials.recordBytes);
+    }
+    current_ = 1 - current_;
+    const Result<Renderer::Replacement> replaced = renderer_->replacePackage(packages_[current_]);
+    ASSERT_TRUE(replaced) << toString(replaced.error());
+    EXPECT_TRUE(replaced->missing.empty());
+    const std::uint64_t before = renderer_->replacementProgress().inUse;
+    frame();
+    EXPECT_EQ(renderer_->replacementProgress().inUse, before + 1);
+    layout_ = session::recordLayoutOf(package(), scene.materials.front().model());
+}
+
 PrimitiveView EditedScene::primitive(std::uint32_t shape, std::size_t index) const {
     const std::uint32_t mesh = meshOfCatalogue(shape, std::array{0U, 0U});
     const auto found = std::ranges::find_if(data_.primitives, [&](const PrimitiveView& view) {
@@ -304,16 +348,19 @@ session::MaterialSourceData EditedScene::source(std::uint32_t kind) const {
 void EditedScene::frame() {
     const VkCommandBuffer commands = frames_->begin();
     editor().complete(frames_->completed());
+    finished_.completed(*renderer_, frames_->completed());
     const Status edited = editor().record(commands, frames_->frame());
     EXPECT_TRUE(edited) << (edited ? "" : toString(edited.error()));
     const Status recorded = renderer_->record(commands, frameOptions_);
     EXPECT_TRUE(recorded) << (recorded ? "" : toString(recorded.error()));
+    finished_.recorded(*renderer_, frames_->frame());
     frames_->submit();
 }
 
 void EditedScene::drain() {
     frames_->drain();
     editor().complete(frames_->completed());
+    finished_.completed(*renderer_, frames_->completed());
 }
 
 LinearImage EditedScene::picture() {
@@ -359,6 +406,7 @@ LinearImage EditedScene::fresh() const {
         lightViews.push_back(light.view);
     }
     SceneView view;
+    view.packageScene = *package().findScene(packages_.front()->scene(0).name);
     view.primitives = primitives;
     view.instances = views;
     view.images = images;

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace glint::testing {
@@ -66,6 +67,27 @@ private:
     std::array<Slot, 2> slots_;
     std::uint64_t frame_ = 0;
     std::uint64_t completed_ = 0;
+};
+
+// Tells a Renderer or RaySteps which of its recordings are done.
+class FinishedRecordings {
+public:
+    // Notes that the frame, which is to be submitted, has its last recording.
+    template <typename Drawing>
+    void recorded(const Drawing& renderer, std::uint64_t frame) {
+        frames_[frame % 2] = {frame, renderer.recordings()};
+    }
+    template <typename Drawing>
+    void completed(Drawing& renderer, std::uint64_t frame) const {
+        for (const auto& [number, recording] : frames_) {
+            if (number <= frame) {
+                renderer.finished(recording);
+            }
+        }
+    }
+
+private:
+    std::array<std::pair<std::uint64_t, std::uint64_t>, 2> frames_{};  // frame and recording
 };
 
 // Returns ray queries, or ray tracing pipelines on a device without them.
@@ -141,7 +163,13 @@ public:
         return *gpuScene_;
     }
     const Package& package() const {
-        return loaded_->package();
+        return *packages_[current_];
+    }
+    // Draws with another package from the next frame on, which this records, or with the first one again. The
+    // other one has merged cases, more fields in the records of materials, and the scene at another index.
+    void switchPackage();
+    bool isSwitched() const {
+        return current_ > 0;
     }
     PrimitiveView primitive(std::uint32_t shape, std::size_t index) const;
     // The source of a material of a kind with the kind's present values. A lamp that is dark keeps its keys.
@@ -159,13 +187,15 @@ private:
     LinearImage fresh() const;
 
     EditedSceneOptions options_;
-    std::unique_ptr<LoadedScene> loaded_;
+    std::vector<std::shared_ptr<const Package>> packages_;
+    std::size_t current_ = 0;
     session::SceneViewData data_;
     compiler::MaterialLayout layout_;
     FrameOptions frameOptions_;
     std::unique_ptr<GpuScene> gpuScene_;
     std::unique_ptr<TwoFrames> frames_;
     std::unique_ptr<Renderer> renderer_;
+    FinishedRecordings finished_;
 };
 
 }  // namespace glint::testing

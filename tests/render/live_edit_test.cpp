@@ -30,12 +30,17 @@ public:
             [&] { addInstance(); },   [&] { addInstance(); },    [&] { moveInstance(); },
             [&] { moveInstance(); },  [&] { showInstance(); },   [&] { exchangeMesh(); },
             [&] { changeVariant(); }, [&] { removeInstance(); }, [&] { addLight(); },
-            [&] { changeLight(); },   [&] { removeLight(); },    [&] { refused(); }};
+            [&] { changeLight(); },   [&] { removeLight(); },    [&] { refused(); },
+            [&] { switchPackage(); }};
         edits[below(std::size(edits))]();
     }
 
-    // Removes what was added, and gives what was uploaded its own meshes, materials and textures again.
+    // Removes what was added, and gives what was uploaded its own meshes, materials and textures again. The
+    // package is again the first one.
     void removeAll() {
+        if (edited_.isSwitched()) {
+            edited_.switchPackage();
+        }
         for (std::size_t i = edited_.instances.size(); i-- > 0;) {
             EditedScene::Instance& instance = edited_.instances[i];
             if (instance.first) {
@@ -94,6 +99,11 @@ private:
     template <typename T>
     void expectDone(const Result<T>& result) {
         EXPECT_TRUE(result) << (result ? "" : toString(result.error()));
+    }
+
+    void switchPackage() {
+        ++made["another package"];
+        edited_.switchPackage();
     }
 
     void changeValues() {
@@ -446,7 +456,7 @@ void runEdits(EditedScene& edited, int count, std::uint32_t seed) {
         }
     }
     if (count >= 300) {
-        EXPECT_EQ(edits.made.size(), 19U) << "every kind of edit";
+        EXPECT_EQ(edits.made.size(), 20U) << "every kind of edit";
     }
     edits.removeAll();
     edited.frame();

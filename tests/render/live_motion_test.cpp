@@ -3,6 +3,7 @@
 #include "render/edited_scene.h"
 #include "render/harness.h"
 #include "render/moving_scenes.h"
+#include "render/replacement.h"
 #include "render/scene_builder.h"
 #include "scene/scene_store.h"
 #include "support/nightly.h"
@@ -10,6 +11,7 @@
 #include <glint/session/scene_view.h>
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <random>
 #include <string>
@@ -42,17 +44,17 @@ class Playing {
 public:
     Playing()
         : scene_(playingScene()),
-          loaded_(scene_, EditedSceneOptions().settings),
+          packages_{packageOf(scene_, EditedSceneOptions().settings)},
           frame_(defaultSetup(scene_, kWidth, kHeight).frame),
           frames_(sharedContext()) {
-        if (!loaded_.ok()) {
+        if (packages_.front() == nullptr) {
             return;
         }
         data_ = session::makeSceneView(scene_);
         data_.moves = true;
         SceneView view = data_.view();
         view.editable = true;
-        gpuScene_ = uploadScene(loaded_.package(), view);
+        gpuScene_ = uploadScene(package(), view);
         if (gpuScene_ == nullptr) {
             return;
         }
@@ -63,7 +65,7 @@ public:
             instance.take(data_.instances[i]);
         }
         lights_ = data_.lights;
-        renderer_ = makeRenderer(loaded_.package(), *gpuScene_, options());
+        renderer_ = makeRenderer(package(), *gpuScene_, options());
     }
     bool ok() const {
         return renderer_ != nullptr;
@@ -73,6 +75,9 @@ public:
     }
     SceneEditor& editor() {
         return *gpuScene_->editor();
+    }
+    const Package& package() const {
+        return *packages_[current_];
     }
 
     // Gives the nodes that play another pose, which the next frame takes.
@@ -120,21 +125,44 @@ public:
                 break;
         }
     }
+    // Draws with another package from the next frame on, or with the first one again. In the other one the
+    // cases are merged, and a material has a sheen and another colour, which the edits have not touched.
+    void switchPackage() {
+        if (packages_.size() == 1) {
+            gltf::Scene scene = playingScene();
+            materials::Material& square = scene.materials[1];
+            square["baseColorFactor"] = {0.3F, 0.5F, 0.9F, 1.0F};
+            giveSheen(square);
+            compiler::CompileSettings settings = EditedSceneOptions().settings;
+            settings.plan.merge = compiler::MergePolicy::All;
+            packages_.push_back(packageOf(scene, settings));
+            ASSERT_NE(packages_.back(), nullptr);
+        }
+        current_ = 1 - current_;
+        const Result<Renderer::Replacement> replaced = renderer_->replacePackage(packages_[current_]);
+        ASSERT_TRUE(replaced) << toString(replaced.error());
+    }
+    bool isSwitched() const {
+        return current_ > 0;
+    }
     // Records the pose and the edits, and a frame after them.
     void frame() {
         const VkCommandBuffer commands = frames_.begin();
         gpuScene_->complete(frames_.completed());
+        finished_.completed(*renderer_, frames_.completed());
         const Status recorded = isPosed_ ? gpuScene_->update(commands, data_.motion(), frames_.frame())
                                          : editor().record(commands, frames_.frame());
         EXPECT_TRUE(recorded) << (recorded ? "" : toString(recorded.error()));
         isPosed_ = false;
         const Status drawn = renderer_->record(commands, frame_);
         EXPECT_TRUE(drawn) << (drawn ? "" : toString(drawn.error()));
+        finished_.recorded(*renderer_, frames_.frame());
         frames_.submit();
     }
     void drain() {
         frames_.drain();
         gpuScene_->complete(frames_.completed());
+        finished_.completed(*renderer_, frames_.completed());
     }
     void expectSameAsFresh(const std::string& what) {
         frame();
@@ -148,9 +176,9 @@ public:
         view.instances = views;
         view.lights = lights_;
         view.moves = false;
-        const auto fresh = uploadScene(loaded_.package(), view);
+        const auto fresh = uploadScene(package(), view);
         ASSERT_NE(fresh, nullptr);
-        const auto renderer = makeRenderer(loaded_.package(), *fresh, options());
+        const auto renderer = makeRenderer(package(), *fresh, options());
         ASSERT_NE(renderer, nullptr);
         EXPECT_EQ(image.pixels, drawn(*renderer, frame_).pixels) << what;
         expectNoValidationMessages();
@@ -255,12 +283,14 @@ private:
     }
 
     gltf::Scene scene_;  // in its present pose
-    LoadedScene loaded_;
+    std::vector<std::shared_ptr<const Package>> packages_;
+    std::size_t current_ = 0;
     FrameOptions frame_;
     TwoFrames frames_;
     session::SceneViewData data_;
     std::unique_ptr<GpuScene> gpuScene_;
     std::unique_ptr<Renderer> renderer_;
+    FinishedRecordings finished_;
     std::vector<Instance> instances_;  // the uploaded ones first
     std::vector<LightView> lights_;
     bool isPosed_ = false;
@@ -278,6 +308,9 @@ void play(unsigned seed, int count, int interval) {
             playing.pose(random);
         }
         playing.edit(random);
+        if (random() % 16 == 0) {
+            playing.switchPackage();
+        }
         if (i % interval == 0) {
             playing.expectSameAsFresh("after " + std::to_string(i) + " edits");
         } else {
@@ -285,6 +318,9 @@ void play(unsigned seed, int count, int interval) {
         }
     }
     playing.clear();
+    if (playing.isSwitched()) {
+        playing.switchPackage();
+    }
     playing.frame();
     playing.drain();
     playing.editor().trim();

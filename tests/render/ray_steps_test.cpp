@@ -464,7 +464,7 @@ TEST(RaySteps, RefuseWhatTheyCannotDo) {
     EXPECT_EQ(
         idOf(Renderer::create(sharedContext(), stepPackage.package(), stepPackage.gpuScene(), renderer)),
         "package-passes");
-    EXPECT_EQ(idOf((*shared)->update(VK_NULL_HANDLE, {}, {})), "engine-scene");
+    EXPECT_EQ(idOf((*shared)->update(VK_NULL_HANDLE, {}, {}, 0)), "engine-scene");
 }
 
 // A scene of a host's own is checked before anything is made of it.

@@ -2,6 +2,7 @@
 #include "render/pixel_test.h"
 #include "render/replacement.h"
 
+#include <glint/session/material_source.h>
 #include <glint/session/scene_view.h>
 
 #include <cstdint>
@@ -161,18 +162,71 @@ TEST_F(ReplacePackageScene, TheAlphaOfDecidedTrianglesStays) {
     expectNoValidationMessages();
 }
 
-TEST_F(ReplacePackageScene, AnEditableSceneKeepsItsPackage) {
-    const std::shared_ptr<const Package> original = packageOf(before_, roomSettings(package::kStrategyUber));
+// Materials that no edit has touched are those of the new package, also where they need an alpha test or are
+// double-sided now: the records and the TLAS say so.
+TEST_F(ReplacePackageScene, AnEditableSceneTakesThePackagesMaterials) {
+    const compiler::CompileSettings uber = roomSettings(package::kStrategyUber);
+    gltf::Scene changed = extendedRoom();
+    changed.materials[2].doubleSided = true;
+    std::swap(changed.meshes[1].primitives[0].material, changed.meshes[1].primitives[2].material);
+    changed.materials.push_back(glossyMaterial(kRed));
+    const std::shared_ptr<const Package> original = packageOf(before_, uber);
+    const std::shared_ptr<const Package> extended = packageOf(changed, uber);
+    ASSERT_GT(extended->scene(0).materials.recordBytes, original->scene(0).materials.recordBytes);
     const auto scene = uploadScene(*original, before_, [](SceneView& view) { view.editable = true; });
     ASSERT_NE(scene, nullptr);
     const RendererOptions options = optionsOf(package::kStrategyUber);
     const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
     ASSERT_NE(renderer, nullptr);
-    const LinearImage old = draw(*renderer);
-    const Result<Renderer::Replacement> replaced = renderer->replacePackage(original);
-    ASSERT_FALSE(replaced);
-    EXPECT_EQ(replaced.error().id, "scene-package");
-    expectEqualImage(draw(*renderer), old, "after the error");
+    draw(*renderer);
+    const Result<Renderer::Replacement> replaced = renderer->replacePackage(extended);
+    ASSERT_TRUE(replaced) << toString(replaced.error());
+    expectEqualImage(draw(*renderer), fresh(changed, *extended, options), "the package's materials");
+    ASSERT_TRUE(renderer->replacePackage(original));
+    expectEqualImage(draw(*renderer), fresh(before_, *original, options), "the first package again");
+    expectNoValidationMessages();
+}
+
+// A material that an edit has replaced stays, if the package has a shader for it. Otherwise everything stays.
+TEST_F(ReplacePackageScene, AnEditedMaterialNeedsAShader) {
+    const compiler::CompileSettings uber = roomSettings(package::kStrategyUber);
+    const std::shared_ptr<const Package> original = packageOf(before_, uber);
+    const auto scene = uploadScene(*original, before_, [](SceneView& view) { view.editable = true; });
+    ASSERT_NE(scene, nullptr);
+    const RendererOptions options = optionsOf(package::kStrategyUber);
+    const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
+    ASSERT_NE(renderer, nullptr);
+    gltf::Scene coated = roomScene();
+    giveCoat(coated.materials[kGlossy]);
+    const session::MaterialSourceData source = session::makeMaterialSource(
+        *original, session::recordLayoutOf(*original, coated.materials[0].model()), coated,
+        coated.materials[kGlossy], {});
+    SceneEditor& editor = *scene->editor();
+    ASSERT_TRUE(editor.setMaterial(editor.material(kGlossy), source.view()));
+    const LinearImage before = draw(*renderer);
+    expectEqualImage(before, fresh(coated, *packageOf(coated, uber), options), "the edit");
+    // The room without a coat, and one whose coat comes with a sheen.
+    gltf::Scene bare = roomScene();
+    bare.materials[2] = glossyMaterial(kGreen);
+    gltf::Scene both = roomScene();
+    giveSheen(both.materials[2]);
+    const std::pair<const gltf::Scene*, const char*> refused[] = {{&bare, "scene-edit-feature"},
+                                                                  {&both, "scene-edit-case"}};
+    for (const auto& [room, id] : refused) {
+        const Result<Renderer::Replacement> replaced = renderer->replacePackage(packageOf(*room, uber));
+        ASSERT_FALSE(replaced) << id;
+        EXPECT_EQ(replaced.error().id, id) << toString(replaced.error());
+        EXPECT_NE(replaced.error().message.find("clearcoat"), std::string::npos)
+            << toString(replaced.error());
+        expectEqualImage(draw(*renderer), before, "after the error");
+    }
+    const std::shared_ptr<const Package> fallback =
+        packageOf(both, roomSettings(package::kStrategyUber, true));
+    const Result<Renderer::Replacement> replaced = renderer->replacePackage(fallback);
+    ASSERT_TRUE(replaced) << toString(replaced.error());
+    ASSERT_EQ(replaced->missing.size(), 1U);
+    EXPECT_EQ(replaced->missing.front().material, editor.material(kGlossy));
+    EXPECT_TRUE(differ(draw(*renderer), before)) << "the other wall has a sheen";
     expectNoValidationMessages();
 }
 
@@ -200,23 +254,30 @@ TEST_F(ReplacePackageScene, AllRenderersOfTheSceneSwitch) {
     expectNoValidationMessages();
 }
 
-// Values that the host has given stay, and the material's other values are the new package's.
+// Values that the host has given stay, also in longer records, and the material's other values are the new
+// package's.
 TEST_F(ReplacePackageScene, ValuesOfTheHostStay) {
     const compiler::CompileSettings uber = roomSettings(package::kStrategyUber);
     const std::shared_ptr<const Package> original = packageOf(before_, uber);
-    gltf::Scene both = repaintedRoom();
+    gltf::Scene both = extendedRoom();
     both.materials[2]["baseColorFactor"] = {0.2F, 0.9F, 0.2F, 1.0F};
     const std::shared_ptr<const Package> repainted = packageOf(both, uber);
     const MaterialTable table = original->scene(0).materials;
+    ASSERT_GT(repainted->scene(0).materials.recordBytes, table.recordBytes);
     const std::vector<std::uint8_t> kept(table.part(2, 1).bytes.begin(), table.part(2, 1).bytes.end());
     const MaterialView views[] = {{2, kept}};
-    const auto scene = uploadScene(*original, before_, [&](SceneView& view) { view.materials = views; });
-    ASSERT_NE(scene, nullptr);
+    const std::shared_ptr<const Package> wanted = packageOf(extendedRoom(), uber);
     const RendererOptions options = optionsOf(package::kStrategyUber);
-    const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
-    ASSERT_TRUE(renderer->replacePackage(repainted));
-    const std::shared_ptr<const Package> wanted = packageOf(repaintedRoom(), uber);
-    expectEqualImage(draw(*renderer), fresh(repaintedRoom(), *wanted, options), "the host's colour");
+    for (const bool editable : {false, true}) {
+        const auto scene = uploadScene(*original, before_, [&](SceneView& view) {
+            view.materials = views;
+            view.editable = editable;
+        });
+        ASSERT_NE(scene, nullptr);
+        const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
+        ASSERT_TRUE(renderer->replacePackage(repainted));
+        expectEqualImage(draw(*renderer), fresh(extendedRoom(), *wanted, options), "the host's colour");
+    }
     expectNoValidationMessages();
 }
 

@@ -20,6 +20,7 @@ namespace glint::package {
 struct PackageLayer;  // glint/layers.h
 // For the runtime's own sources and Glint's tools.
 struct EmissionEntry;
+struct FieldEntry;
 struct ModuleEntry;
 struct ModuleKey;
 struct OpacityEntry;
@@ -125,6 +126,8 @@ public:
     // Returns the names of features of materials, in the order of bits, for messages about keys. Bits without
     // a name are left out.
     std::vector<std::string> featureNames(std::uint64_t features) const;
+    // Returns the fields and the textures of the records of materials, by ascending offsets.
+    std::span<const package::FieldEntry> fields() const;
     // Returns the number of shader IDs, retired ones included.
     std::uint32_t caseCount() const;
     // Returns the number of buckets of a visibility buffer: bucket 0 holds misses, bucket 1 + shader ID holds

@@ -155,33 +155,8 @@ public:
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    // The pipelines and buffers that Renderer::replacePackage() keeps, and those that it makes.
-    struct Replacement {
-        // Pipelines that the new package has in common with the earlier one: their SPIR-V is the same.
-        std::uint32_t pipelinesKept = 0;
-        // Pipelines that are made, in the call or in the background.
-        std::uint32_t pipelinesMade = 0;
-        // The shader IDs, in the new package, of the cases with a pipeline of their own that is made. Only
-        // strategies with a dispatch for each case have such pipelines.
-        std::vector<std::uint32_t> casesMade;
-        // Buffers of the frame that have the size that the new package needs, and those that are made.
-        std::uint32_t buffersKept = 0;
-        std::uint32_t buffersMade = 0;
-    };
-
-    // The progress of the last replacement.
-    struct ReplacementProgress {
-        std::uint64_t inUse = 0;    // replacements that recordings have begun to use
-        bool pending = false;       // a package waits; recordings use the old one
-        bool ready = false;         // the next recording uses the package that waits
-        std::uint32_t missing = 0;  // pipelines that it still waits for
-        // Recordings use an early package (PackageShape::early): they show the surfaces with edited features
-        // as drafts, and all else as before the edit. The whole package follows.
-        bool early = false;
-        // Why the last replacement was given up; recordings continue with the old package. The next
-        // replacePackage() clears it.
-        std::optional<Diagnostic> error{};
-    };
+    using Replacement = PackageReplacement;
+    using ReplacementProgress = PackageProgress;
 
     // Switches to another package of the same scene: one that was compiled again after a material, a pack's
     // GLSL or a setting changed. Waits neither for the queue nor for frames in flight. It keeps pipelines
@@ -199,10 +174,16 @@ public:
     // recording of any of them after that switches all. Its commands must come before those of their later
     // recordings. `package` must not be null; the renderers keep it as long as it is needed.
     //
+    // In a scene that is edited, the textures, materials, meshes, instances and lights of edits stay; see
+    // docs/live.md, "Replacing a package". Edits after the recording that switches give records in the layout
+    // of the new package. So do poses (GpuScene::update()) that give values of materials.
+    //
     // With an error nothing changes. Errors: those of create() for package and options; "scene-package" (the
     // scene has another name, or vertices, textures or acceleration structures that do not suit the package,
     // so that it has to be uploaded anew), "position-fetch", "half-precision"; "package-frame" (its frames
-    // have other images). An error of making pipelines in the background is in replacementProgress().
+    // have other images); in a scene that is edited also "texture-trusted", and those of SceneEditor for
+    // materials that the package has no shader for. replacementProgress() has errors of making pipelines in
+    // the background, and those of edits after the call.
     Result<Replacement> replacePackage(std::shared_ptr<const Package> package);
     ReplacementProgress replacementProgress() const;
 

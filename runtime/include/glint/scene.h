@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -92,6 +93,37 @@ struct MissingCase {
 struct EditReport {
     // Materials that the fallback shades from now on. Each key is listed once in an edit.
     std::vector<MissingCase> missing;
+};
+
+// The report of replacePackage(), of Renderer and of RaySteps: the pipelines and buffers that it keeps, and
+// those that it makes.
+struct PackageReplacement {
+    // Pipelines that the new package has in common with the earlier one: their SPIR-V is the same.
+    std::uint32_t pipelinesKept = 0;
+    // Pipelines that are made, in the call or in the background.
+    std::uint32_t pipelinesMade = 0;
+    // The shader IDs, in the new package, of the cases with a pipeline of their own that is made. Only
+    // strategies with a dispatch for each case have such pipelines.
+    std::vector<std::uint32_t> casesMade{};
+    // Buffers of the frame that have the size that the new package needs, and those that are made.
+    std::uint32_t buffersKept = 0;
+    std::uint32_t buffersMade = 0;
+    // In a scene that is edited: the materials that the fallback of the new package shades.
+    std::vector<MissingCase> missing{};
+};
+
+// The progress of the last replacement.
+struct PackageProgress {
+    std::uint64_t inUse = 0;    // replacements that recordings have begun to use
+    bool pending = false;       // a package waits; recordings use the old one
+    bool ready = false;         // the next recording uses the package that waits
+    std::uint32_t missing = 0;  // pipelines that it still waits for
+    // Recordings use an early package (PackageShape::early): they show the surfaces with edited features
+    // as drafts, and all else as before the edit. The whole package follows.
+    bool early = false;
+    // Why the last replacement was given up; recordings continue with the old package. The next
+    // replacePackage() clears it.
+    std::optional<Diagnostic> error{};
 };
 
 struct EditedPrimitive {

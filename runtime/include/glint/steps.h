@@ -99,7 +99,8 @@ public:
     static Result<std::unique_ptr<EngineScene>> record(Context& context, const Package& package,
                                                        const EngineSceneView& scene, VkCommandBuffer commands,
                                                        std::uint64_t frame);
-    // Says that the device has completed all commands of frames up to `frame`, and frees the staging memory.
+    // Says that the device has completed all commands of frames up to `frame`, and frees the staging memory
+    // and the buffers that only they used.
     void complete(std::uint64_t frame);
     // Records the same into a command buffer of its own, submits it to DeviceHandles::queue under
     // HostServices::lockQueue, and waits for the device.
@@ -108,24 +109,37 @@ public:
     // The records of a scene that Glint has uploaded, for a host that brings rays of its own and no scene
     // yet. The GpuScene must outlive it. It is updated and edited by its own functions; steps that are
     // recorded afterwards read it as it is then. If a Renderer replaces the scene's package,
-    // RaySteps::begin() fails with "package-replaced". Rays are relative to its SceneView::origin. The host
+    // RaySteps::begin() fails with "package-replaced" until RaySteps::replacePackage() gets one with the same
+    // records. Rays are relative to its SceneView::origin. The host
     // binds GpuScene::descriptorSet().
     static Result<std::unique_ptr<EngineScene>> share(Context& context, GpuScene& scene);
     ~EngineScene();
     EngineScene(const EngineScene&) = delete;
     EngineScene& operator=(const EngineScene&) = delete;
 
-    // Records new transforms, as many as at creation, and new lights, at most as many. Motion is then
-    // measured from the previous transforms. All places are relative to an origin of the engine's choice,
-    // which may follow its camera: `originMoved` says in metres how far it has moved since the previous
-    // transforms, which then count from the new one. The values are stored in the command buffer, so they
-    // need not be kept and any number of frames may be in flight. Errors: "engine-scene" (also for a shared
-    // scene), "scene-light".
+    // Records another content: other geometries, instances, lights, textures and samplers, as many as there
+    // are now. An instance keeps its number, by which its motion is measured from its previous transform; new
+    // ones are still. All places are relative to an origin of the engine's choice, which may follow its
+    // camera: `originMoved` says in metres how far it has moved since the previous transforms, which then
+    // count from the new one. `package` is the present one, or one that RaySteps::replacePackage() gets; then
+    // RaySteps::begin() fails until it has it. It need not outlive the call.
+    //
+    // The call compares all records on the host, and records copies of those that differ. The spans are not
+    // kept. Any number of frames may be in flight: buffers that are too small give way to larger ones, so
+    // materials() may change. `frame` is the caller's number of the frame that the commands belong to; it may
+    // not fall, and complete() frees what only its frames used. The commands must be submitted, in the order
+    // of their recording. With an error nothing is recorded; after one of memory the next call brings the
+    // content. Errors: those of record(), "engine-scene" also for a shared scene or a number that has fallen.
+    Status update(VkCommandBuffer commands, const Package& package, const EngineSceneView& scene,
+                  std::uint64_t frame, const std::array<double, 3>& originMoved = {});
+    // The same for transforms and lights alone. There are any number of them, but not fewer transforms than
+    // the geometries name. Errors: "engine-scene", "scene-light", and those of memory.
     Status update(VkCommandBuffer commands, std::span<const std::array<float, 12>> instances,
-                  std::span<const LightView> lights, const std::array<double, 3>& originMoved = {});
+                  std::span<const LightView> lights, std::uint64_t frame,
+                  const std::array<double, 3>& originMoved = {});
 
     // The address of the material records, with the host's numbers of textures and samplers:
-    // glintHostMaterials() of the library.
+    // glintHostMaterials() of the library. Commands that were recorded before an update use the old one.
     VkDeviceAddress materials() const;
     std::uint64_t bytes() const;  // on the device
 
@@ -245,7 +259,9 @@ public:
     // Starts a batch: waits for all earlier commands that write memory, and sets the constants. The values
     // are stored in the command buffer. Batches share buffers, so on several queues the host orders them
     // itself. With an error nothing is recorded. Errors: "ray-steps", "sky", "environment-missing",
-    // "environment-unread", "package-replaced", and those of memory and Vulkan's calls.
+    // "environment-unread", "package-replaced" (the scene has the records of another package), and those of
+    // memory and Vulkan's calls. If the scene has other geometries, strategies with a pipeline of their own
+    // get another shader binding table, and may need another pipeline, which the call then makes.
     Status begin(VkCommandBuffer commands, const RayBatch& batch);
     // Traces the rays. Strategies that order no hits trace and shade in one pass, in shade(), so with them
     // this and order() do nothing.
@@ -256,6 +272,20 @@ public:
     void shade(VkCommandBuffer commands);
     // Records all of these steps.
     Status record(VkCommandBuffer commands, const RayBatch& batch);
+
+    // Switches to another package of the same scene with steps, as Renderer::replacePackage() does: begin()
+    // uses it as soon as all of its pipelines are there, and then records the copies that bring the scene's
+    // records to it, unless EngineScene::update() has done so before. RaySteps that share a scene switch
+    // together. `package` must not be null; it is kept as long as it is needed. With an error nothing
+    // changes. Errors: those of create(); "scene-package" and "engine-scene" (the package does not suit what
+    // the host has given; EngineScene::update() can give what it needs), "ray-steps" (it has other bindings
+    // or answers), and those of Renderer::replacePackage() for a scene that Glint has uploaded.
+    Result<PackageReplacement> replacePackage(std::shared_ptr<const Package> package);
+    PackageProgress replacementProgress() const;
+    // The number of batches that were begun, which is that of the last one. finished() says that the device
+    // has completed all batches up to a number, and frees what only those used. It never waits.
+    std::uint64_t recordings() const;
+    void finished(std::uint64_t recording);
 
     // The counters of a batch.
     struct Counters {

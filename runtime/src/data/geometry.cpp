@@ -2,6 +2,7 @@
 
 #include "data/instance_math.h"
 #include "data/vertex_format.h"
+#include "package/package.h"
 
 #include <algorithm>
 #include <cstring>
@@ -160,6 +161,14 @@ Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, 
         GLINT_TRY_DO(uploadBuildInput(context, uploader, view, *how.builds, primitive));
     }
     return primitive;
+}
+
+void takeEntry(const package::PrimitiveEntry& entry, gpu::GeometryRecord& record) {
+    record.shaderId = entry.shaderId;
+    record.materialIndex = entry.materialIndex;
+    record.featureLobes = entry.featureLobes;
+    record.featureInputs = entry.featureInputs;
+    record.flags = (record.flags & ~kEntryFlags) | entry.geometryFlags;
 }
 
 gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, const GpuPrimitive& primitive,

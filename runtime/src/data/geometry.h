@@ -77,17 +77,16 @@ Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, 
                                      const PrimitiveView& view, const PrimitiveContent& content,
                                      const PrimitiveUpload& how);
 
+// Gives a record of a geometry what a package says of its primitive.
+void takeEntry(const package::PrimitiveEntry& entry, gpu::GeometryRecord& record);
+
 // Makes the record of a geometry whose addresses `source` has: a primitive, or the view of a host's geometry.
 template <typename Source>
 gpu::GeometryRecord recordOf(const package::PrimitiveEntry& entry, const Source& source,
                              std::uint32_t instance) {
     gpu::GeometryRecord record{};
-    record.shaderId = entry.shaderId;
-    record.materialIndex = entry.materialIndex;
-    record.featureLobes = entry.featureLobes;
-    record.featureInputs = entry.featureInputs;
+    takeEntry(entry, record);
     record.instanceIndex = instance;
-    record.flags = entry.geometryFlags;
     record.indices = source.indices;
     record.positions = source.positions;
     record.normals = source.normals;

@@ -233,6 +233,24 @@ Diagnostic fault(const MaterialView& view, const char* what) {
 
 }  // namespace
 
+std::vector<RecordField> recordFields(const Package& package) {
+    std::vector<RecordField> fields;
+    for (const package::FieldEntry& entry : package.fields()) {
+        fields.push_back({std::string(package.string(entry.name)), entry.offset, entry.bytes});
+    }
+    return fields;
+}
+
+void carryFields(std::span<const RecordField> from, std::span<const std::uint8_t> values,
+                 std::span<const RecordField> to, std::span<std::uint8_t> record) {
+    for (const RecordField& field : to) {
+        const auto same = std::ranges::find(from, field.name, &RecordField::name);
+        if (same != from.end() && same->bytes == field.bytes) {
+            std::memcpy(&record[field.offset], &values[same->offset], field.bytes);
+        }
+    }
+}
+
 void takeValues(std::span<const std::uint8_t> values, const MaterialTable& table,
                 std::span<std::uint8_t> record) {
     std::vector<std::uint8_t> taken(values.begin(), values.end());

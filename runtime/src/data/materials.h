@@ -12,6 +12,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace glint {
@@ -70,6 +71,19 @@ std::vector<std::uint8_t> linearizeRgba16(std::span<const std::uint8_t> texels);
 
 // Converts RGBA of 16 bits a channel to the nearest values of 8 bits, in the same transfer function.
 std::vector<std::uint8_t> narrowRgba16(std::span<const std::uint8_t> texels);
+
+// A field or a texture of the records of a package, which the package need not outlive.
+struct RecordField {
+    std::string name;
+    std::uint32_t offset = 0;  // bytes
+    std::uint32_t bytes = 0;
+};
+std::vector<RecordField> recordFields(const Package& package);
+
+// Copies what a record of the layout `from` has of the fields and textures of the layout `to`. The others
+// stay as they are in `record`.
+void carryFields(std::span<const RecordField> from, std::span<const std::uint8_t> values,
+                 std::span<const RecordField> to, std::span<std::uint8_t> record);
 
 // A material of SceneView::materials with its values on the device.
 struct ChangingMaterial {

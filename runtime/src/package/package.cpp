@@ -135,6 +135,10 @@ const package::OpacityEntry* Package::opacity() const {
     return state_->opacity.empty() ? nullptr : state_->opacity.data();
 }
 
+std::span<const package::FieldEntry> Package::fields() const {
+    return state_->fields;
+}
+
 std::vector<std::string> Package::featureNames(std::uint64_t features) const {
     std::vector<std::string> names;
     for (const package::FeatureEntry& entry : state_->features) {

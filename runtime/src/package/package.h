@@ -43,6 +43,7 @@ struct Package::State {
     std::span<const package::EmissionEntry> emission;  // empty without emissive lights
     std::span<const package::OpacityEntry> opacity;    // empty where alpha is not tested by Glint's own code
     std::span<const package::FeatureEntry> features;
+    std::span<const package::FieldEntry> fields;
     // Keyed by file name. Entries that name the same file share its words.
     std::map<std::string, std::vector<std::uint32_t>, std::less<>> spirv;
     // A hash of each module, by the address of its words. 128 bits, so that two modules never have the same
@@ -129,6 +130,11 @@ Status checkDevice(const Package& package, const DeviceHandles& handles);
 // Returns a hash of what a scene's records on the device and the shaders of its package must agree about: the
 // keys and numbers of primitives, textures and samplers, and the layout of materials and attributes.
 std::uint64_t recordsHash(const Package& package, const PackageScene& scene);
+// The flags of a geometry record that its primitive's entry has.
+inline constexpr std::uint32_t kEntryFlags = gpu::kGeometryAlphaTested | gpu::kGeometryDoubleSided |
+                                             gpu::kGeometryMasked | gpu::kGeometryBlended |
+                                             gpu::kGeometryEmitter | gpu::kGeometryPassesLight;
+
 // Error "scene-package": no scene of the package has records with that hash.
 Status checkRecords(const Package& package, std::uint64_t hash);
 

@@ -195,10 +195,7 @@ Status checkPrimitive(const Package::State& state, const package::SceneEntry& sc
     if ((shadedBy.always & ~key) != 0) {
         return altered(where, name + " lacks features that its case takes for granted");
     }
-    constexpr std::uint32_t kKnownFlags = gpu::kGeometryAlphaTested | gpu::kGeometryDoubleSided |
-                                          gpu::kGeometryMasked | gpu::kGeometryBlended |
-                                          gpu::kGeometryEmitter | gpu::kGeometryPassesLight;
-    if ((entry.geometryFlags & ~kKnownFlags) != 0 || entry.alphaMode > kLastAlphaMode) {
+    if ((entry.geometryFlags & ~kEntryFlags) != 0 || entry.alphaMode > kLastAlphaMode) {
         return altered(where, name + " has unknown flags");
     }
     if ((entry.geometryFlags & gpu::kGeometryAlphaTested) != 0 &&
@@ -327,6 +324,19 @@ Status checkFeatures(const Package::State& state, const std::string& where) {
     return okStatus();
 }
 
+Status checkFields(const Package::State& state, const std::string& where) {
+    std::uint64_t end = 0;
+    for (const package::FieldEntry& entry : state.fields) {
+        const bool isInOrder = entry.offset >= end && entry.offset % 4 == 0 && entry.bytes % 4 == 0;
+        end = std::uint64_t{entry.offset} + entry.bytes;
+        if (!inStrings(state, entry.name) || !isInOrder || entry.bytes == 0 ||
+            end > state.materials.recordBytes) {
+            return altered(where, "a field of materials is not well formed");
+        }
+    }
+    return okStatus();
+}
+
 Status checkEffects(const Package::State& state, const std::string& where) {
     package::Effect last = 0;
     for (const package::EffectEntry& entry : state.effectEntries) {
@@ -413,7 +423,7 @@ Status checkTables(Package::State& state, const std::string& where) {
         state.effects.push_back({entry.effect, entry.kind, entry.abilities, text(state, entry.name)});
     }
     for (const auto check : {checkHeader, checkCases, checkModules, checkScenes, checkEmission, checkOpacity,
-                             checkSamplers, checkAttributes, checkFeatures, checkLayers}) {
+                             checkSamplers, checkAttributes, checkFeatures, checkFields, checkLayers}) {
         GLINT_TRY_DO(check(state, where));
     }
     state.layers = layersOf(state);

@@ -272,6 +272,8 @@ Status readKnownSection(Package::State& state, const package::PackageSection& se
             return readSection(state, section, where, state.layerEntries);
         case package::SectionKind::Features:
             return readSection(state, section, where, state.features);
+        case package::SectionKind::Fields:
+            return readSection(state, section, where, state.fields);
     }
     return makeError(
         "package-altered", where,
@@ -300,8 +302,9 @@ Status readTables(Package::State& state, const std::string& where) {
         }
         GLINT_TRY_DO(readKnownSection(state, section, where));
     }
-    // Every package has the sections up to that of the effects. Names of features are for messages only.
-    constexpr std::size_t kSectionKinds = 10;
+    // Every package has the sections up to that of the effects, and the fields of records. Names of features
+    // are for messages only.
+    constexpr std::size_t kSectionKinds = 11;
     seen.erase(package::SectionKind::Emission);
     seen.erase(package::SectionKind::Opacity);
     seen.erase(package::SectionKind::Features);

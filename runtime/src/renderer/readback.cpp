@@ -345,10 +345,11 @@ EffectCounters FrameCounters::of(package::Effect effect) const {
     return found == effects.end() ? none : *found;
 }
 
-std::vector<std::uint32_t> bucketCountsOf(const Renderer::State& state) {
-    std::vector<std::uint32_t> sums(state.size.bucketCount);
-    for (std::uint32_t round = 0; round < state.rounds.size(); ++round) {
-        addTo(sums, bucketsOf(state.frame.readback.mapped + readbackRound(state.size, round), state.size));
+// Those of all rounds.
+std::vector<std::uint32_t> Renderer::State::hits() const {
+    std::vector<std::uint32_t> sums(size.bucketCount);
+    for (std::uint32_t round = 0; round < rounds.size(); ++round) {
+        addTo(sums, bucketsOf(frame.readback.mapped + readbackRound(size, round), size));
     }
     return sums;
 }

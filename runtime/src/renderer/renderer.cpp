@@ -149,20 +149,24 @@ void beginPicture(Renderer::State& state, std::uint32_t sampleIndex) {
 // flight: they only decide about an order.
 void orderByHits(Renderer::State& state) {
     if (state.recorded && state.size.ordered) {
-        state.pipelines.background->setHits(bucketCountsOf(state));
+        state.pipelines.background->setHits(state.hits());
     }
 }
 
 }  // namespace
 
+std::vector<EffectName> effectsOf(const Package& package) {
+    std::vector<EffectName> effects;
+    for (const package::EffectInfo& effect : package.effects()) {
+        effects.push_back({effect.effect, effect.kind, std::string(effect.name)});
+    }
+    return effects;
+}
+
 Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Package& package, GpuScene& scene,
                                                    const RendererOptions& options) try {
     Context::State& contextState = context.state();
-    if (package.passes() != package::Passes::Frame) {
-        return makeError("package-passes", "", "the package has the steps of a host's own rays, and no frame",
-                         "compile it with --passes frame, or use RaySteps");
-    }
-    GLINT_TRY_DO(checkRecords(package, scene.state().package.records));
+    GLINT_TRY_DO(checkUse(package::Passes::Frame, package, scene.state()));
     GLINT_TRY(auto choice, choosePipelines(contextState, package, options));
     if (options.pipelineStatistics && !contextState.handles.pipelineStatistics) {
         return makeError("pipeline-statistics", "", "the device was created without statistics of pipelines",
@@ -187,19 +191,27 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
     GLINT_TRY(state->pipelines, createPipelines(contextState, package, choice,
                                                 {options.pipelineThreads, options.pipelineStatistics},
                                                 state->scene.shaderIds, {layouts}));
+    enter(*state, package);
     return std::unique_ptr<Renderer>(new Renderer(std::move(state)));
 }
 GLINT_CATCH
 
-Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {
-    state_->renderers = state_->scene.renderers;
-    const std::lock_guard lock(state_->renderers->mutex);
-    state_->renderers->all.push_back(this);
-}
+Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 Renderer::~Renderer() {
-    const std::lock_guard lock(state_->renderers->mutex);
-    std::erase(state_->renderers->all, this);
+    leave(*state_);
+}
+
+Status Renderer::State::choose(const Package& other, NextPackage& made) const {
+    GLINT_TRY(made.choice, choosePipelines(context, other, options));
+    made.size = frameSize(other, made.choice, options, textureCapacity(scene));
+    return checkFrameSize(context, made.size);
+}
+
+void Renderer::State::took(const Package& taken) {
+    effects = effectsOf(taken);
+    rounds.clear();
+    bounceLevels.reset();
 }
 
 namespace {
@@ -229,6 +241,8 @@ Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) try
     const bool switches = state_->next && joinReplacement(*state_);
     if (switches) {
         GLINT_TRY_DO(checkOutside(state_->next->size, outsideOf(frame)));
+    } else {
+        GLINT_TRY_DO(checkReplaced(*state_));
     }
     if (state_->history != nullptr) {
         GLINT_TRY_DO(state_->history->makeRoom());
@@ -238,6 +252,7 @@ Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) try
     }
     if (switches) {
         switchPackage(*state_, commands);
+        GLINT_TRY_DO(checkReplaced(*state_));
     }
     beginPicture(*state_, frame.sampleIndex);
     gpu::FrameConstants constants = makeConstants(*state_, frame);
@@ -258,17 +273,7 @@ Result<Renderer::Replacement> Renderer::replacePackage(std::shared_ptr<const Pac
 GLINT_CATCH
 
 Renderer::ReplacementProgress Renderer::replacementProgress() const {
-    ReplacementProgress progress;
-    progress.inUse = state_->replacementsInUse;
-    progress.error = state_->replacementError;
-    progress.early = state_->pipelines.passes.contains(package::ModuleRole::LightingEdit);
-    if (state_->next) {
-        const auto& background = state_->next->pipelines.background;
-        progress.pending = true;
-        progress.missing = background ? background->missing() : 0;
-        progress.ready = isReplacementReady(*state_);
-    }
-    return progress;
+    return progressOf(*state_);
 }
 
 std::uint64_t Renderer::recordings() const {

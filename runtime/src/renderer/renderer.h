@@ -1,4 +1,4 @@
-// The state that the passes of a Renderer work on, and the package that is about to replace its own.
+// The state that the passes of a Renderer work on.
 #pragma once
 
 #include "context/commands.h"
@@ -9,6 +9,7 @@
 #include "renderer/background_pipelines.h"
 #include "renderer/hit_passes.h"
 #include "renderer/pipelines.h"
+#include "renderer/replacement.h"
 #include "scene/gpu_scene_state.h"
 
 #include <glint/renderer.h>
@@ -32,83 +33,21 @@ struct EffectName {
     std::string name;
 };
 
-// Returns the names of effects that reports and labels need of a package.
+// Returns the effects whose names reports and labels need.
 std::vector<EffectName> effectsOf(const Package& package);
-std::vector<std::string> caseNamesOf(const Package& package);
 
-// Returns the number of stretches that frames of the package can have.
-std::uint32_t timerCapacity(const Package& package, const FrameSize& size);
-
-// A package with all that its frames need, except pipelines that threads are still making. Members are
-// destroyed in reverse order.
-struct NextPackage {
-    explicit NextPackage(Context::State& context) : pipelines(context) {}
-
-    std::shared_ptr<const Package> package;
-    Renderer::Replacement report;
-    std::uint32_t scene = 0;  // index in the package
-    PipelineChoice choice;
-    FrameSize size;
-    std::optional<Timer> timer;  // no value: the renderer's own is long enough
-    NextBuffers buffers;
-    Pipelines pipelines;                           // with no pass yet
-    std::vector<BackgroundPipelines::Done> ready;  // pipelines that are kept, or were made in the call
-};
-
-// Resources that only recordings up to `recording` use. Members are destroyed in reverse order.
-struct Leftovers {
-    std::uint64_t recording = 0;
-    EarlierBuffers buffers;
-    std::shared_ptr<const RetiredLot> scene;  // shared by the scene's renderers
-    std::shared_ptr<const Environment::State> environment;
-    UniqueDescriptorPool descriptors;  // of a set with that environment
-    std::optional<Timer> timer;
-    std::unique_ptr<NextPackage> next;  // one that was given up
-    std::unique_ptr<Pipelines> pipelines;
-};
-
-// Destroys pipelines with jobs. A driver takes its time for each pipeline, and those that are being made have
-// to be waited for. The destructor waits until all are gone.
-class PipelineDisposal {
-public:
-    explicit PipelineDisposal(Jobs& jobs) : group_(jobs) {}
-    // Never waits, unless there is no thread.
-    void take(std::unique_ptr<Pipelines> pipelines, std::unique_ptr<NextPackage> next);
-
-private:
-    struct Waste {
-        std::unique_ptr<NextPackage> next;
-        std::unique_ptr<Pipelines> pipelines;
-    };
-    void destroyOne();
-
-    std::mutex mutex_;
-    std::vector<Waste> waste_;
-    JobGroup group_;  // its jobs destroy a part of the waste each
-};
-
-// Implements Renderer::replacePackage() for all renderers of the scene.
-Result<Renderer::Replacement> beginReplacement(Renderer::State& state,
-                                               const std::shared_ptr<const Package>& package);
-
-// Returns whether the pipelines of the package that waits are there, in all renderers of the scene.
-bool isReplacementReady(const Renderer::State& state);
-// Lets the package wait in renderers that were made after replacePackage(), too, and returns whether it is
-// ready. If a pipeline could not be made, gives the package up.
-bool joinReplacement(Renderer::State& state);
-// Lets the commands that are recorded from now on use the package that waits, in all renderers of the scene.
-// Requires joinReplacement(). If something can't be made, gives the package up, and nothing else changes.
-void switchPackage(Renderer::State& state, VkCommandBuffer commands);
-
-// Destroys resources that recordings after `recording` do not use; pipelines are gone some time later.
-void releaseLeftovers(Renderer::State& state, std::uint64_t recording);
-
-struct Renderer::State : PassState {
+struct Renderer::State final : PackageUser {
     State(Context::State& contextState, GpuScene::State& sceneState, Timer passTimer)
-        : PassState(contextState, std::move(passTimer)), scene(sceneState), disposal(contextState.jobs) {}
+        : PackageUser(contextState, sceneState, std::move(passTimer)), scene(sceneState) {}
+
+    package::Passes passes() const override {
+        return package::Passes::Frame;
+    }
+    Status choose(const Package& other, NextPackage& made) const override;
+    std::vector<std::uint32_t> hits() const override;
+    void took(const Package& taken) override;
 
     GpuScene::State& scene;
-    std::shared_ptr<GpuScene::State::Renderers> renderers{};  // of the scene
     std::vector<EffectName> effects;
     // The environment in set 1. It stays alive as long as a recording may read it.
     std::shared_ptr<const Environment::State> environment;
@@ -121,27 +60,15 @@ struct Renderer::State : PassState {
     BounceLevels bounceLevels;
     std::unique_ptr<MotionHistory> history;  // null unless layers need it
 
-    RendererOptions options;
-    std::uint32_t timerCapacity = 0;  // stretches
-    std::uint64_t recordings = 0;
-    std::uint64_t drafts = 0;           // recordings that were drafts
-    bool drafted = false;               // the last recording was one
-    std::uint32_t firstSample = 0;      // FrameOptions::sampleIndex with which the picture began
-    std::unique_ptr<NextPackage> next;  // null unless a package waits
-    std::vector<std::unique_ptr<Leftovers>> leftovers;
-    PipelineDisposal disposal;
-    std::uint64_t replacementsInUse = 0;
-    std::optional<Diagnostic> replacementError;
+    std::uint64_t drafts = 0;       // recordings that were drafts
+    bool drafted = false;           // the last recording was one
+    std::uint32_t firstSample = 0;  // FrameOptions::sampleIndex with which the picture began
 };
 
 // Returns the number of bounces of a frame's paths.
 inline std::uint32_t bouncesOf(const FrameSize& size, const FrameOptions& frame) {
     return frame.bounces == 0 ? size.bounces : std::min(frame.bounces, size.bounces);
 }
-
-// Returns the misses and hits by shader ID that the last recording counted, of all rounds. Hits must be
-// ordered.
-std::vector<std::uint32_t> bucketCountsOf(const Renderer::State& state);
 
 // Records all passes of a frame.
 void recordFrame(Renderer::State& state, VkCommandBuffer commands, const FrameOptions& frame,

@@ -1,6 +1,9 @@
+#include "renderer/replacement.h"
+
+#include "package/package.h"
 #include "renderer/pipelines.h"
-#include "renderer/renderer.h"
-#include "renderer/renderer_choice.h"
+
+#include <glint/internal/package_modules.h>
 
 #include <algorithm>
 #include <exception>
@@ -17,6 +20,18 @@ using KnownPipelines = std::map<PipelineIdentity, MadePipeline>;
 
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
+Status checkPasses(package::Passes passes, const Package& package) {
+    if (package.passes() == passes) {
+        return okStatus();
+    }
+    return package.passes() == package::Passes::Steps
+               ? makeError("package-passes", "",
+                           "the package has the steps of a host's own rays, and no frame",
+                           "compile it with --passes frame, or use RaySteps")
+               : makeError("package-passes", "", "the package draws frames, and has no steps",
+                           "compile it with --passes steps, or use Renderer");
+}
+
 // Takes the pipelines that the threads of a waiting package have made so far.
 void collect(NextPackage& next) {
     if (next.pipelines.background) {
@@ -24,7 +39,7 @@ void collect(NextPackage& next) {
     }
 }
 
-KnownPipelines knownPipelines(Renderer::State& state) {
+KnownPipelines knownPipelines(PackageUser& state) {
     KnownPipelines known;
     for (const MadePipeline& made : state.pipelines.owned) {
         known.emplace(made.identity, made);
@@ -65,8 +80,8 @@ Status makeNow(std::vector<PlannedPipeline> missing, const PipelineMaking& makin
 }
 
 // Plans the pipelines, keeps those that are known, and makes the others or starts threads that do.
-Status makePipelinesOf(Renderer::State& state, NextPackage& next) {
-    Renderer::Replacement& result = next.report;
+Status makePipelinesOf(PackageUser& state, NextPackage& next) {
+    PackageReplacement& result = next.report;
     const PipelineMaking making{state.options.pipelineThreads, state.options.pipelineStatistics};
     const VkPipelineCreateFlags flags =
         making.captureStatistics ? VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR : 0;
@@ -82,7 +97,7 @@ Status makePipelinesOf(Renderer::State& state, NextPackage& next) {
     PipelineChoice choice = next.choice;
     choice.background = false;
     choice.draft = false;
-    const std::vector<std::uint32_t> shaderIds = shaderIdsIn(state.scene, next.package->scene(next.scene));
+    const std::vector<std::uint32_t>& shaderIds = next.fit.shaderIds;
     pipelines.shadesUnknown = hasUnknown(*next.package, shaderIds);
     const KnownPipelines known = knownPipelines(state);
     std::vector<PlannedPipeline> missing;
@@ -111,26 +126,22 @@ Status makePipelinesOf(Renderer::State& state, NextPackage& next) {
         pipelines.background = std::make_unique<BackgroundPipelines>(state.context.jobs, std::move(missing),
                                                                      flags, std::max(threads, 2U) - 1);
         if (state.recorded && state.size.ordered && next.size.bucketCount == state.size.bucketCount) {
-            pipelines.background->setHits(bucketCountsOf(state));
+            pipelines.background->setHits(state.hits());
         }
     }
     return okStatus();
 }
 
-// Makes everything that frames of the package need. Nothing of the renderer changes.
-Result<std::unique_ptr<NextPackage>> makeNext(Renderer::State& state,
-                                              std::shared_ptr<const Package> package) {
-    if (package->passes() != package::Passes::Frame) {
-        return makeError("package-passes", "", "the package has the steps of a host's own rays, and no frame",
-                         "compile it with --passes frame");
-    }
-    GLINT_TRY(const auto choice, choosePipelines(state.context, *package, state.options));
-    GLINT_TRY(const auto scene, findScene(state.scene, *package));
+// Makes everything that frames of the package need. Nothing of the user changes.
+Result<std::unique_ptr<NextPackage>> makeNext(PackageUser& state, std::shared_ptr<const Package> package,
+                                              bool inBackground) {
+    GLINT_TRY_DO(checkPasses(state.passes(), *package));
     auto next = std::make_unique<NextPackage>(state.context);
-    next->choice = choice;
-    next->scene = scene;
-    next->size = frameSize(*package, choice, state.options, textureCapacity(state.scene));
-    GLINT_TRY_DO(checkFrameSize(state.context, next->size));
+    GLINT_TRY_DO(state.choose(*package, *next));
+    next->choice.background = next->choice.background && inBackground;
+    GLINT_TRY(next->fit, state.drawn.fit(package));
+    next->shaderIdsVersion = state.drawn.shaderIdsVersion;
+    next->report.missing = next->fit.missing;
     if (!haveSameImages(state.size, next->size)) {
         return makeError(
             "package-frame", "",
@@ -152,7 +163,7 @@ Result<std::unique_ptr<NextPackage>> makeNext(Renderer::State& state,
 }
 
 // Leaves the package that waits, and the threads that make its pipelines, to releaseLeftovers().
-void giveUp(Renderer::State& state) {
+void giveUp(PackageUser& state) {
     if (state.next && state.next->pipelines.background) {
         state.next->pipelines.background->setPaused(true);
     }
@@ -162,14 +173,14 @@ void giveUp(Renderer::State& state) {
     }
 }
 
-void pauseBackground(Renderer::State& state, bool paused) {
+void pauseBackground(PackageUser& state, bool paused) {
     if (state.pipelines.background) {
         state.pipelines.background->setPaused(paused);
     }
 }
 
 // Lets the passes use the pipelines, which are all there but for spare ones.
-Status joinPasses(Renderer::State& state, NextPackage& next) {
+Status joinPasses(PackageUser& state, NextPackage& next) {
     if (package::infoOf(next.choice.strategy).dispatchesCases) {
         next.pipelines.cases.resize(next.package->caseCount());
     }
@@ -181,27 +192,29 @@ Status joinPasses(Renderer::State& state, NextPackage& next) {
     return okStatus();
 }
 
-// Returns the renderers of the scene.
-std::vector<Renderer::State*> usersOf(GpuScene::State& scene) {
-    const std::lock_guard lock(scene.renderers->mutex);
-    std::vector<Renderer::State*> users;
-    for (Renderer* const renderer : scene.renderers->all) {
-        users.push_back(&renderer->state());
+// Returns those who replace their package together with this one.
+std::vector<PackageUser*> usersWith(const PackageUser& state) {
+    const std::lock_guard lock(state.users->mutex);
+    std::vector<PackageUser*> users;
+    for (PackageUser* const user : state.users->all) {
+        if (user->passes() == state.passes()) {
+            users.push_back(user);
+        }
     }
     return users;
 }
 
 // Lets a package wait that was made by makeNext(). The threads make its pipelines first.
-void await(Renderer::State& state, std::unique_ptr<NextPackage> next) {
+void await(PackageUser& state, std::unique_ptr<NextPackage> next) {
     giveUp(state);
     pauseBackground(state, true);
     state.next = std::move(next);
     state.replacementError.reset();
 }
 
-void refuse(Renderer::State& state, const Diagnostic& error) {
+void refuse(PackageUser& state, const Diagnostic& error) {
     state.context.jobs.report(error);
-    for (Renderer::State* const user : usersOf(state.scene)) {
+    for (PackageUser* const user : usersWith(state)) {
         if (user->next) {
             user->replacementError = error;
             giveUp(*user);
@@ -210,15 +223,16 @@ void refuse(Renderer::State& state, const Diagnostic& error) {
     }
 }
 
-bool waitsFor(const Renderer::State& state, const std::shared_ptr<const Package>& package) {
+bool waitsFor(const PackageUser& state, const std::shared_ptr<const Package>& package) {
     return state.next && state.next->package == package;
 }
 
-// Makes the package that waits the renderer's own. `scene` are the leftovers of the scene, and `recording` is
-// the last one that uses them. Nothing can fail.
-void takeOver(Renderer::State& state, const std::shared_ptr<const RetiredLot>& scene,
-              std::uint64_t recording) {
-    NextPackage& next = *state.next;
+// Makes a package that joinPasses() has prepared the user's own. The last of its leftovers get what was
+// replaced, and `scene`, the leftovers of the scene. `recording` is the last one that uses them. Nothing can
+// fail.
+void takeOver(PackageUser& state, std::unique_ptr<NextPackage> taken,
+              const std::shared_ptr<const RetiredLot>& scene, std::uint64_t recording) {
+    NextPackage& next = *taken;
     Leftovers& left = *state.leftovers.back();
     left.recording = recording;
     left.scene = scene;
@@ -230,24 +244,29 @@ void takeOver(Renderer::State& state, const std::shared_ptr<const RetiredLot>& s
     }
     state.choice = next.choice;
     state.size = next.size;
-    state.effects = effectsOf(*next.package);
     state.caseNames = caseNamesOf(*next.package);
-    state.rounds.clear();
-    state.bounceLevels.reset();
     state.recorded = false;
-    ++state.replacementsInUse;
-    state.next.reset();
+    state.package = next.package;
+    state.records = state.drawn.records;
+    state.shaderIdsVersion = next.shaderIdsVersion;
+    state.took(*next.package);
+}
+
+void addLeftovers(PackageUser& state) {
+    state.leftovers.push_back(std::make_unique<Leftovers>());
+    state.leftovers.back()->pipelines = std::make_unique<Pipelines>(state.context);
+}
+
+bool isReplacementReady(const PackageUser& state) {
+    return std::ranges::all_of(usersWith(state), [&](const PackageUser* user) {
+        const auto* const background = user->next ? user->next->pipelines.background.get() : nullptr;
+        return waitsFor(*user, state.next->package) &&
+               (background == nullptr || (user->pipelines.adoptedAtOnce > 0 && background->missing() == 0 &&
+                                          !background->progress().error));
+    });
 }
 
 }  // namespace
-
-std::vector<EffectName> effectsOf(const Package& package) {
-    std::vector<EffectName> effects;
-    for (const package::EffectInfo& effect : package.effects()) {
-        effects.push_back({effect.effect, effect.kind, std::string(effect.name)});
-    }
-    return effects;
-}
 
 std::vector<std::string> caseNamesOf(const Package& package) {
     std::vector<std::string> names;
@@ -286,15 +305,33 @@ void PipelineDisposal::destroyOne() {
     }
 }
 
-Result<Renderer::Replacement> beginReplacement(Renderer::State& state,
-                                               const std::shared_ptr<const Package>& package) {
-    std::vector<std::pair<Renderer::State*, std::unique_ptr<NextPackage>>> made;
-    for (Renderer::State* const user : usersOf(state.scene)) {
+Status checkUse(package::Passes passes, const Package& package, const DrawnScene& scene) {
+    GLINT_TRY_DO(checkPasses(passes, package));
+    return checkRecords(package, scene.records);
+}
+
+void enter(PackageUser& state, const Package& package) {
+    state.package = std::shared_ptr<const Package>(std::shared_ptr<void>(), &package);
+    state.records = state.drawn.records;
+    state.shaderIdsVersion = state.drawn.shaderIdsVersion;
+    const std::lock_guard lock(state.users->mutex);
+    state.users->all.push_back(&state);
+}
+
+void leave(PackageUser& state) {
+    const std::lock_guard lock(state.users->mutex);
+    std::erase(state.users->all, &state);
+}
+
+Result<PackageReplacement> beginReplacement(PackageUser& state,
+                                            const std::shared_ptr<const Package>& package) {
+    std::vector<std::pair<PackageUser*, std::unique_ptr<NextPackage>>> made;
+    for (PackageUser* const user : usersWith(state)) {
         if (user->pipelines.background) {
             GLINT_TRY_DO(adoptPipelines(user->context, user->pipelines));
         }
         if (user == &state || !waitsFor(*user, package)) {
-            GLINT_TRY(auto next, makeNext(*user, package));
+            GLINT_TRY(auto next, makeNext(*user, package, true));
             made.emplace_back(user, std::move(next));
         }
     }
@@ -304,20 +341,26 @@ Result<Renderer::Replacement> beginReplacement(Renderer::State& state,
     return state.next->report;
 }
 
-bool isReplacementReady(const Renderer::State& state) {
-    return std::ranges::all_of(usersOf(state.scene), [&](const Renderer::State* user) {
-        const auto* const background = user->next ? user->next->pipelines.background.get() : nullptr;
-        return waitsFor(*user, state.next->package) &&
-               (background == nullptr || (user->pipelines.adoptedAtOnce > 0 && background->missing() == 0 &&
-                                          !background->progress().error));
-    });
+PackageProgress progressOf(const PackageUser& state) {
+    PackageProgress progress;
+    progress.inUse = state.replacementsInUse;
+    progress.error = state.replacementError;
+    progress.early = state.pipelines.passes.contains(package::ModuleRole::LightingEdit);
+    if (state.next) {
+        const auto& background = state.next->pipelines.background;
+        progress.pending = true;
+        progress.missing = background ? background->missing() : 0;
+        progress.ready = isReplacementReady(state);
+    }
+    return progress;
 }
 
-bool joinReplacement(Renderer::State& state) {
+bool joinReplacement(PackageUser& state) {
     const std::shared_ptr<const Package> package = state.next->package;
-    for (Renderer::State* const user : usersOf(state.scene)) {
-        if (!waitsFor(*user, package)) {  // it was made after replacePackage()
-            Result<std::unique_ptr<NextPackage>> next = makeNext(*user, package);
+    for (PackageUser* const user : usersWith(state)) {
+        // It was made after replacePackage(), or the scene has had other geometries since then.
+        if (!waitsFor(*user, package) || user->next->shaderIdsVersion != user->drawn.shaderIdsVersion) {
+            Result<std::unique_ptr<NextPackage>> next = makeNext(*user, package, true);
             if (!next) {
                 refuse(state, next.error());
                 return false;
@@ -334,33 +377,57 @@ bool joinReplacement(Renderer::State& state) {
     return isReplacementReady(state);
 }
 
-void switchPackage(Renderer::State& state, VkCommandBuffer commands) {
-    const std::vector<Renderer::State*> users = usersOf(state.scene);
-    for (Renderer::State* const user : users) {
+void switchPackage(PackageUser& state, VkCommandBuffer commands) {
+    const std::vector<PackageUser*> users = usersWith(state);
+    for (PackageUser* const user : users) {
         if (Status status = joinPasses(*user, *user->next); !status) {
             refuse(state, status.error());
             return;
         }
     }
-    for (Renderer::State* const user : users) {
-        user->leftovers.push_back(std::make_unique<Leftovers>());
-        user->leftovers.back()->pipelines = std::make_unique<Pipelines>(user->context);
+    for (PackageUser* const user : users) {
+        addLeftovers(*user);
     }
     const auto left = std::make_shared<RetiredLot>();
     Result<RetiredLot> scene =
-        recordReplacement(state.scene, *state.next->package, state.next->scene, commands);
+        state.drawn.recordReplacement(state.next->package, state.next->fit.scene, commands);
     if (!scene) {
         refuse(state, scene.error());
         return;
     }
     *left = std::move(*scene);
-    for (Renderer::State* const user : users) {
+    for (PackageUser* const user : users) {
         // The commands that are being recorded read the staging memory.
-        takeOver(*user, left, user->recordings + (user == &state ? 1 : 0));
+        takeOver(*user, std::move(user->next), left, user->recordings + (user == &state ? 1 : 0));
+        ++user->replacementsInUse;
     }
 }
 
-void releaseLeftovers(Renderer::State& state, std::uint64_t recording) {
+Status checkReplaced(const PackageUser& state) {
+    if (state.drawn.records != state.records) {
+        return makeError("package-replaced", "",
+                         "the scene's records are those of another package, which has replaced this one",
+                         "give replacePackage() a package of the same compilation");
+    }
+    return okStatus();
+}
+
+Status refreshTables(PackageUser& state) {
+    if (state.shaderIdsVersion == state.drawn.shaderIdsVersion) {
+        return okStatus();
+    }
+    if (package::infoOf(state.choice.strategy).ownPipeline) {
+        GLINT_TRY(auto next, makeNext(state, state.package, false));
+        GLINT_TRY_DO(joinPasses(state, *next));
+        addLeftovers(state);
+        takeOver(state, std::move(next), nullptr, state.recordings);
+    }
+    state.pipelines.shadesUnknown = hasUnknown(*state.package, state.drawn.shaderIds);
+    state.shaderIdsVersion = state.drawn.shaderIdsVersion;
+    return okStatus();
+}
+
+void releaseLeftovers(PackageUser& state, std::uint64_t recording) {
     std::erase_if(state.leftovers, [&](const std::unique_ptr<Leftovers>& left) {
         if (left->recording > recording) {
             return false;

@@ -7,6 +7,7 @@
 
 #include <bit>
 #include <optional>
+#include <utility>
 
 namespace glint {
 namespace {
@@ -30,9 +31,10 @@ std::uint64_t entryKey(const package::PrimitiveEntry& entry) {
 
 }  // namespace
 
-CaseTable::CaseTable(const Package& package) : package_(package), fallback_(package.shape().fallback) {
-    for (std::uint32_t scene = 0; scene < package.sceneCount(); ++scene) {
-        for (const package::PrimitiveEntry& entry : package.scene(scene).primitives) {
+CaseTable::CaseTable(std::shared_ptr<const Package> package)
+    : package_(std::move(package)), fallback_(package_->shape().fallback) {
+    for (std::uint32_t scene = 0; scene < package_->sceneCount(); ++scene) {
+        for (const package::PrimitiveEntry& entry : package_->scene(scene).primitives) {
             shaderOfKey_.emplace(entryKey(entry), entry.shaderId);
             known_ |= entryKey(entry);
             always_ &= entryKey(entry);
@@ -45,19 +47,19 @@ CaseTable::CaseTable(const Package& package) : package_(package), fallback_(pack
 
 std::string CaseTable::namesOf(std::uint64_t features) const {
     std::string text;
-    for (const std::string& name : package_.featureNames(features)) {
+    for (const std::string& name : package_->featureNames(features)) {
         text += (text.empty() ? "" : ", ") + name;
     }
     return text.empty() ? "no features" : text;
 }
 
 std::vector<std::uint32_t> CaseTable::shaderIds() const {
-    std::vector<std::uint32_t> ids(package_.caseCount());
+    std::vector<std::uint32_t> ids(package_->caseCount());
     for (std::uint32_t id = 0; id < ids.size(); ++id) {
         ids[id] = id;
     }
     if (fallback_) {
-        ids.push_back(package_.caseCount());
+        ids.push_back(package_->caseCount());
     }
     return ids;
 }
@@ -77,7 +79,7 @@ Status CaseTable::checkAttributes(const MaterialKey& key, const std::string& whe
         lacking |= (key.attributes & attribute) == 0 ? key.features & feature : 0;
     }
     std::uint32_t bit = kDeclaredAttributesShift;
-    for (const package::AttributeEntry& row : package_.attributes()) {
+    for (const package::AttributeEntry& row : package_->attributes()) {
         const bool given = (key.attributes >> bit++ & 1U) != 0 || row.hasFallback != 0;
         lacking |= given ? 0 : key.features & row.feature;
     }
@@ -105,7 +107,7 @@ Status CaseTable::checkKnown(const MaterialKey& key, const std::string& where) c
 }
 
 Status CaseTable::checkEmitter(const MaterialKey& key, const std::string& where) const {
-    const package::EmissionEntry* const emission = package_.emission();
+    const package::EmissionEntry* const emission = package_->emission();
     if (emission == nullptr || (key.geometryFlags & gpu::kGeometryEmitter) == 0) {
         return okStatus();
     }
@@ -136,7 +138,7 @@ Result<Shading> CaseTable::find(const MaterialKey& key, const std::string& where
         return shading;
     }
     std::optional<std::uint32_t> best;
-    const std::span<const package::CaseEntry> cases = package_.cases();
+    const std::span<const package::CaseEntry> cases = package_->cases();
     for (std::uint32_t id = 0; id < cases.size() && (key.features & always_) == always_; ++id) {
         const package::CaseEntry& entry = cases[id];
         const bool fits = entry.keyCount > 0 && (entry.always & ~key.hitFeatures) == 0 &&
@@ -151,7 +153,7 @@ Result<Shading> CaseTable::find(const MaterialKey& key, const std::string& where
                          "compile the package with --fallback, or from a scene that has such a material");
     }
     shading.missing = !best;
-    shading.shaderId = best.value_or(package_.caseCount());
+    shading.shaderId = best.value_or(package_->caseCount());
     return shading;
 }
 

@@ -6,6 +6,7 @@
 #include <glint/scene.h>
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -22,10 +23,10 @@ struct Shading {
     bool operator==(const Shading&) const = default;
 };
 
-// The keys that a package has shaders for. The package must outlive it.
+// The keys that a package has shaders for.
 class CaseTable {
 public:
-    explicit CaseTable(const Package& package);
+    explicit CaseTable(std::shared_ptr<const Package> package);
 
     // Finds the shader of a key. `where` is the material, for messages. A key of the package's own scenes has
     // the shader that they have. For others it is the case that has all of the key's features and takes the
@@ -39,7 +40,7 @@ public:
     std::vector<std::uint32_t> shaderIds() const;
     std::string namesOf(std::uint64_t features) const;
     const Package& package() const {
-        return package_;
+        return *package_;
     }
 
 private:
@@ -47,7 +48,7 @@ private:
     // Checks that shaders compute the emission of a light with this key.
     Status checkEmitter(const MaterialKey& key, const std::string& where) const;
 
-    const Package& package_;
+    std::shared_ptr<const Package> package_;
     bool fallback_;
     std::unordered_map<std::uint64_t, std::uint32_t> shaderOfKey_;  // of the package's primitives
     std::uint64_t known_ = 0;                                       // features of some primitive

@@ -64,39 +64,17 @@ Status checkSource(const SceneStore& store, const MaterialSource& source, const 
     return okStatus();
 }
 
-// Writes into a record which textures it has, if records of this layout hold that.
-void settleTextures(const SceneStore& store, std::span<const TextureUse> uses,
-                    std::span<const std::uint32_t> samplers, std::span<std::uint8_t> record) {
-    const MaterialTable table{record, store.scene.materialLayout.recordBytes,
-                              store.scene.materialLayout.textureOffset,
-                              store.scene.materialLayout.textureCount};
-    for (std::uint32_t slot = 0; slot < table.textureCount; ++slot) {
-        gpu::TextureRecord settled = textureAt(table, 0, slot);
-        settled.textureIndex = 0;
-        settled.samplerIndex = 0;
-        settled.texCoord = 0;
-        settled.texels = {};
-        settled.anisotropy = 1.0F;
-        for (std::size_t i = 0; i < uses.size(); ++i) {
-            if (uses[i].slot == slot) {
-                const StoredTexture& texture = *store.textures.find(uses[i].texture);
-                settled.textureIndex = uses[i].texture.index;
-                settled.samplerIndex = samplers[i];
-                settled.texCoord = uses[i].texCoord;
-                settled.texels = {static_cast<float>(texture.width), static_cast<float>(texture.height)};
-                settled.anisotropy = anisotropyOf(store.scene.context, uses[i].sampler);
-            }
-        }
-        std::memcpy(&record[placeOfTexture(table, 0, slot)], &settled, sizeof settled);
-    }
-}
-
-// Finds the sampler, or makes it. Error "scene-edit-room".
-Result<std::uint32_t> samplerIndex(SceneStore& store, const package::SamplerEntry& entry) {
+// Returns how many samplers are there if this one is not.
+std::size_t findSampler(const SceneStore& store, const package::SamplerEntry& entry) {
     const auto known =
         std::ranges::find_if(store.samplers, [&](const auto& other) { return isSame(other, entry); });
-    if (known != store.samplers.end()) {
-        return static_cast<std::uint32_t>(known - store.samplers.begin());
+    return static_cast<std::size_t>(known - store.samplers.begin());
+}
+
+// Makes the sampler, unless it is there. Error "scene-edit-room".
+Status ensureSampler(SceneStore& store, const package::SamplerEntry& entry) {
+    if (findSampler(store, entry) < store.samplers.size()) {
+        return okStatus();
     }
     if (store.samplers.size() >= store.scene.samplerRoom) {
         return makeError("scene-edit-room", "",
@@ -108,17 +86,15 @@ Result<std::uint32_t> samplerIndex(SceneStore& store, const package::SamplerEntr
     store.scene.samplers.push_back(std::move(sampler));
     store.samplers.push_back(entry);
     store.setDirty = true;
-    return static_cast<std::uint32_t>(store.samplers.size() - 1);
+    return okStatus();
 }
 
 Result<std::vector<std::uint8_t>> makeRecord(SceneStore& store, const MaterialSource& source) {
-    std::vector<std::uint32_t> samplers;
     for (const TextureUse& use : source.textures) {
-        GLINT_TRY(auto sampler, samplerIndex(store, use.sampler));
-        samplers.push_back(sampler);
+        GLINT_TRY_DO(ensureSampler(store, use.sampler));
     }
     std::vector<std::uint8_t> record(source.record.begin(), source.record.end());
-    settleTextures(store, source.textures, samplers, record);
+    settleTextures(store, store.scene.materialLayout, source.textures, record);
     return record;
 }
 
@@ -187,8 +163,10 @@ const MaterialKey* keyFor(std::span<const MaterialKey> keys, AttributeMask attri
     return found == keys.end() ? nullptr : &*found;
 }
 
-Result<Shading> shadingBy(const SceneStore& store, std::span<const MaterialKey> keys,
-                          AttributeMask attributes, const std::string& where) {
+}  // namespace
+
+Result<Shading> shadingBy(const CaseTable& cases, std::span<const MaterialKey> keys, AttributeMask attributes,
+                          const std::string& where) {
     const MaterialKey* const key = keyFor(keys, attributes);
     if (key == nullptr) {
         return makeError(
@@ -196,10 +174,8 @@ Result<Shading> shadingBy(const SceneStore& store, std::span<const MaterialKey> 
             "the material has no key for a primitive with the attributes " + std::to_string(attributes),
             "give a MaterialKey for each set of attributes that its primitives have");
     }
-    return store.cases->find(*key, where);
+    return cases.find(*key, where);
 }
-
-}  // namespace
 
 Diagnostic unknownHandle(const char* what) {
     return makeError("scene-edit-handle", "", std::string("the handle of a ") + what + " names nothing",
@@ -221,16 +197,50 @@ Result<Shading> shadingOf(const SceneStore& store, MaterialHandle material, Attr
     if (entry == nullptr) {
         return unknownHandle("material");
     }
-    return shadingBy(store, entry->keys, attributes, placeOf("material", material.index));
+    return shadingBy(*store.cases, entry->keys, attributes, placeOf("material", material.index));
 }
 
-void addTo(EditReport& report, const SceneStore& store, MaterialHandle material, const Shading& shading) {
+void addTo(EditReport& report, const CaseTable& cases, MaterialHandle material, const Shading& shading) {
     const bool listed = std::ranges::any_of(report.missing, [&](const MissingCase& other) {
         return other.material == material && other.features == shading.features;
     });
     if (shading.missing && !listed) {
         report.missing.push_back(
-            {material, shading.features, store.cases->package().featureNames(shading.features)});
+            {material, shading.features, cases.package().featureNames(shading.features)});
+    }
+}
+
+// A record says which textures it may read. A slot that no key reads names the first texture, too.
+std::vector<TextureUse> usesOf(const SceneStore& store, const MaterialTable& table, std::size_t material) {
+    std::vector<TextureUse> uses;
+    for (std::uint32_t slot = 0; slot < table.textureCount && !store.firstTextures.empty(); ++slot) {
+        const gpu::TextureRecord record = textureAt(table, material, slot);
+        uses.push_back({slot, store.firstTextures[record.textureIndex], store.samplers[record.samplerIndex],
+                        record.texCoord});
+    }
+    return uses;
+}
+
+void settleTextures(const SceneStore& store, const MaterialTable& layout, std::span<const TextureUse> uses,
+                    std::span<std::uint8_t> record) {
+    const MaterialTable table = tableWith(layout, record);
+    for (std::uint32_t slot = 0; slot < table.textureCount; ++slot) {
+        gpu::TextureRecord settled = textureAt(table, 0, slot);
+        settled.textureIndex = 0;
+        settled.samplerIndex = 0;
+        settled.texCoord = 0;
+        settled.texels = {};
+        settled.anisotropy = 1.0F;
+        const auto use = std::ranges::find(uses, slot, &TextureUse::slot);
+        if (use != uses.end()) {
+            const StoredTexture& texture = *store.textures.find(use->texture);
+            settled.textureIndex = use->texture.index;
+            settled.samplerIndex = static_cast<std::uint32_t>(findSampler(store, use->sampler));
+            settled.texCoord = use->texCoord;
+            settled.texels = {static_cast<float>(texture.width), static_cast<float>(texture.height)};
+            settled.anisotropy = anisotropyOf(store.scene.context, use->sampler);
+        }
+        std::memcpy(&record[placeOfTexture(table, 0, slot)], &settled, sizeof settled);
     }
 }
 
@@ -267,6 +277,7 @@ Status SceneEditor::replaceTexture(TextureHandle texture, const ImageView& image
     store_->retired.add(std::move(place));
     place = std::move(made);
     store_->setDirty = true;
+    store_->otherTexels = true;
     entry->width = image.width;
     entry->height = image.height;
     entry->texels = emissionTexels(*store_, image, entry->srgb);
@@ -317,7 +328,7 @@ Result<MaterialHandle> SceneEditor::addMaterial(const MaterialSource& source) tr
     GLINT_TRY_DO(checkSource(*store_, source, where));
     GLINT_TRY(auto record, makeRecord(*store_, source));
     const MaterialHandle material = store_->materialSlots.add(
-        {{source.keys.begin(), source.keys.end()}, {source.textures.begin(), source.textures.end()}});
+        {{source.keys.begin(), source.keys.end()}, {source.textures.begin(), source.textures.end()}, true});
     countUses(*store_, source.textures, true);
     store_->materials.writeBytes(material.index, record);
     return material;
@@ -334,9 +345,9 @@ Result<EditReport> SceneEditor::setMaterial(MaterialHandle material, const Mater
     EditReport report;
     bool changes = false;
     for (const AttributeMask attributes : attributesWith(*store_, material)) {
-        GLINT_TRY(auto shading, shadingBy(*store_, source.keys, attributes, where));
-        addTo(report, *store_, material, shading);
-        const Result<Shading> before = shadingBy(*store_, entry->keys, attributes, where);
+        GLINT_TRY(auto shading, shadingBy(*store_->cases, source.keys, attributes, where));
+        addTo(report, *store_->cases, material, shading);
+        const Result<Shading> before = shadingBy(*store_->cases, entry->keys, attributes, where);
         changes = changes || !before || !(*before == shading);
     }
     GLINT_TRY(auto record, makeRecord(*store_, source));
@@ -345,6 +356,7 @@ Result<EditReport> SceneEditor::setMaterial(MaterialHandle material, const Mater
     countUses(*store_, entry->textures, false);
     entry->keys.assign(source.keys.begin(), source.keys.end());
     entry->textures.assign(source.textures.begin(), source.textures.end());
+    entry->isOwn = true;
     writeMaterial(*store_, material.index, record);
     if (changes) {
         for (const std::uint32_t index : instancesWith(*store_, *entry)) {
@@ -356,7 +368,8 @@ Result<EditReport> SceneEditor::setMaterial(MaterialHandle material, const Mater
 GLINT_CATCH
 
 Status SceneEditor::setMaterialValues(MaterialHandle material, std::span<const std::uint8_t> record) try {
-    if (store_->materialSlots.find(material) == nullptr) {
+    StoredMaterial* const entry = store_->materialSlots.find(material);
+    if (entry == nullptr) {
         return unknownHandle("material");
     }
     if (record.size() != store_->scene.materialLayout.recordBytes) {
@@ -366,6 +379,7 @@ Status SceneEditor::setMaterialValues(MaterialHandle material, std::span<const s
     const std::span<const std::uint8_t> old = store_->materials.at(material.index);
     std::vector<std::uint8_t> taken(old.begin(), old.end());
     takeValues(record, store_->scene.materialLayout, taken);
+    entry->hasOwnValues = true;
     writeMaterial(*store_, material.index, taken);
     return okStatus();
 }

@@ -58,7 +58,7 @@ Result<EditReport> checkMaterials(const SceneStore& store, const StoredMesh& mes
             continue;
         }
         GLINT_TRY(auto shading, shadingOf(store, materials[i], mesh.primitives[i].attributes));
-        addTo(report, store, materials[i], shading);
+        addTo(report, *store.cases, materials[i], shading);
     }
     return report;
 }
@@ -96,7 +96,7 @@ Result<AddedMesh> SceneEditor::addMesh(std::span<const EditedPrimitive> primitiv
         GLINT_TRY_DO(checkPrimitive(*store_, primitive, where));
         const AttributeMask attributes = attributesOf(store_->cases->package(), primitive.geometry);
         GLINT_TRY(auto shading, shadingOf(*store_, primitive.material, attributes));
-        addTo(added.report, *store_, primitive.material, shading);
+        addTo(added.report, *store_->cases, primitive.material, shading);
         views.push_back(primitive.geometry);
     }
     SceneView shapes;
@@ -117,7 +117,8 @@ Result<AddedMesh> SceneEditor::addMesh(std::span<const EditedPrimitive> primitiv
     StoredMesh& mesh = *store_->meshes.find(added.mesh);
     for (std::size_t i = 0; i < primitives.size(); ++i) {
         mesh.primitives[i].material = primitives[i].material;
-        countUse(*store_, primitives[i].material, &StoredMaterial::meshes, added.mesh.index, true);
+        countUse(store_->materialSlots, primitives[i].material, &StoredMaterial::meshes, added.mesh.index,
+                 true);
     }
     return added;
 }
@@ -168,9 +169,9 @@ Result<EditReport> SceneEditor::setMeshMaterial(MeshHandle mesh, std::uint32_t p
     StoredPrimitive& place = entry->primitives[primitive];
     GLINT_TRY(auto shading, shadingOf(*store_, material, place.attributes));
     EditReport report;
-    addTo(report, *store_, material, shading);
-    countUse(*store_, place.material, &StoredMaterial::meshes, mesh.index, false);
-    countUse(*store_, material, &StoredMaterial::meshes, mesh.index, true);
+    addTo(report, *store_->cases, material, shading);
+    countUse(store_->materialSlots, place.material, &StoredMaterial::meshes, mesh.index, false);
+    countUse(store_->materialSlots, material, &StoredMaterial::meshes, mesh.index, true);
     place.material = material;
     for (const std::uint32_t index : entry->instances) {
         writeGeometries(*store_, store_->instanceSlots.handleAt(index), store_->instanceSlots.at(index));
@@ -190,7 +191,7 @@ Status SceneEditor::removeMesh(MeshHandle mesh) try {
                          "remove them first, or give them another mesh");
     }
     for (const StoredPrimitive& primitive : entry->primitives) {
-        countUse(*store_, primitive.material, &StoredMaterial::meshes, mesh.index, false);
+        countUse(store_->materialSlots, primitive.material, &StoredMaterial::meshes, mesh.index, false);
     }
     retireMesh(*store_, mesh);
     return okStatus();
@@ -304,7 +305,7 @@ Result<EditReport> SceneEditor::setInstanceMaterial(InstanceHandle instance, std
     EditReport report;
     if (material.generation != 0) {
         GLINT_TRY(auto shading, shadingOf(*store_, material, mesh.primitives[primitive].attributes));
-        addTo(report, *store_, material, shading);
+        addTo(report, *store_->cases, material, shading);
     }
     setOwnMaterial(*store_, instance, primitive, material);
     return report;

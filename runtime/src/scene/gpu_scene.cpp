@@ -41,7 +41,6 @@ Result<std::unique_ptr<GpuScene::State>> makeScene(Context& context, const Packa
     if (scene.editable) {
         state->editor = std::make_unique<SceneEditor>(*state->store);
     }
-    state->package.records = recordsHash(package, known);
     state->compaction = std::move(upload.compaction);
     return state;
 }
@@ -93,7 +92,7 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
 GLINT_CATCH
 
 GpuScene::State::State(Context::State& contextState)
-    : context(contextState), sharedPool(std::make_shared<MemoryPool>(contextState)), pool(*sharedPool) {}
+    : DrawnScene(contextState), sharedPool(std::make_shared<MemoryPool>(contextState)), pool(*sharedPool) {}
 GpuScene::State::~State() = default;
 
 GpuScene::GpuScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -239,7 +238,6 @@ std::vector<MemoryItem> GpuScene::memory() const {
 
 std::uint64_t GpuScene::allocatedBytes() const {
     std::uint64_t bytes = state_->pool.bytes();
-    bytes += state_->package.pool != nullptr ? state_->package.pool->bytes() : 0;
     bytes += state_->upload != nullptr ? state_->upload->pool.bytes() : 0;
     bytes += state_->compaction != nullptr ? state_->compaction->pool.bytes() : 0;
     return bytes;

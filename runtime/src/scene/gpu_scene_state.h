@@ -8,7 +8,7 @@
 #include "data/geometry.h"
 #include "data/light_tree.h"
 #include "data/materials.h"
-#include "data/retired.h"
+#include "scene/drawn_scene.h"
 #include "scene/scene_upload.h"
 
 #include <glint/package.h>
@@ -18,14 +18,12 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace glint {
 
-class Renderer;
 struct SceneStore;
 
 // The place of a geometry record's positions. Those that follow joints or morph weights are in a buffer of
@@ -72,9 +70,10 @@ struct ScenePackage {
         std::vector<std::uint8_t> inputs;
     };
 
-    std::uint64_t records = 0;  // recordsHash()
-    std::string scene;          // name in the package
+    bool isEmpty = false;  // the scene began without anything: kNoPackageScene
+    std::string scene;     // name in the package
     std::vector<package::PrimitiveEntry> entries;
+    std::vector<RecordField> fields;
     std::vector<package::TextureEntry> textures;
     std::vector<std::array<float, 2>> texels;  // sizes of the textures
     std::vector<package::SamplerEntry> samplers;
@@ -84,37 +83,27 @@ struct ScenePackage {
     std::optional<package::EmissionEntry> emission{};
     std::vector<Emission> emissions;  // by material
     std::vector<Decided> decided;
-    // The memory of GpuScene::State::materials, once it was replaced by a buffer of another size.
-    std::shared_ptr<MemoryPool> pool;
 };
 
 // Members are destroyed in reverse order: the pool's memory last.
-struct GpuScene::State {
+struct GpuScene::State final : DrawnScene {
     explicit State(Context::State& contextState);
-    ~State();
-    State(const State&) = delete;
-    State& operator=(const State&) = delete;
+    ~State() override;
 
-    Context::State& context;
+    Result<PackageFit> fit(const std::shared_ptr<const Package>& other) const override;
+    Result<RetiredLot> recordReplacement(const std::shared_ptr<const Package>& other, std::uint32_t index,
+                                         VkCommandBuffer commands) override;
+
     // Renderers keep it for what a replaced package leaves to them.
     std::shared_ptr<MemoryPool> sharedPool;
     MemoryPool& pool;
-    std::unique_ptr<Compaction> compaction;  // null if there is nothing more to compact
-    std::unique_ptr<SceneUpload> upload;     // null when the device has completed it
-    ScenePackage package;                    // the package that draws the scene
-    // The renderers of the scene, which add and remove themselves, also when the scene is gone. They replace
-    // its package together.
-    struct Renderers {
-        std::mutex mutex;
-        std::vector<Renderer*> all;
-    };
-    std::shared_ptr<Renderers> renderers = std::make_shared<Renderers>();
+    std::unique_ptr<Compaction> compaction;             // null if there is nothing more to compact
+    std::unique_ptr<SceneUpload> upload;                // null when the device has completed it
+    ScenePackage package;                               // the package that draws the scene
     std::array<double, 3> origin{};                     // SceneView::origin, or that of the last MotionView
     std::map<std::uint32_t, DeviceMicromap> micromaps;  // by index into SceneView::primitives
     AccelerationStructure tlas;
     Buffer geometries;
-    // The shader IDs of the shader binding table: one for each geometry record of a sealed scene.
-    std::vector<std::uint32_t> shaderIds;
     Buffer instances;
     Buffer materials;
     Buffer lights;
@@ -174,24 +163,9 @@ Result<UniqueSetLayout> createSceneSetLayout(Context::State& context, const Scen
 Result<DescriptorSet> makeSceneSet(const GpuScene::State& state, VkAccelerationStructureKHR tlas,
                                    VkImageView absent);
 
-// --- The package that a scene is drawn with, and its replacement (scene_package.cpp) ---
+// --- The package that a scene is drawn with (scene_package.cpp implements its replacement, too) ---
 
-// Returns the data that an upload has taken.
-ScenePackage describePackage(const Package& package, const SceneView& scene);
-
-// Returns the index of the scene in `package`. Errors: "scene-package" (it has no such scene, or differs in
-// data that only an upload can change), "position-fetch", "half-precision".
-Result<std::uint32_t> findScene(const GpuScene::State& scene, const Package& package);
-
-// Returns the shader ID of each geometry record in `package`. Requires findScene().
-std::vector<std::uint32_t> shaderIdsIn(const GpuScene::State& scene, const PackageScene& known);
-
-// Records the copies that bring the scene's records of geometries and materials to `package`, which must run
-// before all commands that read them, and makes `scene` one of that package. Values of materials that the
-// host has given stay. Returns the resources that commands use which were recorded until then, or that these
-// commands use. Requires findScene(), which gave `index`. With an error nothing changes. Errors: those
-// of buffers.
-Result<RetiredLot> recordReplacement(GpuScene::State& scene, const Package& package, std::uint32_t index,
-                                     VkCommandBuffer commands);
+// Returns the data that an upload has taken. `known` may be a scene without tables.
+ScenePackage describePackage(const Package& package, const PackageScene& known, const SceneView& scene);
 
 }  // namespace glint

@@ -60,6 +60,17 @@ std::vector<ScenePackage::Emission> emissionsOf(const Package& package, const Ma
     return emissions;
 }
 
+// Takes what follows from the package alone.
+void takeTables(const Package& package, const PackageScene& known, ScenePackage& described) {
+    described.entries.assign(known.primitives.begin(), known.primitives.end());
+    described.fields = recordFields(package);
+    described.emission.reset();
+    if (package.emission() != nullptr) {
+        described.emission = *package.emission();
+    }
+    described.emissions = emissionsOf(package, known.materials);
+}
+
 // Checks that the attributes that the package's key reads were uploaded.
 Status checkAttributes(const GpuPrimitive& uploaded, const Package& package,
                        const package::PrimitiveEntry& entry) {
@@ -100,6 +111,10 @@ Status checkPrimitives(const GpuScene::State& scene, const Package& package, con
         if (std::tie(before.mesh, before.primitive) != std::tie(after.mesh, after.primitive)) {
             return otherScene(placeOfEntry(before), "the package does not know this primitive");
         }
+        // The records and the TLAS of a scene that is edited have all else.
+        if (scene.store->editable) {
+            continue;
+        }
         if (before.geometryFlags != after.geometryFlags) {
             return otherScene(placeOfEntry(before),
                               "the primitive's material is now tested for alpha, double-sided, a light or "
@@ -113,7 +128,7 @@ Status checkPrimitives(const GpuScene::State& scene, const Package& package, con
     Status status = okStatus();
     scene.store->meshes.forEach([&](MeshHandle /*handle*/, const StoredMesh& mesh) {
         for (const StoredPrimitive& primitive : mesh.primitives) {
-            if (status) {
+            if (status && primitive.entryIndex != StoredPrimitive::kNoEntry) {
                 status = checkAttributes(primitive.device, package, known.primitives[primitive.entryIndex]);
             }
         }
@@ -127,37 +142,61 @@ bool isReadAlike(const package::EmissionEntry& a, const package::EmissionEntry& 
     return std::memcmp(&a, &b, offsetof(package::EmissionEntry, read)) == 0;
 }
 
-Status checkEmission(const ScenePackage& now, const Package& package, const PackageScene& known) {
+Status checkEmission(const GpuScene::State& scene, const Package& package, const PackageScene& known) {
+    const ScenePackage& now = scene.package;
     const package::EmissionEntry* const emission = package.emission();
     if (now.emission.has_value() != (emission != nullptr)) {
         return otherScene(now.scene, "one of the packages takes emissive triangles as lights");
+    }
+    if (package.shadowThrough() == package::ShadowThrough::Glass && scene.store->editable &&
+        !scene.store->passesLight) {
+        return otherScene(
+            now.scene,
+            "light passes through glass, and a ray may meet triangles of the uploaded structures twice");
+    }
+    if (scene.store->editable) {
+        constexpr std::uint32_t kNone = package::EmissionEntry::kNone;
+        const bool gainsTexture =
+            emission != nullptr && emission->texture != kNone && now.emission->texture == kNone;
+        return gainsTexture ? otherScene(now.scene, "emission now has textures, whose texels were not kept")
+                            : okStatus();
     }
     if (emission != nullptr &&
         (!isReadAlike(*now.emission, *emission) || now.emissions != emissionsOf(package, known.materials))) {
         return otherScene(now.scene, "a material's emission changed, and emissive triangles are lights");
     }
-    if (package.lightSamples() > 0 && !now.lightTree) {
+    if (package.lightSamples() > 0 && !now.lightTree && !scene.store->keeps()) {
         return otherScene(now.scene, "the package chooses lights by a hierarchy, which was not built");
     }
     return okStatus();
 }
 
-// The host's values of materials, as views.
-std::vector<MaterialView> hostMaterialsOf(const GpuScene::State& scene) {
+// Writes the values that the host has given into records of the package. Returns these materials. Error
+// "scene-package".
+Result<std::vector<ChangingMaterial>> keepHostValues(const GpuScene::State& scene, const Package& package,
+                                                     const PackageScene& known,
+                                                     std::span<std::uint8_t> records) {
+    const std::vector<RecordField> fields = recordFields(package);
+    std::vector<std::vector<std::uint8_t>> values;
     std::vector<MaterialView> views;
     for (const ChangingMaterial& material : scene.changing) {
-        views.push_back({material.material, material.record});
+        if (material.material >= known.materials.size()) {
+            return otherScene("material " + std::to_string(material.material),
+                              "the host has given values of this material, which the package lacks");
+        }
+        const std::span<const std::uint8_t> given = known.materials.part(material.material, 1).bytes;
+        std::vector<std::uint8_t>& record = values.emplace_back(given.begin(), given.end());
+        carryFields(scene.package.fields, material.record, fields, record);
+        views.push_back({material.material, record});
     }
-    return views;
+    return replaceMaterials(views, known.materials, records);
 }
 
 // Triangles that no ray tests stay so, whichever package draws the scene.
 Status checkDecided(const GpuScene::State& scene, const Package& package, const PackageScene& known) {
     const ScenePackage& now = scene.package;
     std::vector<std::uint8_t> records(known.materials.bytes.begin(), known.materials.bytes.end());
-    if (now.decided.empty() || !replaceMaterials(hostMaterialsOf(scene), known.materials, records)) {
-        return okStatus();  // other checks report such materials
-    }
+    GLINT_TRY([[maybe_unused]] const auto kept, keepHostValues(scene, package, known, records));
     for (const ScenePackage::Decided& decided : now.decided) {
         const package::PrimitiveEntry& entry = known.primitives[decided.entry];
         if (package.opacity() == nullptr ||
@@ -170,98 +209,75 @@ Status checkDecided(const GpuScene::State& scene, const Package& package, const 
     return okStatus();
 }
 
-// Writes the fields of geometry records that a package decides.
-void writeEntries(SceneStore& store, const PackageScene& known) {
-    store.meshes.forEach([&](MeshHandle /*handle*/, StoredMesh& mesh) {
-        for (StoredPrimitive& primitive : mesh.primitives) {
-            primitive.entry = known.primitives[primitive.entryIndex];
-        }
-        for (const std::uint32_t instance : mesh.instances) {
-            forEachGeometry(
-                mesh, store.instanceSlots.at(instance),
-                [&](const TriangleRange&, const StoredPrimitive& primitive, std::uint32_t geometry) {
-                    const package::PrimitiveEntry& entry = primitive.entry;
-                    auto record = store.geometries.read<gpu::GeometryRecord>(geometry);
-                    const auto keyOf = [](const auto& from) {
-                        return std::tie(from.shaderId, from.materialIndex, from.featureLobes,
-                                        from.featureInputs);
-                    };
-                    if (keyOf(record) != keyOf(entry)) {
-                        record.shaderId = entry.shaderId;
-                        record.materialIndex = entry.materialIndex;
-                        record.featureLobes = entry.featureLobes;
-                        record.featureInputs = entry.featureInputs;
-                        store.geometries.write(geometry, record);
-                    }
-                });
+// Writes the geometry records that differ from what the package says.
+void writeEntries(SceneStore& store) {
+    const auto keyOf = [](const auto& from) {
+        return std::tie(from.shaderId, from.materialIndex, from.featureLobes, from.featureInputs);
+    };
+    store.instanceSlots.forEach([&](InstanceHandle handle, const StoredInstance& instance) {
+        const StoredMesh& mesh = *store.meshes.find(instance.mesh);
+        bool changes = false;
+        forEachGeometry(
+            mesh, instance,
+            [&](const TriangleRange& range, const StoredPrimitive& /*primitive*/, std::uint32_t geometry) {
+                const package::PrimitiveEntry entry = entryOf(store, instance, range.primitive);
+                auto record = store.geometries.read<gpu::GeometryRecord>(geometry);
+                if (store.editable) {
+                    const bool isSeenAlike = (record.flags & kEntryFlags) == entry.geometryFlags;
+                    changes = changes || !isSeenAlike || keyOf(record) != keyOf(entry);
+                } else if (keyOf(record) != keyOf(entry)) {
+                    takeEntry(entry, record);
+                    store.geometries.write(geometry, record);
+                }
+            });
+        if (changes) {
+            writeGeometries(store, handle, instance);
         }
     });
 }
 
-}  // namespace
-
-ScenePackage describePackage(const Package& package, const SceneView& scene) {
-    const PackageScene known = package.scene(scene.packageScene);
-    ScenePackage described;
-    described.scene = known.name;
-    described.entries.assign(known.primitives.begin(), known.primitives.end());
-    described.textures.assign(known.textures.begin(), known.textures.end());
-    for (const package::TextureEntry& texture : known.textures) {
-        const ImageView& image = scene.images[texture.image];
-        described.texels.push_back({static_cast<float>(image.width), static_cast<float>(image.height)});
-    }
-    described.samplers.assign(known.samplers.begin(), known.samplers.end());
-    described.attributes = attributesOf(package);
-    described.positionFetch = package.positionFetch();
-    described.lightTree = package.lightSamples() > 0;
-    if (package.emission() != nullptr) {
-        described.emission = *package.emission();
-        described.emissions = emissionsOf(package, known.materials);
-    }
-    return described;
+PackageScene sceneOf(const Package& package, std::uint32_t index) {
+    return index == kNoPackageScene ? PackageScene{} : package.scene(index);
 }
 
-Result<std::uint32_t> findScene(const GpuScene::State& scene, const Package& package) {
-    const ScenePackage& now = scene.package;
-    if (scene.editor != nullptr) {
-        return otherScene(now.scene,
-                          "the scene was uploaded to be edited, and its editor keeps the package's tables");
+// The scene's content by another package. Exchanging it twice changes nothing.
+struct OtherPackage {
+    ScenePackage package;
+    std::uint64_t records = 0;
+    std::vector<std::uint32_t> shaderIds;
+    MaterialTable layout;  // without records
+    std::vector<ChangingMaterial> changing{};
+    std::optional<package::EmissionEntry> emission{};
+    bool buildsTree = false;
+    std::optional<EditedTables> edited{};    // of a scene that is edited
+    std::optional<RecordStore> materials{};  // of a sealed one
+};
+
+void exchange(SceneStore& store, OtherPackage& other) {
+    GpuScene::State& scene = store.scene;
+    store.lightsDirty = store.lightsDirty || store.buildsTree != other.buildsTree;
+    std::swap(scene.package, other.package);
+    std::swap(scene.records, other.records);
+    std::swap(scene.shaderIds, other.shaderIds);
+    std::swap(scene.materialLayout, other.layout);
+    std::swap(scene.changing, other.changing);
+    std::swap(store.emission, other.emission);
+    std::swap(store.buildsTree, other.buildsTree);
+    if (other.edited) {
+        exchangeTables(store, *other.edited);
+        store.emittersDirty = store.emittersDirty || store.emission.has_value();
+    } else {
+        std::swap(store.materials, *other.materials);
+        store.meshes.forEach([&](MeshHandle /*handle*/, StoredMesh& mesh) {
+            for (StoredPrimitive& primitive : mesh.primitives) {
+                primitive.entry = scene.package.entries[primitive.entryIndex];
+            }
+        });
     }
-    const std::optional<std::uint32_t> index = package.findScene(now.scene);
-    if (!index) {
-        return otherScene(now.scene, "the package has no scene of this name");
-    }
-    if (package.positionFetch() && !now.positionFetch) {
-        return makeError(
-            "position-fetch", "",
-            "the package's shaders read positions from acceleration structures, which were built "
-            "without them",
-            "upload the scene anew, or compile without --position-fetch");
-    }
-    GLINT_TRY_DO(checkDevice(package, scene.context.handles));
-    const PackageScene known = package.scene(*index);
-    if (!sameBytes(known.textures, std::span<const package::TextureEntry>(now.textures)) ||
-        !sameBytes(known.samplers, std::span<const package::SamplerEntry>(now.samplers))) {
-        return otherScene(now.scene, "the package reads other textures or samplers");
-    }
-    if (attributesOf(package) != now.attributes) {
-        return otherScene(now.scene, "the package's packs read other attributes of vertices");
-    }
-    GLINT_TRY_DO(checkPrimitives(scene, package, known));
-    GLINT_TRY_DO(checkEmission(now, package, known));
-    GLINT_TRY_DO(checkDecided(scene, package, known));
-    for (const ChangingMaterial& material : scene.changing) {
-        if (material.material >= known.materials.size() ||
-            material.record.size() != known.materials.recordBytes) {
-            return otherScene("material " + std::to_string(material.material),
-                              "the host has given values of this material, whose record has another layout");
-        }
-    }
-    return *index;
+    writeEntries(store);
 }
 
-std::vector<std::uint32_t> shaderIdsIn(const GpuScene::State& scene, const PackageScene& known) {
-    const SceneStore& store = *scene.store;
+std::vector<std::uint32_t> shaderIdsIn(const SceneStore& store, const PackageScene& known) {
     std::vector<std::uint32_t> ids(store.geometries.count());
     store.meshes.forEach([&](MeshHandle /*handle*/, const StoredMesh& mesh) {
         for (const std::uint32_t instance : mesh.instances) {
@@ -275,35 +291,96 @@ std::vector<std::uint32_t> shaderIdsIn(const GpuScene::State& scene, const Packa
     return ids;
 }
 
-Result<RetiredLot> recordReplacement(GpuScene::State& scene, const Package& package, std::uint32_t index,
-                                     VkCommandBuffer commands) {
-    const PackageScene known = package.scene(index);
-    const ScenePackage& now = scene.package;
-    SceneStore& store = *scene.store;
-    std::vector<std::uint8_t> materials = materialsWithSizes(scene.context, known, now.texels);
-    GLINT_TRY(auto changing, replaceMaterials(hostMaterialsOf(scene), known.materials, materials));
-    const RecordStore materialsBefore = store.materials;
-    const RecordStore geometriesBefore = store.geometries;
-    if (known.materials.recordBytes != store.materials.stride()) {
-        store.materials.reset(known.materials.recordBytes);
+Result<OtherPackage> otherPackage(const GpuScene::State& scene, const std::shared_ptr<const Package>& package,
+                                  std::uint32_t index) {
+    const SceneStore& store = *scene.store;
+    const PackageScene known = sceneOf(*package, index);
+    OtherPackage other{
+        scene.package, recordsHash(*package, known), {}, package->scene(0).materials.part(0, 0)};
+    takeTables(*package, known, other.package);
+    std::vector<std::uint8_t> materials = materialsWithSizes(scene.context, known, scene.package.texels);
+    GLINT_TRY(other.changing, keepHostValues(scene, *package, known, materials));
+    if (package->emission() != nullptr) {
+        other.emission = *package->emission();
     }
-    store.materials.replaceBytes(materials);
-    writeEntries(store, known);
+    other.buildsTree = store.keeps() ? package->lightSamples() > 0 : store.buildsTree;
+    if (store.editable) {
+        GLINT_TRY(other.edited, editedTables(store, package, known));
+        other.shaderIds = other.edited->cases.shaderIds();
+        return other;
+    }
+    other.shaderIds = shaderIdsIn(store, known);
+    other.materials = store.materials;
+    if (other.layout.recordBytes != other.materials->stride()) {
+        other.materials->reset(other.layout.recordBytes);
+    }
+    other.materials->replaceBytes(materials);
+    return other;
+}
+
+}  // namespace
+
+ScenePackage describePackage(const Package& package, const PackageScene& known, const SceneView& scene) {
+    ScenePackage described;
+    described.isEmpty = scene.packageScene == kNoPackageScene;
+    described.scene = known.name;
+    described.textures.assign(known.textures.begin(), known.textures.end());
+    for (const package::TextureEntry& texture : known.textures) {
+        const ImageView& image = scene.images[texture.image];
+        described.texels.push_back({static_cast<float>(image.width), static_cast<float>(image.height)});
+    }
+    described.samplers.assign(known.samplers.begin(), known.samplers.end());
+    described.attributes = attributesOf(package);
+    described.positionFetch = package.positionFetch();
+    described.lightTree = package.lightSamples() > 0;
+    takeTables(package, known, described);
+    return described;
+}
+
+Result<PackageFit> GpuScene::State::fit(const std::shared_ptr<const Package>& other) const {
+    const ScenePackage& now = package;
+    const std::optional<std::uint32_t> index =
+        now.isEmpty ? std::optional(kNoPackageScene) : other->findScene(now.scene);
+    if (!index) {
+        return otherScene(now.scene, "the package has no scene of this name");
+    }
+    if (other->positionFetch() && !now.positionFetch) {
+        return makeError(
+            "position-fetch", "",
+            "the package's shaders read positions from acceleration structures, which were built "
+            "without them",
+            "upload the scene anew, or compile without --position-fetch");
+    }
+    GLINT_TRY_DO(checkDevice(*other, context.handles));
+    const PackageScene known = sceneOf(*other, *index);
+    if (!sameBytes(known.textures, std::span<const package::TextureEntry>(now.textures)) ||
+        !sameBytes(known.samplers, std::span<const package::SamplerEntry>(now.samplers))) {
+        return otherScene(now.scene, "the package reads other textures or samplers");
+    }
+    if (attributesOf(*other) != now.attributes) {
+        return otherScene(now.scene, "the package's packs read other attributes of vertices");
+    }
+    GLINT_TRY_DO(checkPrimitives(*this, *other, known));
+    GLINT_TRY_DO(checkEmission(*this, *other, known));
+    GLINT_TRY_DO(checkDecided(*this, *other, known));
+    GLINT_TRY(auto content, otherPackage(*this, other, *index));
+    PackageFit fit{*index, std::move(content.shaderIds)};
+    if (content.edited) {
+        fit.missing = std::move(content.edited->report.missing);
+    }
+    return fit;
+}
+
+Result<RetiredLot> GpuScene::State::recordReplacement(const std::shared_ptr<const Package>& other,
+                                                      std::uint32_t index, VkCommandBuffer commands) {
+    GLINT_TRY(auto content, otherPackage(*this, other, index));
+    exchange(*store, content);
     RetiredLot leftovers;
-    if (Status status = recordChanges(store, commands, store.lastFrame, {}, &leftovers); !status) {
-        store.materials = materialsBefore;
-        store.geometries = geometriesBefore;
-        PackageScene before = known;
-        before.primitives = now.entries;
-        writeEntries(store, before);
+    if (Status status = recordChanges(*store, commands, store->lastFrame, {}, &leftovers); !status) {
+        exchange(*store, content);
         return status.error();
     }
-    leftovers.keep(scene.sharedPool);
-    scene.shaderIds = shaderIdsIn(scene, known);
-    scene.package.entries.assign(known.primitives.begin(), known.primitives.end());
-    scene.package.records = recordsHash(package, known);
-    scene.materialLayout = known.materials.part(0, 0);
-    scene.changing = std::move(changing);
+    leftovers.keep(sharedPool);
     return leftovers;
 }
 

@@ -19,6 +19,7 @@
 #include "data/retired.h"
 #include "scene/case_table.h"
 #include "scene/gpu_scene_state.h"
+#include "scene/record_arrays.h"
 #include "scene/record_store.h"
 #include "scene/scene_upload.h"
 #include "scene/top_level.h"
@@ -56,6 +57,8 @@ using MaterialUsers = std::map<std::uint32_t, std::uint32_t>;
 struct StoredMaterial {
     std::vector<MaterialKey> keys;
     std::vector<TextureUse> textures;
+    bool isOwn = false;         // an edit has added or replaced it; else keys and textures are the package's
+    bool hasOwnValues = false;  // an edit or the host has given its values
     MaterialUsers meshes{};
     MaterialUsers instances{};  // that have it in the place of their mesh's own
 };
@@ -71,11 +74,13 @@ struct StoredPart : MeshPart {
 };
 
 struct StoredPrimitive {
+    static constexpr std::uint32_t kNoEntry = 0xFFFFFFFF;
+
     GpuPrimitive device;
     AttributeMask attributes = 0;
     MaterialHandle material{};                    // of a scene that is edited
     package::PrimitiveEntry entry{};              // of a sealed scene
-    std::uint32_t entryIndex = 0;                 // the same, in PackageScene::primitives
+    std::uint32_t entryIndex = kNoEntry;          // in PackageScene::primitives, if it was uploaded
     std::shared_ptr<const EmitterShape> shape{};  // in packages with emissive lights
     const DeviceMicromap* micromap = nullptr;     // of a sealed scene
     DeformSource source{};
@@ -155,6 +160,7 @@ struct SceneStore {
     // Scenes that are edited.
     std::optional<CaseTable> cases;
     bool trustsTextures = false;  // Package::trustTextures()
+    bool otherTexels = false;     // an edit has replaced the image of a texture
     Slots<StoredTexture, TextureHandle> textures;
     Slots<StoredMaterial, MaterialHandle> materialSlots;
 
@@ -169,6 +175,8 @@ struct SceneStore {
     std::map<std::uint32_t, MeshHandle> firstMeshes;
     std::vector<InstanceHandle> firstInstances;
     std::vector<LightHandle> firstLights;
+    // The attributes of the primitives of the upload, by their places in PackageScene::primitives.
+    std::vector<std::pair<std::uint32_t, AttributeMask>> firstAttributes;
 
     RecordStore geometries{sizeof(gpu::GeometryRecord)};
     RecordStore instances{sizeof(gpu::InstanceRecord)};
@@ -285,8 +293,8 @@ Status poseInstance(SceneStore& store, const Package* package, InstanceHandle ha
 InstanceView poseOf(const SceneStore& store, const StoredInstance& instance);
 
 // Counts a use of the material more or less.
-void countUse(SceneStore& store, MaterialHandle material, MaterialUsers StoredMaterial::*users,
-              std::uint32_t user, bool adds);
+void countUse(Slots<StoredMaterial, MaterialHandle>& materials, MaterialHandle material,
+              MaterialUsers StoredMaterial::*users, std::uint32_t user, bool adds);
 // Error "scene-geometries".
 Diagnostic tooManyGeometries(const std::string& where);
 
@@ -335,12 +343,41 @@ AccelerationStructure* structureAt(SceneStore& store, const PartPlace& place);
 
 // Finds the shading of a material on a primitive. Has the errors that SceneEditor lists.
 Result<Shading> shadingOf(const SceneStore& store, MaterialHandle material, AttributeMask attributes);
+// The same for a material with these keys. `where` is for messages.
+Result<Shading> shadingBy(const CaseTable& cases, std::span<const MaterialKey> keys, AttributeMask attributes,
+                          const std::string& where);
 // Lists the key in the report if the fallback shades it.
-void addTo(EditReport& report, const SceneStore& store, MaterialHandle material, const Shading& shading);
+void addTo(EditReport& report, const CaseTable& cases, MaterialHandle material, const Shading& shading);
+// The textures of a material of the package, whose handles may name what edits have removed.
+std::vector<TextureUse> usesOf(const SceneStore& store, const MaterialTable& table, std::size_t material);
+// Writes into a record of this layout which textures it has. They and their samplers must be there.
+void settleTextures(const SceneStore& store, const MaterialTable& layout, std::span<const TextureUse> uses,
+                    std::span<std::uint8_t> record);
 // The material of a primitive of an instance.
 MaterialHandle materialOf(const SceneStore& store, const StoredInstance& instance, std::size_t primitive);
 // Writes a material's record. Lights follow if its emission has changed.
 void writeMaterial(SceneStore& store, std::uint32_t material, std::span<const std::uint8_t> record);
+
+// --- Another package of a scene that is edited (edit_package.cpp) ---
+
+// The content that follows from a package.
+struct EditedTables {
+    CaseTable cases;
+    Slots<StoredMaterial, MaterialHandle> materialSlots;
+    std::vector<MaterialHandle> firstMaterials;
+    RecordStore materials;
+    std::map<std::uint32_t, std::vector<MaterialHandle>> meshMaterials;  // of meshes that were uploaded
+    std::vector<std::uint32_t> textureUses;                              // by index
+    EditReport report;                                                   // materials without a case
+};
+// Gives a material of the package the key of one of its primitives.
+void addKey(StoredMaterial& material, const package::PrimitiveEntry& entry, AttributeMask attributes);
+// Makes the content for a package that agrees with the uploaded data. `known` may be a scene without tables.
+// Errors: "scene-package", "texture-trusted", and those that SceneEditor lists for materials.
+Result<EditedTables> editedTables(const SceneStore& store, const std::shared_ptr<const Package>& package,
+                                  const PackageScene& known);
+// Exchanges the store's content and this one.
+void exchangeTables(SceneStore& store, EditedTables& tables);
 
 // --- Lights and emissive triangles (store_lights.cpp) ---
 

@@ -267,9 +267,9 @@ void retireMesh(SceneStore& store, MeshHandle handle) {
     takeMesh(mesh, [&](auto&& resource) { store.retired.add(std::forward<decltype(resource)>(resource)); });
 }
 
-void countUse(SceneStore& store, MaterialHandle material, MaterialUsers StoredMaterial::*users,
-              std::uint32_t user, bool adds) {
-    StoredMaterial* const entry = store.materialSlots.find(material);
+void countUse(Slots<StoredMaterial, MaterialHandle>& materials, MaterialHandle material,
+              MaterialUsers StoredMaterial::*users, std::uint32_t user, bool adds) {
+    StoredMaterial* const entry = materials.find(material);
     if (entry == nullptr) {
         return;
     }
@@ -297,7 +297,7 @@ void link(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
     instance.placeInMesh = static_cast<std::uint32_t>(mesh.instances.size());
     mesh.instances.push_back(index);
     for (const MaterialHandle material : instance.materials) {
-        countUse(store, material, &StoredMaterial::instances, index, true);
+        countUse(store.materialSlots, material, &StoredMaterial::instances, index, true);
     }
 }
 
@@ -328,7 +328,7 @@ void unlink(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
         store.instanceSlots.at(last).placeInMesh = instance.placeInMesh;
     }
     for (const MaterialHandle material : instance.materials) {
-        countUse(store, material, &StoredMaterial::instances, index, false);
+        countUse(store.materialSlots, material, &StoredMaterial::instances, index, false);
     }
     releaseShape(store, index, instance);
     store.drawsDirty = true;
@@ -610,8 +610,9 @@ void setOwnMaterial(SceneStore& store, InstanceHandle handle, std::size_t primit
                     MaterialHandle material) {
     StoredInstance& instance = store.instanceSlots.at(handle.index);
     instance.materials.resize(store.meshes.find(instance.mesh)->primitives.size());
-    countUse(store, instance.materials[primitive], &StoredMaterial::instances, handle.index, false);
-    countUse(store, material, &StoredMaterial::instances, handle.index, true);
+    countUse(store.materialSlots, instance.materials[primitive], &StoredMaterial::instances, handle.index,
+             false);
+    countUse(store.materialSlots, material, &StoredMaterial::instances, handle.index, true);
     instance.materials[primitive] = material;
     writeGeometries(store, handle, instance);
 }

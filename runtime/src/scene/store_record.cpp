@@ -13,9 +13,6 @@
 namespace glint {
 namespace {
 
-constexpr VkBufferUsageFlags kRecordUsage =
-    VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
-
 // The stretches that SceneStore::timer measures.
 constexpr std::uint32_t kDeformStretch = 0;
 constexpr std::uint32_t kBlasStretch = 1;
@@ -27,14 +24,6 @@ constexpr MemoryDependency kDeformToBuild{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT
                                           VK_ACCESS_2_SHADER_WRITE_BIT, kBuildStage,
                                           VK_ACCESS_2_SHADER_READ_BIT};
 
-// An array of records on the device. It has no buffer if nothing reads it.
-struct Array {
-    RecordStore& store;
-    Buffer& device;
-    bool isRead = true;
-    bool isKept = true;  // else it is needed for this recording alone
-    VkBufferUsageFlags usage = 0;
-};
 constexpr std::size_t kArrays = 10;
 constexpr std::size_t kPoseArray = 7;
 
@@ -43,10 +32,6 @@ struct Prepared {
     explicit Prepared(SceneStore& store)
         : kept(store.scene.pool), brief(store.upload != nullptr ? store.upload->pool : store.scene.pool) {}
     ~Prepared() {
-        for (Buffer& buffer : arrays) {
-            discard(kept, std::move(buffer));
-        }
-        discard(brief, std::move(staging));
         discard(brief, std::move(scratch.buffer));
         discard(kept, std::move(tlas));
         discard(kept, std::move(tlasScratch.buffer));
@@ -55,10 +40,7 @@ struct Prepared {
     Prepared& operator=(const Prepared&) = delete;
 
     MemoryPool& kept;
-    MemoryPool& brief;                   // of resources that only this recording needs
-    std::array<Buffer, kArrays> arrays;  // for those arrays that get another size
-    std::array<std::uint32_t, kArrays> capacities{};
-    Buffer staging;
+    MemoryPool& brief;  // of resources that only this recording needs
     Scratch scratch;
     AccelerationStructure tlas;
     Scratch tlasScratch;
@@ -75,7 +57,8 @@ public:
           context_(store.scene.context),
           commands_(commands),
           rule_(builds),
-          prepared_(store) {}
+          prepared_(store),
+          update_(context_, prepared_.brief) {}
 
     Status record(std::uint64_t frame, RetiredLot* leftovers) {
         settleLights(store_);
@@ -99,19 +82,32 @@ public:
     }
 
 private:
-    std::array<Array, kArrays> arrays() {
-        const bool isPosed = store_.deformPass.has_value();
-        return {{{store_.geometries, scene_.geometries},
-                 {store_.instances, scene_.instances},
-                 {store_.materials, scene_.materials},
-                 {store_.lights, scene_.lights},
-                 {store_.lightNodes, scene_.lightNodes, store_.buildsTree},
-                 {store_.emitters, scene_.emitterRecords, store_.emission.has_value()},
-                 {store_.firstEmitters, scene_.firstEmitters, store_.emission.has_value()},
-                 {store_.poses, store_.poseBuffer, isPosed, store_.keeps()},
-                 {store_.deforms, store_.deformBuffer, isPosed, store_.keeps()},
-                 {store_.topLevel.records(), store_.placedBuffer, true, store_.keeps(),
-                  VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR}}};
+    // The arrays, with the sizes that they are to have. Those of poses and of the TLAS's instances are made
+    // for the recordings that read them in a scene that does not keep them.
+    std::array<RecordArray, kArrays> arrays() {
+        const bool keeps = store_.keeps();
+        const bool isLit = store_.emission.has_value();
+        const bool isPosed = store_.deformPass && (keeps || !deformed_.empty());
+        const bool isPlaced = keeps || tlasAction_ != BuildAction::Keep;
+        const auto array = [&](RecordStore& records, Buffer& device, bool isRead = true) {
+            const std::uint32_t capacity =
+                isRead ? capacityFor(records.count(), records.capacity, records.firstCapacity) : 0;
+            return RecordArray{records, device, capacity, &prepared_.kept};
+        };
+        std::array<RecordArray, kArrays> all{
+            {array(store_.geometries, scene_.geometries), array(store_.instances, scene_.instances),
+             array(store_.materials, scene_.materials), array(store_.lights, scene_.lights),
+             array(store_.lightNodes, scene_.lightNodes, store_.buildsTree),
+             array(store_.emitters, scene_.emitterRecords, isLit),
+             array(store_.firstEmitters, scene_.firstEmitters, isLit),
+             array(store_.poses, store_.poseBuffer, isPosed),
+             array(store_.deforms, store_.deformBuffer, isPosed),
+             array(store_.topLevel.records(), store_.placedBuffer, isPlaced)}};
+        all.back().usage = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
+        for (std::size_t i = kPoseArray; i < kArrays && !keeps; ++i) {
+            all[i].pool = &prepared_.brief;
+        }
+        return all;
     }
 
     bool lightsChange() const {
@@ -173,38 +169,17 @@ private:
         if (count > now) {
             return std::max(count, 2 * now);
         }
-        return store_.trims ? std::max(count, first) : now;
+        return store_.trims ? std::max({count, first, 1U}) : std::max(now, 1U);
     }
 
     Status prepareArrays() {
-        std::size_t i = 0;
-        for (const auto& [records, device, isRead, isKept, usage] : arrays()) {
-            // An array that is not kept is made for the recordings that read it.
-            const bool isIdle = !isKept && !(isRead && isNeeded(i));
-            const std::uint32_t capacity =
-                isIdle ? records.capacity
-                       : capacityFor(records.count(), records.capacity, records.firstCapacity);
-            prepared_.capacities[i] = capacity;
-            if (isRead && !isIdle && capacity != records.capacity) {
-                GLINT_TRY(prepared_.arrays[i],
-                          createBuffer(context_, isKept ? prepared_.kept : prepared_.brief,
-                                       capacity * records.stride(), kRecordUsage | usage));
-                if (!isKept) {
-                    records.touchAll();
-                }
-                if (i == kPoseArray) {
-                    for (const std::uint32_t instance : store_.shaped) {
-                        writeDeforms(store_, instance, prepared_.arrays[i].address);
-                    }
-                }
+        GLINT_TRY_DO(update_.prepareBuffers(arrays()));
+        if (const Buffer& poses = update_.bufferOf(kPoseArray); poses.handle.get() != VK_NULL_HANDLE) {
+            for (const std::uint32_t instance : store_.shaped) {
+                writeDeforms(store_, instance, poses.address);
             }
-            ++i;
         }
         return okStatus();
-    }
-
-    bool isNeeded(std::size_t array) const {
-        return array == kArrays - 1 ? tlasAction_ != BuildAction::Keep : !deformed_.empty();
     }
 
     Status prepareTlas() {
@@ -232,16 +207,7 @@ private:
 
     // Makes the staging buffer of the records, and scratch memory for BLASes.
     Status prepareStaging() {
-        VkDeviceSize bytes = 0;
-        for (const auto& [records, device, isRead, isKept, usage] : arrays()) {
-            for (const IndexRange& range : records.dirty()) {
-                bytes += (range.end - range.first) * records.stride();
-            }
-        }
-        if (bytes > 0) {
-            GLINT_TRY(prepared_.staging, createBuffer(context_, prepared_.brief, bytes,
-                                                      VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload));
-        }
+        GLINT_TRY_DO(update_.prepareStaging(arrays()));
         scratchBytes_ = scratchBytesOf(context_, works_);
         if (scratchBytes_ > 0) {
             GLINT_TRY(prepared_.scratch, createScratch(context_, prepared_.brief, scratchBytes_));
@@ -262,10 +228,8 @@ private:
     }
 
     bool hasWork() const {
-        const bool resized = std::ranges::any_of(
-            prepared_.arrays, [](const Buffer& buffer) { return buffer.handle.get() != VK_NULL_HANDLE; });
-        return resized || tlasAction_ != BuildAction::Keep || !works_.empty() ||
-               prepared_.staging.handle.get() != VK_NULL_HANDLE || store_.uploader->waiting() > 0;
+        return update_.hasWork() || tlasAction_ != BuildAction::Keep || !works_.empty() ||
+               store_.uploader->waiting() > 0;
     }
 
     // Keeps a buffer until the device has completed the recording.
@@ -283,11 +247,12 @@ private:
         }
         // Earlier frames may still read the memory that is written here.
         recordDependency(context_, commands_, kAllToAll);
-        recordResizes();
+        const std::array<RecordArray, kArrays> now = arrays();
+        update_.recordResizes(commands_, now, store_.retired);
         for (Buffer& staging : store_.uploader->record(commands_)) {
             retire(std::move(staging));
         }
-        recordCopies();
+        retire(update_.recordCopies(commands_, now));
         recordDependency(context_, commands_, kAllToAll);
         const bool isTimed = !works_.empty() || tlasAction_ != BuildAction::Keep;
         if (isTimed) {
@@ -315,50 +280,6 @@ private:
         record();
         store_.timer->recordEnd(commands_, stretch);
         endLabel(context_, commands_);
-    }
-
-    // Copies old content into arrays of another size.
-    void recordResizes() {
-        std::size_t i = 0;
-        bool copied = false;
-        for (const auto& [records, device, isRead, isKept, usage] : arrays()) {
-            Buffer& resized = prepared_.arrays[i];
-            if (resized.handle.get() != VK_NULL_HANDLE) {
-                const std::uint32_t kept =
-                    std::min({records.capacity, prepared_.capacities[i], records.count()});
-                if (kept > 0 && device.handle.get() != VK_NULL_HANDLE) {
-                    const VkBufferCopy region{0, 0, kept * records.stride()};
-                    context_.vk.CmdCopyBuffer(commands_, device.handle.get(), resized.handle.get(), 1,
-                                              &region);
-                    copied = true;
-                }
-                store_.retired.add(std::move(device));
-                device = std::move(resized);
-            }
-            records.capacity = prepared_.capacities[i];
-            ++i;
-        }
-        if (copied) {
-            recordDependency(context_, commands_, kTransferToTransfer);
-        }
-    }
-
-    void recordCopies() {
-        VkDeviceSize from = 0;
-        for (const auto& [records, device, isRead, isKept, usage] : arrays()) {
-            std::vector<VkBufferCopy> regions;
-            for (const IndexRange& range : records.dirty()) {
-                const std::span<const std::uint8_t> bytes = records.at(range);
-                std::memcpy(prepared_.staging.mapped + from, bytes.data(), bytes.size());
-                regions.push_back({from, range.first * records.stride(), bytes.size()});
-                from += bytes.size();
-            }
-            if (!regions.empty() && device.handle.get() != VK_NULL_HANDLE) {
-                context_.vk.CmdCopyBuffer(commands_, prepared_.staging.handle.get(), device.handle.get(),
-                                          static_cast<std::uint32_t>(regions.size()), regions.data());
-            }
-            records.clearDirty();
-        }
     }
 
     void recordDeform() {
@@ -406,7 +327,6 @@ private:
             scene_.descriptorPool = std::move(prepared_.set->pool);
             scene_.set = prepared_.set->set;
         }
-        retire(std::move(prepared_.staging));
         retire(std::move(prepared_.scratch.buffer));
         if (!store_.keeps()) {
             dropBriefs();
@@ -436,12 +356,11 @@ private:
     void dropBriefs() {
         retire(std::move(store_.tlasScratch.buffer));
         store_.tlasScratchBytes = 0;
-        for (const auto& [records, device, isRead, isKept, usage] : arrays()) {
-            if (!isKept) {
-                retire(std::move(device));
-                device = {};
-                records.capacity = 0;
-            }
+        const std::array<RecordArray, kArrays> all = arrays();
+        for (const RecordArray& array : std::span(all).subspan(kPoseArray)) {
+            retire(std::move(array.device));
+            array.device = {};
+            array.store.capacity = 0;
         }
     }
 
@@ -477,6 +396,7 @@ private:
     VkCommandBuffer commands_;
     MotionView::Builds rule_;
     Prepared prepared_;
+    ArrayUpdate update_;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> deformed_;
     std::vector<ShapePart> shapes_;
     std::vector<ChangedPart> parts_;

@@ -33,7 +33,8 @@ SceneStore::SceneStore(GpuScene::State& owner, const Package& package, const Sce
     if (editable) {
         // A BLAS holds one primitive, whose material may change.
         capacity.geometries = 1;
-        cases.emplace(package);
+        // The caller keeps the package of the upload.
+        cases.emplace(std::shared_ptr<const Package>(std::shared_ptr<void>(), &package));
     }
     if (package.emission() != nullptr) {
         emission = *package.emission();
@@ -76,6 +77,8 @@ public:
             store_.lastLights.push_back(makeLightRecord(light));
         }
         scene_.statistics.narrowedTextures = countNarrowed(scene_.context, known_.textures, view_.images);
+        scene_.package = describePackage(package_, known_, view_);
+        scene_.records = recordsHash(package_, known_);
         if (store_.editable) {
             scene_.shaderIds = store_.cases->shaderIds();
         } else {
@@ -135,18 +138,6 @@ private:
         return okStatus();
     }
 
-    // A record says which textures it may read. A slot that no key reads names the first texture, too.
-    std::vector<TextureUse> usesOf(std::size_t material) const {
-        std::vector<TextureUse> uses;
-        for (std::uint32_t slot = 0; slot < known_.materials.textureCount && !known_.textures.empty();
-             ++slot) {
-            const gpu::TextureRecord record = textureAt(known_.materials, material, slot);
-            uses.push_back({slot, store_.firstTextures[record.textureIndex],
-                            store_.samplers[record.samplerIndex], record.texCoord});
-        }
-        return uses;
-    }
-
     Status addMaterials() {
         records_ = materialsWithSizes(scene_.context, known_, view_.images);
         GLINT_TRY(scene_.changing, replaceMaterials(view_.materials, known_.materials, records_));
@@ -156,7 +147,9 @@ private:
             store_.materials.writeBytes(i, std::span(records_).subspan(i * bytes, bytes));
             if (store_.editable) {
                 StoredMaterial material;
-                material.textures = usesOf(i);
+                material.textures = usesOf(store_, known_.materials, i);
+                material.hasOwnValues = std::ranges::find(scene_.changing, i, &ChangingMaterial::material) !=
+                                        scene_.changing.end();
                 for (const TextureUse& use : material.textures) {
                     ++store_.textures.find(use.texture)->uses;
                 }
@@ -255,11 +248,7 @@ private:
         primitive.material = store_.firstMaterials[entry.materialIndex];
         StoredMaterial& material = *store_.materialSlots.find(primitive.material);
         ++material.meshes[mesh.index];
-        if (std::ranges::find(material.keys, primitive.attributes, &MaterialKey::attributes) ==
-            material.keys.end()) {
-            const std::uint64_t features = std::uint64_t{entry.featureInputs} << 32U | entry.featureLobes;
-            material.keys.push_back({primitive.attributes, features, features, entry.geometryFlags});
-        }
+        addKey(material, entry, primitive.attributes);
     }
 
     Status addMeshes() {
@@ -275,6 +264,7 @@ private:
                 StoredPrimitive& primitive = mesh.primitives[i - first];
                 primitive.entryIndex = static_cast<std::uint32_t>(entry - known_.primitives.data());
                 if (store_.editable) {
+                    store_.firstAttributes.emplace_back(primitive.entryIndex, primitive.attributes);
                     addMaterialTo(handle, primitive, *entry);
                 }
             }
@@ -330,7 +320,6 @@ private:
         for (std::uint32_t i = 0; i < store_.geometries.count(); ++i) {
             scene_.shaderIds.push_back(store_.geometries.read<gpu::GeometryRecord>(i).shaderId);
         }
-        scene_.package = describePackage(package_, view_);
         for (const auto& [primitive, split] : decided_.splits) {
             const PrimitiveView& view = view_.primitives[primitive];
             const package::PrimitiveEntry* const entry = known_.findPrimitive(view.mesh, view.primitive);

@@ -8,6 +8,7 @@
 #include "interop/frame.h"
 #include "package/package.h"
 #include "scene/gpu_scene_state.h"
+#include "scene/record_arrays.h"
 
 #include <algorithm>
 #include <array>
@@ -36,49 +37,49 @@ Diagnostic outOfRange(const std::string& where, const std::string& what, std::si
 
 struct NamedAddress {
     const char* name;
-    VkDeviceAddress EngineGeometryView::*address;
+    decltype(gpu::GeometryRecord::indices) gpu::GeometryRecord::*address;
     std::uint32_t input;  // the key bit that makes it necessary; 0: it always is
 };
-constexpr NamedAddress kAddresses[] = {{"indices", &EngineGeometryView::indices, 0},
-                                       {"positions", &EngineGeometryView::positions, 0},
-                                       {"normals", &EngineGeometryView::normals, kInputNormals},
-                                       {"tangents", &EngineGeometryView::tangents, kInputTangents},
-                                       {"texCoords0", &EngineGeometryView::texCoords0, kInputTexCoord0},
-                                       {"texCoords1", &EngineGeometryView::texCoords1, kInputTexCoord1},
-                                       {"colors", &EngineGeometryView::colors, kInputVertexColor}};
+constexpr NamedAddress kAddresses[] = {{"indices", &gpu::GeometryRecord::indices, 0},
+                                       {"positions", &gpu::GeometryRecord::positions, 0},
+                                       {"normals", &gpu::GeometryRecord::normals, kInputNormals},
+                                       {"tangents", &gpu::GeometryRecord::tangents, kInputTangents},
+                                       {"texCoords0", &gpu::GeometryRecord::texCoords0, kInputTexCoord0},
+                                       {"texCoords1", &gpu::GeometryRecord::texCoords1, kInputTexCoord1},
+                                       {"colors", &gpu::GeometryRecord::colors, kInputVertexColor}};
 
-Status checkAddresses(const EngineGeometryView& view, const package::PrimitiveEntry& entry,
-                      const std::string& where) {
+// Finds the entry of a geometry, and checks that its record has the addresses that the key reads.
+Result<const package::PrimitiveEntry*> entryOf(const PackageScene& known, std::size_t index,
+                                               const std::pair<std::uint32_t, std::uint32_t>& primitive,
+                                               const gpu::GeometryRecord& record) {
+    const package::PrimitiveEntry* const entry = known.findPrimitive(primitive.first, primitive.second);
+    if (entry == nullptr) {
+        return makeError("scene-package", geometryPlace(index),
+                         "the package does not know primitive " + std::to_string(primitive.second) +
+                             " of mesh " + std::to_string(primitive.first),
+                         "compile the package from the scene that is traced");
+    }
     for (const NamedAddress& one : kAddresses) {
-        const bool needed = one.input == 0 || (entry.featureInputs & one.input) != 0;
-        if (needed && view.*one.address == 0) {
-            return makeError("engine-scene", where,
+        const bool needed = one.input == 0 || (entry->featureInputs & one.input) != 0;
+        if (needed && record.*one.address == 0) {
+            return makeError("engine-scene", geometryPlace(index),
                              std::string("the package's key reads ") + one.name + ", whose address is 0",
                              "give its address");
         }
     }
-    return okStatus();
+    return entry;
 }
 
-Result<std::vector<gpu::GeometryRecord>> makeGeometries(const PackageScene& known,
-                                                        const EngineSceneView& scene) {
+// Returns the records of geometries, without what their entries say.
+Result<std::vector<gpu::GeometryRecord>> makeGeometries(const EngineSceneView& scene) {
     std::vector<gpu::GeometryRecord> records;
     for (std::size_t i = 0; i < scene.geometries.size(); ++i) {
         const EngineGeometryView& view = scene.geometries[i];
-        const package::PrimitiveEntry* const entry = known.findPrimitive(view.mesh, view.primitive);
-        if (entry == nullptr) {
-            return makeError("scene-package", geometryPlace(i),
-                             "the package does not know primitive " + std::to_string(view.primitive) +
-                                 " of mesh " + std::to_string(view.mesh),
-                             "compile the package from the scene that is traced");
-        }
         if (view.instance >= scene.instances.size()) {
             return outOfRange(geometryPlace(i), "instance", view.instance, scene.instances.size());
         }
-        GLINT_TRY_DO(checkAddresses(view, *entry, geometryPlace(i)));
-        gpu::GeometryRecord record = recordOf(*entry, view, view.instance);
-        record.flags |= std::uint32_t{view.hostFlags} << gpu::kGeometryHostFlagsShift;
-        records.push_back(record);
+        gpu::GeometryRecord& record = records.emplace_back(recordOf({}, view, view.instance));
+        record.flags = std::uint32_t{view.hostFlags} << gpu::kGeometryHostFlagsShift;
     }
     return records;
 }
@@ -112,18 +113,19 @@ Result<std::vector<gpu::LightRecord>> makeLights(std::span<const LightView> ligh
 
 // The package's materials, with the host's numbers of textures and samplers.
 Result<std::vector<std::uint8_t>> makeMaterials(const Context::State& context, const PackageScene& known,
-                                                const EngineSceneView& scene) {
-    if (scene.textures.size() != known.textures.size() || scene.samplers.size() != known.samplers.size()) {
+                                                std::span<const EngineTextureView> textures,
+                                                std::span<const EngineSamplerView> samplers) {
+    if (textures.size() != known.textures.size() || samplers.size() != known.samplers.size()) {
         return makeError("engine-scene", "",
-                         "there are " + std::to_string(scene.textures.size()) + " textures and " +
-                             std::to_string(scene.samplers.size()) + " samplers, the package's scene has " +
+                         "there are " + std::to_string(textures.size()) + " textures and " +
+                             std::to_string(samplers.size()) + " samplers, the package's scene has " +
                              std::to_string(known.textures.size()) + " and " +
                              std::to_string(known.samplers.size()),
                          "give one for each of PackageScene::textures and PackageScene::samplers");
     }
     std::vector<ImageView> images;
     for (std::size_t i = 0; i < known.textures.size(); ++i) {
-        const EngineTextureView& texture = scene.textures[i];
+        const EngineTextureView& texture = textures[i];
         if (texture.width == 0 || texture.height == 0) {
             return makeError("engine-scene", "texture " + std::to_string(i), "it has no texels",
                              "give the size of its finest level");
@@ -140,12 +142,12 @@ Result<std::vector<std::uint8_t>> makeMaterials(const Context::State& context, c
                        slot * sizeof(gpu::TextureRecord)];
             gpu::TextureRecord record{};
             std::memcpy(&record, place, sizeof record);
-            if (record.textureIndex < scene.textures.size()) {
-                record.textureIndex = scene.textures[record.textureIndex].index;
+            if (record.textureIndex < textures.size()) {
+                record.textureIndex = textures[record.textureIndex].index;
             }
-            if (record.samplerIndex < scene.samplers.size()) {
-                record.anisotropy = scene.samplers[record.samplerIndex].maxAnisotropy;
-                record.samplerIndex = scene.samplers[record.samplerIndex].index;
+            if (record.samplerIndex < samplers.size()) {
+                record.anisotropy = samplers[record.samplerIndex].maxAnisotropy;
+                record.samplerIndex = samplers[record.samplerIndex].index;
             }
             std::memcpy(place, &record, sizeof record);
         }
@@ -153,13 +155,11 @@ Result<std::vector<std::uint8_t>> makeMaterials(const Context::State& context, c
     return bytes;
 }
 
-Status findShaderIds(std::span<const gpu::GeometryRecord> geometries,
-                     std::span<const std::uint32_t> hitRecords, std::vector<std::uint32_t>& shaderIds) {
-    if (hitRecords.empty()) {
-        for (const gpu::GeometryRecord& geometry : geometries) {
-            shaderIds.push_back(geometry.shaderId);
-        }
-        return okStatus();
+Result<std::vector<std::uint32_t>> findShaderIds(std::span<const gpu::GeometryRecord> geometries,
+                                                 std::span<const std::uint32_t> hitRecords) {
+    std::vector<std::uint32_t> shaderIds;
+    for (std::size_t i = 0; hitRecords.empty() && i < geometries.size(); ++i) {
+        shaderIds.push_back(geometries[i].shaderId);
     }
     for (std::size_t i = 0; i < hitRecords.size(); ++i) {
         if (hitRecords[i] >= geometries.size()) {
@@ -168,69 +168,216 @@ Status findShaderIds(std::span<const gpu::GeometryRecord> geometries,
         }
         shaderIds.push_back(geometries[hitRecords[i]].shaderId);
     }
+    return shaderIds;
+}
+
+// The content of a scene that a package decides.
+struct PackageContent {
+    std::vector<gpu::GeometryRecord> geometries;
+    std::vector<std::uint8_t> materials;
+    std::uint32_t materialBytes = 0;  // of a record
+    std::vector<std::uint32_t> shaderIds;
+    std::uint64_t records = 0;  // recordsHash()
+};
+
+// Gives geometries what a package says of their primitives, and makes the other records.
+Result<PackageContent> makeContent(const Context::State& context, const Package& package, std::uint32_t index,
+                                   std::vector<gpu::GeometryRecord> geometries,
+                                   std::span<const std::pair<std::uint32_t, std::uint32_t>> primitives,
+                                   std::span<const EngineTextureView> textures,
+                                   std::span<const EngineSamplerView> samplers,
+                                   std::span<const std::uint32_t> hitRecords) {
+    GLINT_TRY_DO(checkDevice(package, context.handles));
+    const PackageScene known = package.scene(index);
+    for (std::size_t i = 0; i < geometries.size(); ++i) {
+        GLINT_TRY(const auto entry, entryOf(known, i, primitives[i], geometries[i]));
+        takeEntry(*entry, geometries[i]);
+    }
+    PackageContent content;
+    GLINT_TRY(content.materials, makeMaterials(context, known, textures, samplers));
+    content.materialBytes = known.materials.recordBytes;
+    GLINT_TRY(content.shaderIds, findShaderIds(geometries, hitRecords));
+    content.geometries = std::move(geometries);
+    content.records = recordsHash(package, known);
+    return content;
+}
+
+// The content by a package of what the host has given before.
+Result<PackageContent> contentBy(const EngineScene::State& state, const Package& package,
+                                 std::uint32_t index) {
+    const RecordStore& geometries = state.arrays[EngineScene::State::Geometries].store;
+    std::vector<gpu::GeometryRecord> records;
+    for (std::uint32_t i = 0; i < geometries.count(); ++i) {
+        records.push_back(geometries.read<gpu::GeometryRecord>(i));
+    }
+    return makeContent(state.context, package, index, std::move(records), state.primitives, state.textures,
+                       state.samplers, state.hitRecords);
+}
+
+void take(EngineScene::State& state, const PackageContent& content) {
+    using State = EngineScene::State;
+    RecordStore& materials = state.arrays[State::Materials].store;
+    if (content.materialBytes != materials.stride()) {
+        materials.reset(content.materialBytes);
+    }
+    materials.replaceBytes(content.materials);
+    state.arrays[State::Geometries].store.replace(std::span<const gpu::GeometryRecord>(content.geometries));
+    state.records = content.records;
+    state.shaderIds = content.shaderIds;
+}
+
+template <typename T>
+void replace(EngineScene::State& state, EngineScene::State::Kind kind, const std::vector<T>& records) {
+    state.arrays[kind].store.replace(std::span<const T>(records));
+}
+
+// Places the instances. Motion is measured from their transforms before; new ones are still.
+Status place(EngineScene::State& state, std::span<const Rows> instances, std::span<const LightView> lights,
+             const std::array<double, 3>& originMoved) {
+    using State = EngineScene::State;
+    GLINT_TRY(auto records, makeInstances(instances));
+    GLINT_TRY(auto lightRecords, makeLights(lights));
+    std::vector<Rows> before = movedBack(state.placed, originMoved);
+    before.resize(std::min(before.size(), instances.size()));
+    before.insert(before.end(), instances.begin() + static_cast<std::ptrdiff_t>(before.size()),
+                  instances.end());
+    GLINT_TRY(auto previous, makeInstances(before));
+    replace(state, State::Instances, records);
+    replace(state, State::PreviousInstances, previous);
+    replace(state, State::Lights, lightRecords);
+    state.placed.assign(instances.begin(), instances.end());
     return okStatus();
 }
 
-template <typename T>
-Status upload(EngineScene::State& state, const std::vector<T>& records, VkBufferUsageFlags usage,
-              Buffer& target) {
-    return uploadRecords(state.context, state.pool, *state.upload->uploader, std::span<const T>(records),
-                         target, usage);
-}
-
-// Records new contents of a buffer. The bytes travel in the command buffer.
-template <typename T>
-void recordContents(const EngineScene::State& state, VkCommandBuffer commands, const std::vector<T>& records,
-                    const Buffer& target) {
-    constexpr VkDeviceSize kMost = 65536;  // bytes that one command may carry
-    const std::span<const std::uint8_t> bytes = bytesOf(std::span<const T>(records));
-    for (VkDeviceSize offset = 0; offset < bytes.size(); offset += kMost) {
-        state.context.vk.CmdUpdateBuffer(commands, target.handle.get(), offset,
-                                         std::min(kMost, bytes.size() - offset), &bytes[offset]);
+Status checkOwn(const EngineScene::State& state, std::uint64_t frame) {
+    if (state.shared != nullptr) {
+        return makeError("engine-scene", "", "the scene is that of a GpuScene", "use GpuScene::update()");
     }
+    if (frame < state.lastFrame) {
+        return makeError(
+            "engine-scene", "",
+            "frame " + std::to_string(frame) + " is recorded after frame " + std::to_string(state.lastFrame),
+            "number frames in the order in which they are recorded");
+    }
+    return okStatus();
 }
 
-}  // namespace
-
-Result<std::unique_ptr<EngineScene>> EngineScene::record(Context& context, const Package& package,
-                                                         const EngineSceneView& scene,
-                                                         VkCommandBuffer commands, std::uint64_t frame) try {
+Status recordContent(EngineScene::State& state, VkCommandBuffer commands, const Package& package,
+                     const EngineSceneView& scene, std::uint64_t frame,
+                     const std::array<double, 3>& originMoved) {
+    using State = EngineScene::State;
     if (scene.packageScene >= package.sceneCount()) {
         return makeError("scene-package", "",
                          "the package has no scene " + std::to_string(scene.packageScene),
                          "give an index below Package::sceneCount()");
     }
-    GLINT_TRY_DO(checkDevice(package, context.handles()));
-    const PackageScene known = package.scene(scene.packageScene);
-    GLINT_TRY(auto geometries, makeGeometries(known, scene));
-    GLINT_TRY(auto instances, makeInstances(scene.instances));
-    GLINT_TRY(auto lights, makeLights(scene.lights));
-    GLINT_TRY(auto materials, makeMaterials(context.state(), known, scene));
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> primitives;
+    std::uint32_t leastInstances = 0;
+    for (const EngineGeometryView& view : scene.geometries) {
+        primitives.emplace_back(view.mesh, view.primitive);
+        leastInstances = std::max(leastInstances, view.instance + 1);
+    }
+    GLINT_TRY(auto geometries, makeGeometries(scene));
+    GLINT_TRY(const auto content,
+              makeContent(state.context, package, scene.packageScene, std::move(geometries), primitives,
+                          scene.textures, scene.samplers, scene.hitRecords));
     for (std::size_t i = 0; i < scene.firstRecords.size(); ++i) {
-        if (scene.firstRecords[i] >= std::max<std::size_t>(geometries.size(), 1)) {
+        if (scene.firstRecords[i] >= std::max<std::size_t>(content.geometries.size(), 1)) {
             return outOfRange("entry " + std::to_string(i) + " of firstRecords", "geometry",
-                              scene.firstRecords[i], geometries.size());
+                              scene.firstRecords[i], content.geometries.size());
         }
     }
+    GLINT_TRY_DO(place(state, scene.instances, scene.lights, originMoved));
+    state.shaderIdsVersion += state.shaderIds != content.shaderIds ? 1 : 0;
+    take(state, content);
+    state.arrays[State::FirstRecords].store.replace(scene.firstRecords);
+    state.name = package.scene(scene.packageScene).name;
+    state.primitives = std::move(primitives);
+    state.leastInstances = leastInstances;
+    state.textures.assign(scene.textures.begin(), scene.textures.end());
+    state.samplers.assign(scene.samplers.begin(), scene.samplers.end());
+    state.hitRecords.assign(scene.hitRecords.begin(), scene.hitRecords.end());
+    state.recordsBy = scene.recordsBy;
+    return state.recordChanges(commands, frame);
+}
+
+}  // namespace
+
+EngineScene::State::State(Context::State& contextState)
+    : DrawnScene(contextState),
+      pool(std::make_shared<MemoryPool>(contextState, "engine scene")),
+      arrays{{{RecordStore(sizeof(gpu::GeometryRecord)), {}},
+              {RecordStore(sizeof(gpu::InstanceRecord)), {}},
+              {RecordStore(sizeof(gpu::InstanceRecord)), {}},
+              {RecordStore(sizeof(std::uint32_t)), {}},
+              {RecordStore(sizeof(gpu::LightRecord)), {}},
+              {RecordStore(sizeof(std::uint32_t)), {}}}},
+      retired(*pool) {}
+
+Status EngineScene::State::recordChanges(VkCommandBuffer commands, std::uint64_t frame,
+                                         RetiredLot* leftovers) {
+    std::vector<RecordArray> now;
+    for (auto& [store, device] : arrays) {
+        now.push_back({store, device, grownCapacity(store.count(), store.capacity), pool.get()});
+    }
+    ArrayUpdate update(context, *pool);
+    GLINT_TRY_DO(update.prepareBuffers(now));
+    GLINT_TRY_DO(update.prepareStaging(now));
+    if (update.hasWork()) {
+        recordDependency(context, commands, kAllToAll);
+        update.recordResizes(commands, now, retired);
+        retired.add(update.recordCopies(commands, now));
+        recordDependency(context, commands, kAllToAll);
+    }
+    if (leftovers != nullptr) {
+        *leftovers = retired.take();
+    } else {
+        retired.close(frame);
+    }
+    lightCount = arrays[Lights].store.count();
+    lastFrame = frame;
+    return okStatus();
+}
+
+Result<PackageFit> EngineScene::State::fit(const std::shared_ptr<const Package>& package) const {
+    const std::optional<std::uint32_t> index = package->findScene(name);
+    if (!index) {
+        return makeError("scene-package", name, "the package has no scene of this name",
+                         "compile the package from the scene that is traced");
+    }
+    GLINT_TRY(auto content, contentBy(*this, *package, *index));
+    return PackageFit{*index, std::move(content.shaderIds)};
+}
+
+Result<RetiredLot> EngineScene::State::recordReplacement(const std::shared_ptr<const Package>& package,
+                                                         std::uint32_t index, VkCommandBuffer commands) {
+    GLINT_TRY(const auto content, contentBy(*this, *package, index));
+    const RecordStore materials = arrays[Materials].store;
+    const RecordStore geometries = arrays[Geometries].store;
+    const std::uint64_t recordsBefore = records;
+    const std::vector<std::uint32_t> idsBefore = shaderIds;
+    take(*this, content);
+    RetiredLot leftovers;
+    if (Status status = recordChanges(commands, lastFrame, &leftovers); !status) {
+        arrays[Materials].store = materials;
+        arrays[Geometries].store = geometries;
+        records = recordsBefore;
+        shaderIds = idsBefore;
+        return status.error();
+    }
+    leftovers.keep(pool);
+    return leftovers;
+}
+
+DrawnScene& EngineScene::State::drawn() {
+    return shared != nullptr ? static_cast<DrawnScene&>(*shared) : *this;
+}
+
+Result<std::unique_ptr<EngineScene>> EngineScene::record(Context& context, const Package& package,
+                                                         const EngineSceneView& scene,
+                                                         VkCommandBuffer commands, std::uint64_t frame) try {
     auto state = std::make_unique<State>(context.state());
-    GLINT_TRY_DO(findShaderIds(geometries, scene.hitRecords, state->shaderIds));
-    state->placed.assign(scene.instances.begin(), scene.instances.end());
-    state->lightCount = state->lightCapacity = static_cast<std::uint32_t>(lights.size());
-    state->recordsBy = scene.recordsBy;
-    state->records = recordsHash(package, known);
-    state->upload = std::make_unique<StagedCopies>(context.state());
-    const std::vector<std::uint32_t> firstRecords(scene.firstRecords.begin(), scene.firstRecords.end());
-    for (const Status& status :
-         {upload(*state, geometries, 0, state->geometries),
-          upload(*state, instances, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, state->instances),
-          upload(*state, instances, 0, state->previousInstances), upload(*state, lights, 0, state->lights),
-          upload(*state, materials, 0, state->materials),
-          upload(*state, firstRecords, 0, state->firstRecords)}) {
-        if (!status) {
-            return status.error();
-        }
-    }
-    state->upload->record(commands, frame);
+    GLINT_TRY_DO(recordContent(*state, commands, package, scene, frame, {}));
     return std::unique_ptr<EngineScene>(new EngineScene(std::move(state)));
 }
 GLINT_CATCH
@@ -243,16 +390,12 @@ Result<std::unique_ptr<EngineScene>> EngineScene::create(Context& context, const
 GLINT_CATCH
 
 void EngineScene::complete(std::uint64_t frame) {
-    if (state_->upload && state_->upload->frame <= frame) {
-        state_->upload.reset();
-    }
+    state_->retired.complete(frame);
 }
 
 Result<std::unique_ptr<EngineScene>> EngineScene::share(Context& context, GpuScene& scene) try {
     auto state = std::make_unique<State>(context.state());
     state->shared = &scene.state();
-    state->shaderIds = state->shared->shaderIds;
-    state->records = state->shared->package.records;
     return std::unique_ptr<EngineScene>(new EngineScene(std::move(state)));
 }
 GLINT_CATCH
@@ -262,8 +405,9 @@ EngineScene::State::Addresses EngineScene::State::addresses() const {
         return {shared->geometries.address, shared->instances.address, shared->instances.address,
                 shared->materials.address,  shared->lights.address,    0};
     }
-    return {geometries.address, instances.address, previousInstances.address,
-            materials.address,  lights.address,    firstRecords.address};
+    const auto at = [&](Kind kind) { return arrays[kind].device.address; };
+    return {at(Geometries), at(Instances), at(PreviousInstances),
+            at(Materials),  at(Lights),    at(FirstRecords)};
 }
 
 std::uint32_t EngineScene::State::lightsNow() const {
@@ -273,39 +417,22 @@ std::uint32_t EngineScene::State::lightsNow() const {
 EngineScene::EngineScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
 EngineScene::~EngineScene() = default;
 
+Status EngineScene::update(VkCommandBuffer commands, const Package& package, const EngineSceneView& scene,
+                           std::uint64_t frame, const std::array<double, 3>& originMoved) try {
+    GLINT_TRY_DO(checkOwn(*state_, frame));
+    return recordContent(*state_, commands, package, scene, frame, originMoved);
+}
+GLINT_CATCH
+
 Status EngineScene::update(VkCommandBuffer commands, std::span<const std::array<float, 12>> instances,
-                           std::span<const LightView> lights, const std::array<double, 3>& originMoved) try {
-    if (state_->shared != nullptr) {
-        return makeError("engine-scene", "", "the scene is that of a GpuScene", "use GpuScene::update()");
+                           std::span<const LightView> lights, std::uint64_t frame,
+                           const std::array<double, 3>& originMoved) try {
+    GLINT_TRY_DO(checkOwn(*state_, frame));
+    if (instances.size() < state_->leastInstances) {
+        return outOfRange("", "instance", state_->leastInstances - 1, instances.size());
     }
-    if (instances.size() != state_->placed.size() || lights.size() > state_->lightCapacity) {
-        return makeError("engine-scene", "",
-                         "there are " + std::to_string(instances.size()) + " instances and " +
-                             std::to_string(lights.size()) + " lights, at creation there were " +
-                             std::to_string(state_->placed.size()) + " and " +
-                             std::to_string(state_->lightCapacity),
-                         "give as many instances, and no more lights");
-    }
-    GLINT_TRY(auto records, makeInstances(instances));
-    GLINT_TRY(auto lightRecords, makeLights(lights));
-    const bool staysPut = originMoved == std::array<double, 3>{};
-    GLINT_TRY(auto previous, staysPut ? std::vector<gpu::InstanceRecord>()
-                                      : makeInstances(movedBack(state_->placed, originMoved)));
-    state_->placed.assign(instances.begin(), instances.end());
-    const Context::State& context = state_->context;
-    recordDependency(context, commands, kAllToAll);
-    if (staysPut && !instances.empty()) {
-        const VkBufferCopy whole{0, 0, instances.size() * sizeof(gpu::InstanceRecord)};
-        context.vk.CmdCopyBuffer(commands, state_->instances.handle.get(),
-                                 state_->previousInstances.handle.get(), 1, &whole);
-        recordDependency(context, commands, kAllToAll);
-    }
-    recordContents(*state_, commands, previous, state_->previousInstances);
-    recordContents(*state_, commands, records, state_->instances);
-    recordContents(*state_, commands, lightRecords, state_->lights);
-    recordDependency(context, commands, kAllToAll);
-    state_->lightCount = static_cast<std::uint32_t>(lightRecords.size());
-    return okStatus();
+    GLINT_TRY_DO(place(*state_, instances, lights, originMoved));
+    return state_->recordChanges(commands, frame);
 }
 GLINT_CATCH
 
@@ -315,9 +442,8 @@ VkDeviceAddress EngineScene::materials() const {
 
 std::uint64_t EngineScene::bytes() const {
     std::uint64_t sum = 0;
-    for (const Buffer* const buffer : {&state_->geometries, &state_->instances, &state_->previousInstances,
-                                       &state_->materials, &state_->lights, &state_->firstRecords}) {
-        sum += buffer->bytes;
+    for (const State::Records& records : state_->arrays) {
+        sum += records.device.bytes;
     }
     return sum;
 }

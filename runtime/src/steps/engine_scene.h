@@ -3,33 +3,37 @@
 
 #include "context/context.h"
 #include "context/resources.h"
-#include "context/upload.h"
+#include "data/retired.h"
+#include "scene/drawn_scene.h"
 #include "scene/gpu_scene_state.h"
+#include "scene/record_store.h"
 
 #include <glint/steps.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace glint {
 
 // Members are destroyed in reverse order: the pool's memory last.
-struct EngineScene::State {
-    explicit State(Context::State& contextState)
-        : context(contextState), pool(contextState, "engine scene") {}
+struct EngineScene::State final : DrawnScene {
+    explicit State(Context::State& contextState);
 
-    Context::State& context;
-    MemoryPool pool;
-    std::unique_ptr<StagedCopies> upload;  // null when the device has completed it
-    Buffer geometries;
-    Buffer instances;
-    Buffer previousInstances;
-    Buffer materials;
-    Buffer lights;
-    Buffer firstRecords;
-    // The addresses of these buffers, or of those of `shared` as it is now.
+    Result<PackageFit> fit(const std::shared_ptr<const Package>& package) const override;
+    Result<RetiredLot> recordReplacement(const std::shared_ptr<const Package>& package, std::uint32_t index,
+                                         VkCommandBuffer commands) override;
+
+    // Records the changes of the stores, for a frame that is at or after the last one. `leftovers`, if given,
+    // gets the resources that are no longer needed when the recording is complete; else complete() for the
+    // frame frees them. With an error nothing is recorded, and the changes wait for the next call.
+    Status recordChanges(VkCommandBuffer commands, std::uint64_t frame, RetiredLot* leftovers = nullptr);
+
+    // The addresses of the records, or of those of `shared` as it is now.
     struct Addresses {
         VkDeviceAddress geometries = 0;
         VkDeviceAddress instances = 0;
@@ -39,14 +43,41 @@ struct EngineScene::State {
         VkDeviceAddress firstRecords = 0;
     };
     Addresses addresses() const;
-    const GpuScene::State* shared = nullptr;    // the scene whose records these are
-    std::uint64_t records = 0;                  // recordsHash()
-    std::vector<std::array<float, 12>> placed;  // the transforms of the instances
+    // The scene whose records are read: this one, or the GpuScene that it shares.
+    DrawnScene& drawn();
     std::uint32_t lightsNow() const;
-    std::uint32_t lightCount = 0;  // of a scene that is not shared
-    std::uint32_t lightCapacity = 0;
+
+    GpuScene::State* shared = nullptr;  // null if the records are the scene's own, below
+
+    // An array of records, and its place on the device.
+    struct Records {
+        RecordStore store;
+        Buffer device;
+    };
+    enum Kind : std::size_t {
+        Geometries,
+        Instances,
+        PreviousInstances,
+        Materials,
+        Lights,
+        FirstRecords,
+        Count
+    };
+    std::shared_ptr<MemoryPool> pool;
+    std::array<Records, Count> arrays;
+    Retired retired;
+    std::uint64_t lastFrame = 0;
+    std::uint32_t lightCount = 0;  // of the last recording
     RecordsBy recordsBy = RecordsBy::CustomIndex;
-    std::vector<std::uint32_t> shaderIds;  // of the shader binding table's hit records
+    std::vector<std::array<float, 12>> placed;  // the transforms of the instances
+    std::uint32_t leastInstances = 0;           // that the geometries name
+
+    // What the host has given, from which another package makes its records.
+    std::string name;                                                 // of the scene in the package
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> primitives;  // mesh and primitive of each geometry
+    std::vector<EngineTextureView> textures;
+    std::vector<EngineSamplerView> samplers;
+    std::vector<std::uint32_t> hitRecords;
 };
 
 }  // namespace glint

@@ -3,6 +3,7 @@
 #include "package/package.h"
 #include "renderer/hit_passes.h"
 #include "renderer/renderer_choice.h"
+#include "renderer/replacement.h"
 #include "steps/engine_scene.h"
 
 #include <glint/steps.h>
@@ -25,12 +26,18 @@ static_assert(offsetof(EngineSurface, motion) == offsetof(gpu::SurfaceRecord, mo
 static_assert(EngineSurface::kMiss == gpu::kSurfaceMiss && EngineSurface::kUnknown == gpu::kSurfaceUnknown);
 static_assert(RaySteps::kPushBytes == sizeof(gpu::PushConstants));
 
-struct RaySteps::State : PassState {
+struct RaySteps::State final : PackageUser {
     State(Context::State& contextState, EngineScene::State& sceneState, Timer passTimer)
-        : PassState(contextState, std::move(passTimer)), scene(sceneState) {}
+        : PackageUser(contextState, sceneState.drawn(), std::move(passTimer)), scene(sceneState) {}
+
+    package::Passes passes() const override {
+        return package::Passes::Steps;
+    }
+    Status choose(const Package& other, NextPackage& made) const override;
+    std::vector<std::uint32_t> hits() const override;
+    void took(const Package& /*taken*/) override {}
 
     EngineScene::State& scene;
-    std::uint32_t maxRays = 0;
     bool tlasByAddress = false;
     // These belong to the batch that begin() started.
     Timing timing = Timing::Frame;
@@ -56,24 +63,53 @@ Status checkBatch(const RaySteps::State& state, const RayBatch& batch) {
         return wrongBatch("the package takes the acceleration structure by address, and RayBatch::tlas is 0",
                           "set it, or compile the package with a number for tlas in --bindings");
     }
-    if (batch.countBuffer == VK_NULL_HANDLE && batch.rayCount > state.maxRays) {
+    if (batch.countBuffer == VK_NULL_HANDLE && batch.rayCount > state.options.width) {
         return wrongBatch(std::to_string(batch.rayCount) + " rays are more than RayStepsOptions::maxRays, " +
-                              std::to_string(state.maxRays),
+                              std::to_string(state.options.width),
                           "split the batch, or make the steps for more rays");
     }
     return checkOutside(state.size, outsideOf(batch));
 }
 
+Status checkRays(const Context::State& context, const FrameSize& size, std::uint32_t maxRays) {
+    const std::uint64_t most = std::min<std::uint64_t>(
+        size.rayPipeline ? maxRayDispatch(context.limits) : std::numeric_limits<std::uint32_t>::max(),
+        context.limits.maxBufferBytes / sizeof(gpu::ShadowRecord));
+    if (maxRays == 0 || listSlots(size) > most) {
+        return wrongBatch("maxRays is " + std::to_string(maxRays),
+                          "use 1 to " + std::to_string(most - (listSlots(size) - listRays(size))));
+    }
+    return okStatus();
+}
+
+std::vector<std::uint32_t> countersAt(const PassState& state, VkDeviceSize offset, std::size_t count) {
+    std::vector<std::uint32_t> values(count);
+    std::memcpy(values.data(), state.frame.readback.mapped + offset, count * sizeof values[0]);
+    return values;
+}
+
 }  // namespace
+
+Status RaySteps::State::choose(const Package& other, NextPackage& made) const {
+    if (other.bindings() != package->bindings() || other.answer() != package->answer() ||
+        other.environmentMap() != package->environmentMap()) {
+        return wrongBatch("the packages differ in bindings, answers or the use of an environment map",
+                          "compile it with the options of the package before, or make other RaySteps");
+    }
+    GLINT_TRY(made.choice, choosePipelines(context, other, options));
+    made.size = frameSize(other, made.choice, options, 0);
+    return checkRays(context, made.size, options.width);
+}
+
+std::vector<std::uint32_t> RaySteps::State::hits() const {
+    return countersAt(*this, counterBytes(size), size.bucketCount);
+}
 
 Result<std::unique_ptr<RaySteps>> RaySteps::create(Context& context, const Package& package,
                                                    EngineScene& scene, const RayStepsOptions& options) try {
     Context::State& contextState = context.state();
-    if (package.passes() != package::Passes::Steps) {
-        return makeError("package-passes", "", "the package draws frames, and has no steps",
-                         "compile it with --passes steps, or use Renderer");
-    }
-    GLINT_TRY_DO(checkRecords(package, scene.state().records));
+    DrawnScene& drawn = scene.state().drawn();
+    GLINT_TRY_DO(checkUse(package::Passes::Steps, package, drawn));
     if (options.layout == VK_NULL_HANDLE) {
         return wrongBatch("there is no pipeline layout", "set RayStepsOptions::layout");
     }
@@ -83,37 +119,38 @@ Result<std::unique_ptr<RaySteps>> RaySteps::create(Context& context, const Packa
     wanted.ordering = options.ordering;
     wanted.checkOrder = options.checkOrder;
     wanted.backgroundPipelines = options.backgroundPipelines;
+    wanted.pipelineThreads = options.pipelineThreads;
+    wanted.draft = false;
     wanted.width = options.maxRays;
     wanted.height = 1;
     GLINT_TRY(auto choice, choosePipelines(contextState, package, wanted));
     const FrameSize size = frameSize(package, choice, wanted, 0);
-    const std::uint64_t most = std::min<std::uint64_t>(
-        size.rayPipeline ? maxRayDispatch(contextState.limits) : std::numeric_limits<std::uint32_t>::max(),
-        contextState.limits.maxBufferBytes / sizeof(gpu::ShadowRecord));
-    if (options.maxRays == 0 || listSlots(size) > most) {
-        return wrongBatch("maxRays is " + std::to_string(options.maxRays),
-                          "use 1 to " + std::to_string(most - (listSlots(size) - listRays(size))));
-    }
-    GLINT_TRY(auto timer, Timer::create(contextState, kMaxFixedPasses + package.caseCount()));
+    GLINT_TRY_DO(checkRays(contextState, size, options.maxRays));
+    const std::uint32_t stretches = timerCapacity(package, size);
+    GLINT_TRY(auto timer, Timer::create(contextState, stretches));
     auto state = std::make_unique<State>(contextState, scene.state(), std::move(timer));
     state->choice = choice;
     state->size = size;
-    state->maxRays = options.maxRays;
+    state->options = wanted;
+    state->options.tracer = choice.tracer;  // for which the host binds its sets
+    state->timerCapacity = stretches;
     state->pushOffset = package.bindings().pushOffset;
     state->tlasByAddress = package.bindings().tlas == package::Bindings::kByAddress;
-    for (const package::CaseEntry& entry : package.cases()) {
-        state->caseNames.emplace_back(package.string(entry.name));
-    }
+    state->caseNames = caseNamesOf(package);
     GLINT_TRY_DO(createFrameResources(contextState, size, state->frame));
     GLINT_TRY(state->pipelines,
               createPipelines(contextState, package, choice, {options.pipelineThreads, false},
-                              scene.state().shaderIds, {{}, options.layout, options.pushStages}));
+                              drawn.shaderIds, {{}, options.layout, options.pushStages}));
+    enter(*state, package);
     return std::unique_ptr<RaySteps>(new RaySteps(std::move(state)));
 }
 GLINT_CATCH
 
 RaySteps::RaySteps(std::unique_ptr<State> state) : state_(std::move(state)) {}
-RaySteps::~RaySteps() = default;
+
+RaySteps::~RaySteps() {
+    leave(*state_);
+}
 
 namespace {
 
@@ -144,7 +181,7 @@ void setRayCount(const PassState& state, VkCommandBuffer commands, const RayBatc
 
 gpu::FrameConstants makeConstants(const RaySteps::State& state, const RayBatch& batch) {
     gpu::FrameConstants constants{};
-    constants.width = state.maxRays;
+    constants.width = state.options.width;
     constants.height = 1;
     constants.sampleIndex = batch.sampleIndex;
     constants.seed = batch.seed;
@@ -176,12 +213,12 @@ gpu::FrameConstants makeConstants(const RaySteps::State& state, const RayBatch& 
 
 Status RaySteps::begin(VkCommandBuffer commands, const RayBatch& batch) try {
     GLINT_TRY_DO(checkBatch(*state_, batch));
-    if (state_->scene.shared != nullptr && state_->scene.shared->package.records != state_->scene.records) {
-        return makeError("package-replaced", "",
-                         "a renderer has replaced the package of the GpuScene whose records these are",
-                         "make the EngineScene and the RaySteps anew with the new package");
-    }
     GLINT_TRY_DO(adoptPipelines(state_->context, state_->pipelines));
+    if (state_->next && joinReplacement(*state_)) {
+        switchPackage(*state_, commands);
+    }
+    GLINT_TRY_DO(checkReplaced(*state_));
+    GLINT_TRY_DO(refreshTables(*state_));
     state_->timed.clear();
     state_->timing = batch.timing;
     if (batch.environment != nullptr) {
@@ -203,6 +240,7 @@ Status RaySteps::begin(VkCommandBuffer commands, const RayBatch& batch) try {
     HitPasses(*state_, passes).dispatchOfList();
     endLabel(state_->context, commands);
     state_->recorded = true;
+    ++state_->recordings;
     return okStatus();
 }
 GLINT_CATCH
@@ -255,20 +293,15 @@ Result<RaySteps::Counters> RaySteps::counters() try {
     if (!state_->recorded) {
         return frameNotRecorded();
     }
-    const std::uint8_t* const read = state_->frame.readback.mapped;
-    const auto counter = [&](std::uint32_t index) {
-        std::uint32_t value = 0;
-        std::memcpy(&value, read + index * sizeof value, sizeof value);
-        return value;
-    };
+    const std::vector<std::uint32_t> values =
+        countersAt(*state_, 0, counterBytes(state_->size) / sizeof(std::uint32_t));
     Counters result;
-    result.rays = counter(gpu::kCounterRays);
-    result.shadowRays = counter(gpu::kCounterShadowRays);
-    result.unknownShader = counter(gpu::kCounterUnknownShader);
-    result.orderErrors = counter(gpu::kCounterOrderErrors);
-    const auto buckets = static_cast<std::uint32_t>(counterBytes(state_->size) / sizeof(std::uint32_t));
-    for (std::uint32_t i = 0; state_->size.ordered && i < state_->size.bucketCount; ++i) {
-        result.bucketCounts.push_back(counter(buckets + i));
+    result.rays = values[gpu::kCounterRays];
+    result.shadowRays = values[gpu::kCounterShadowRays];
+    result.unknownShader = values[gpu::kCounterUnknownShader];
+    result.orderErrors = values[gpu::kCounterOrderErrors];
+    if (state_->size.ordered) {
+        result.bucketCounts = state_->hits();
     }
     return result;
 }
@@ -276,6 +309,23 @@ GLINT_CATCH
 
 Result<std::vector<PassTiming>> RaySteps::timings() try { return passTimings(*state_); }
 GLINT_CATCH
+
+Result<PackageReplacement> RaySteps::replacePackage(std::shared_ptr<const Package> package) try {
+    return beginReplacement(*state_, package);
+}
+GLINT_CATCH
+
+PackageProgress RaySteps::replacementProgress() const {
+    return progressOf(*state_);
+}
+
+std::uint64_t RaySteps::recordings() const {
+    return state_->recordings;
+}
+
+void RaySteps::finished(std::uint64_t recording) {
+    releaseLeftovers(*state_, recording);
+}
 
 package::Tracer RaySteps::tracer() const {
     return state_->choice.tracer;

@@ -202,6 +202,7 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     writer.add(package::SectionKind::Cases, cases);
     writer.add(package::SectionKind::Attributes, spec.attributes);
     writer.add(package::SectionKind::Effects, effects);
+    writer.add(package::SectionKind::Fields, fields);
 
     package::PackageHeader header{};
     std::memcpy(header.magic, package::kMagic, sizeof(header.magic));

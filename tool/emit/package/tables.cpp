@@ -143,6 +143,21 @@ std::vector<FeatureEntry> makeFeatures(const materials::MaterialModel& model, St
     return entries;
 }
 
+std::vector<FieldEntry> makeFields(const MaterialLayout& layout, StringTable& strings) {
+    std::vector<FieldEntry> entries;
+    for (const RecordField& field : layout.fields) {
+        entries.push_back({strings.add(field.name), field.offset,
+                           static_cast<std::uint32_t>(field.channels * sizeof(float))});
+    }
+    std::uint32_t offset = layout.textureOffset;
+    for (const int texture : layout.textures) {
+        const std::string& name = layout.model->textures[static_cast<std::size_t>(texture)].name;
+        entries.push_back({strings.add(name), offset, sizeof(gpu::TextureRecord)});
+        offset += sizeof(gpu::TextureRecord);
+    }
+    return entries;
+}
+
 EmissionEntry emissionOf(const MaterialLayout& layout, const EmitterFeatures& features) {
     const materials::MaterialModel& model = *layout.model;
     const auto offsetOf = [&](std::string_view name) {
@@ -351,6 +366,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     const std::vector<AttributeEntry> attributes = makeAttributes(plan, strings);
     const std::vector<EffectEntry> effects = makeEffects(plan, strings);
     const std::vector<FeatureEntry> features = makeFeatures(*plan.model, strings);
+    const std::vector<FieldEntry> fields = makeFields(layout, strings);
     TableWriter writer;
     writer.add(SectionKind::Modules, moduleEntries);
     writer.add(SectionKind::Materials, layout.bytes, tables.materials);
@@ -363,6 +379,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     writer.add(SectionKind::Attributes, attributes);
     writer.add(SectionKind::Effects, effects);
     writer.add(SectionKind::Features, features);
+    writer.add(SectionKind::Fields, fields);
     if (settings.emissiveLights == EmissiveLights::On) {
         writer.add(SectionKind::Emission, std::vector{emissionOf(layout, plan.emitters)});
     }

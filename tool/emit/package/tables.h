@@ -1,4 +1,4 @@
-// tables.bin: the binary side of a package (runtime/include/glint/package_format.h).
+// tables.bin: the binary side of a package (runtime/include/glint/internal/package_format.h).
 #pragma once
 
 #include "emit/material_layout.h"

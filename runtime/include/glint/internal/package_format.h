@@ -80,7 +80,7 @@ constexpr void forEachEffect(std::uint32_t effects, const Visit& visit) {
 // --- The file ---
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 20;
+inline constexpr std::uint32_t kVersion = 21;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -104,7 +104,8 @@ struct PackageHeader {
     std::uint32_t positionFetch;   // 1: shaders read positions of hit triangles from acceleration structures
     std::uint32_t deforms;         // 1: a scene has meshes that follow skins or morph targets
     ShadingPrecision precision;
-    // A record of a material ends with its gpu::TextureRecords, and the runtime knows no other part of it.
+    // A record of a material ends with its gpu::TextureRecords. Of its other fields the runtime knows names
+    // and places only.
     std::uint32_t materialTextureOffset;  // bytes
     std::uint32_t materialTextureCount;
     Passes passes;
@@ -138,6 +139,7 @@ enum class SectionKind : std::uint32_t {
     Features = 12,   // FeatureEntry: every feature of materials that the compiler knew, by ascending bits
     Opacity = 13,    // one OpacityEntry, in packages that test alpha by Glint's own code
     Layers = 14,     // LayerEntry (glint/layers.h), by the index of their images, in packages with layers
+    Fields = 15,     // FieldEntry: every field and every texture of a material's record, by ascending offsets
 };
 
 struct PackageSection {
@@ -252,6 +254,14 @@ struct FeatureEntry {
     StringRef name;      // in the manifest: "baseColorTexture"
 };
 
+// A field of the records of materials, or one of their textures, by which values find their place in the
+// records of another package.
+struct FieldEntry {
+    StringRef name;        // of the parameter or the texture: "clearcoatFactor"
+    std::uint32_t offset;  // in a record, bytes
+    std::uint32_t bytes;
+};
+
 static_assert(sizeof(PackageHeader) == 160);
 static_assert(sizeof(PackageSection) == 24);
 static_assert(sizeof(ModuleEntry) == 40);
@@ -264,6 +274,7 @@ static_assert(sizeof(AttributeEntry) == 40);
 static_assert(sizeof(EffectEntry) == 24);
 static_assert(sizeof(EmissionEntry) == 48);
 static_assert(sizeof(FeatureEntry) == 16);
+static_assert(sizeof(FieldEntry) == 16);
 static_assert(sizeof(OpacityEntry) == 40);
 
 }  // namespace glint::package

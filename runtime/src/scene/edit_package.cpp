@@ -1,0 +1,330 @@
+// Another package of a scene that is edited: its tables for what was uploaded, and for what edits have made.
+#include "data/materials.h"
+#include "package/package.h"
+#include "scene/scene_store.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <utility>
+
+namespace glint {
+namespace {
+
+constexpr const char* kCompileFor =
+    "compile the package for the scene as it is now, or upload the scene anew";
+
+Diagnostic otherContent(std::string where, std::string what) {
+    return makeError("scene-package", std::move(where), std::move(what), kCompileFor);
+}
+
+// The bits of one package's features in the keys of another, by their names.
+class FeatureMap {
+public:
+    FeatureMap(const Package& from, const Package& to) : from_(from) {
+        for (std::uint32_t bit = 0; bit < bits_.size(); ++bit) {
+            const std::vector<std::string> names = from.featureNames(std::uint64_t{1} << bit);
+            for (std::uint32_t other = 0; other < bits_.size() && !names.empty(); ++other) {
+                // Most packages have the same bits.
+                const std::uint64_t mask = std::uint64_t{1} << (bit + other) % bits_.size();
+                if (to.featureNames(mask) == names) {
+                    bits_[bit] = mask;
+                    break;
+                }
+            }
+        }
+    }
+    // Error "scene-edit-feature".
+    Result<std::uint64_t> find(std::uint64_t features, const std::string& where) const {
+        std::uint64_t found = 0;
+        std::uint64_t unknown = 0;
+        for (std::uint64_t rest = features; rest != 0; rest &= rest - 1) {
+            const std::uint64_t mask = bits_[static_cast<std::size_t>(std::countr_zero(rest))];
+            found |= mask;
+            unknown |= mask == 0 ? rest & ~(rest - 1) : 0;
+        }
+        if (unknown != 0) {
+            std::string names;
+            for (const std::string& name : from_.featureNames(unknown)) {
+                names += (names.empty() ? "" : ", ") + name;
+            }
+            return makeError("scene-edit-feature", where,
+                             "the package does not know these features: " + names,
+                             "compile the package with the packs of the one before");
+        }
+        return found;
+    }
+
+private:
+    const Package& from_;
+    std::array<std::uint64_t, 64> bits_{};
+};
+
+class TableMaker {
+public:
+    TableMaker(const SceneStore& store, const std::shared_ptr<const Package>& package,
+               const PackageScene& known)
+        : store_(store),
+          package_(*package),
+          known_(known),
+          layout_(package->scene(0).materials.part(0, 0)),
+          fields_(recordFields(*package)),
+          features_(store.cases->package(), *package),
+          tables_{
+              CaseTable(package), store.materialSlots, store.firstMaterials, recordsLike(store), {}, {}, {}} {
+    }
+
+    Result<EditedTables> make() {
+        if (package_.trustTextures() && store_.otherTexels) {
+            return makeError("texture-trusted", "",
+                             "an edit has replaced a texture, and the package relies on what textures hold",
+                             "compile it with --no-trust-textures, or with --fallback");
+        }
+        addMaterials();
+        GLINT_TRY_DO(fillMaterials());
+        addKeys();
+        GLINT_TRY_DO(moveMeshes());
+        countTextures();
+        GLINT_TRY_DO(checkShading());
+        return std::move(tables_);
+    }
+
+private:
+    // A store of records of the new size, with the old ones if that is the same.
+    RecordStore recordsLike(const SceneStore& store) const {
+        if (layout_.recordBytes == store.materials.stride()) {
+            return store.materials;
+        }
+        RecordStore records(layout_.recordBytes);
+        records.firstCapacity = store.materials.firstCapacity;
+        return records;
+    }
+
+    // The package may have more materials than the one before.
+    void addMaterials() {
+        while (tables_.firstMaterials.size() < known_.materials.size()) {
+            tables_.firstMaterials.push_back(tables_.materialSlots.add({}));
+        }
+    }
+
+    Status fillMaterials() {
+        std::map<std::uint32_t, std::uint32_t> numbers;  // in the package, by index
+        for (std::uint32_t i = 0; i < known_.materials.size(); ++i) {
+            const MaterialHandle handle = tables_.firstMaterials[i];
+            if (tables_.materialSlots.find(handle) != nullptr) {
+                numbers.emplace(handle.index, i);
+            }
+        }
+        Status status = okStatus();
+        tables_.materialSlots.forEach([&](MaterialHandle handle, StoredMaterial& material) {
+            const auto number = numbers.find(handle.index);
+            if (!status) {
+                return;
+            }
+            status = number == numbers.end() || material.isOwn
+                         ? carryMaterial(handle.index, material)
+                         : takeMaterial(handle.index, number->second, material);
+        });
+        return status;
+    }
+
+    // The fields that the old record has too.
+    void carry(std::uint32_t index, std::span<std::uint8_t> record) const {
+        if (store_.materialSlots.has(index)) {
+            carryFields(store_.scene.package.fields, store_.materials.at(index), fields_, record);
+        }
+    }
+
+    // An edit has added or replaced the material: it stays as it is.
+    Status carryMaterial(std::uint32_t index, StoredMaterial& material) {
+        const std::string where = placeOf("material", index);
+        const Package& before = store_.cases->package();
+        if (before.alpha() != package_.alpha() || before.shadowThrough() != package_.shadowThrough()) {
+            return otherContent(where,
+                                "an edit has made the material, and the packages differ in how rays treat "
+                                "alpha or glass, on which its keys depend");
+        }
+        for (MaterialKey& key : material.keys) {
+            GLINT_TRY(key.features, features_.find(key.features, where));
+            GLINT_TRY(key.hitFeatures, features_.find(key.hitFeatures, where));
+            GLINT_TRY_DO(tables_.cases.checkAttributes(key, where));
+        }
+        std::vector<TextureUse> uses;
+        for (TextureUse use : material.textures) {
+            if (const std::optional<std::uint32_t> slot = slotOf(use.slot)) {
+                use.slot = *slot;
+                uses.push_back(use);
+            }
+        }
+        material.textures = std::move(uses);
+        std::vector<std::uint8_t> record(layout_.recordBytes);
+        carry(index, record);
+        settleTextures(store_, layout_, material.textures, record);
+        write(index, record);
+        return okStatus();
+    }
+
+    // The material is the package's, apart from the values that it has been given.
+    Status takeMaterial(std::uint32_t index, std::uint32_t number, StoredMaterial& material) {
+        material.textures = usesOf(store_, known_.materials, number);
+        for (const TextureUse& use : material.textures) {
+            if (store_.textures.find(use.texture) == nullptr) {
+                return otherContent(placeOf("material", index), "an edit has removed a texture of it");
+            }
+        }
+        const std::span<const std::uint8_t> given = known_.materials.part(number, 1).bytes;
+        std::vector<std::uint8_t> record(given.begin(), given.end());
+        if (material.hasOwnValues) {
+            std::vector<std::uint8_t> values = record;
+            carry(index, values);
+            takeValues(values, layout_, record);
+        }
+        settleTextures(store_, layout_, material.textures, record);
+        write(index, record);
+        material.keys.clear();
+        return okStatus();
+    }
+
+    void write(std::uint32_t index, std::span<const std::uint8_t> record) {
+        RecordStore& records = tables_.materials;
+        if (index >= records.count() || !std::ranges::equal(records.at(index), record)) {
+            records.writeBytes(index, record);
+        }
+    }
+
+    // Returns the place in the new records of a texture of the old ones, if they have it.
+    std::optional<std::uint32_t> slotOf(std::uint32_t slot) const {
+        const MaterialTable& before = store_.scene.materialLayout;
+        const auto offset =
+            static_cast<std::uint32_t>(before.textureOffset + slot * sizeof(gpu::TextureRecord));
+        const std::vector<RecordField>& fields = store_.scene.package.fields;
+        const auto old = std::ranges::find(fields, offset, &RecordField::offset);
+        const auto field =
+            old == fields.end() ? fields_.end() : std::ranges::find(fields_, old->name, &RecordField::name);
+        if (field == fields_.end() || field->offset < layout_.textureOffset) {
+            return std::nullopt;
+        }
+        return static_cast<std::uint32_t>((field->offset - layout_.textureOffset) /
+                                          sizeof(gpu::TextureRecord));
+    }
+
+    // Materials of the package have the keys of its primitives.
+    void addKeys() {
+        for (const auto& [entry, attributes] : store_.firstAttributes) {
+            const MaterialHandle handle = tables_.firstMaterials[known_.primitives[entry].materialIndex];
+            StoredMaterial* const material = tables_.materialSlots.find(handle);
+            if (material != nullptr && !material->isOwn) {
+                addKey(*material, known_.primitives[entry], attributes);
+            }
+        }
+    }
+
+    // Gives primitives the material that the package says, unless an edit has given them another one.
+    Status moveMeshes() {
+        Status status = okStatus();
+        store_.meshes.forEach([&](MeshHandle handle, const StoredMesh& mesh) {
+            std::vector<MaterialHandle> materials;
+            for (const StoredPrimitive& primitive : mesh.primitives) {
+                materials.push_back(primitive.material);
+                if (primitive.entryIndex == StoredPrimitive::kNoEntry) {
+                    continue;
+                }
+                const std::uint32_t before = store_.scene.package.entries[primitive.entryIndex].materialIndex;
+                const std::uint32_t after = known_.primitives[primitive.entryIndex].materialIndex;
+                const MaterialHandle wanted = tables_.firstMaterials[after];
+                if (primitive.material != store_.firstMaterials[before] || primitive.material == wanted) {
+                    continue;
+                }
+                if (tables_.materialSlots.find(wanted) == nullptr) {
+                    status = otherContent(placeOf("mesh", handle.index),
+                                          "an edit has removed the material that the package gives it");
+                    return;
+                }
+                countUse(tables_.materialSlots, primitive.material, &StoredMaterial::meshes, handle.index,
+                         false);
+                countUse(tables_.materialSlots, wanted, &StoredMaterial::meshes, handle.index, true);
+                materials.back() = wanted;
+            }
+            if (!mesh.primitives.empty()) {
+                tables_.meshMaterials.emplace(handle.index, std::move(materials));
+            }
+        });
+        return status;
+    }
+
+    void countTextures() {
+        tables_.textureUses.resize(store_.textures.end());
+        tables_.materialSlots.forEach([&](MaterialHandle /*handle*/, const StoredMaterial& material) {
+            for (const TextureUse& use : material.textures) {
+                ++tables_.textureUses[use.texture.index];
+            }
+        });
+    }
+
+    Status checkUse(MaterialHandle handle, AttributeMask attributes) {
+        const StoredMaterial& material = *tables_.materialSlots.find(handle);
+        GLINT_TRY(const auto shading,
+                  shadingBy(tables_.cases, material.keys, attributes, placeOf("material", handle.index)));
+        addTo(tables_.report, tables_.cases, handle, shading);
+        return okStatus();
+    }
+
+    // Checks that there is a shader for everything that may be seen.
+    Status checkShading() {
+        Status status = okStatus();
+        store_.meshes.forEach([&](MeshHandle handle, const StoredMesh& mesh) {
+            for (std::size_t i = 0; i < mesh.primitives.size() && status; ++i) {
+                status = checkUse(tables_.meshMaterials.at(handle.index)[i], mesh.primitives[i].attributes);
+            }
+        });
+        store_.instanceSlots.forEach([&](InstanceHandle /*handle*/, const StoredInstance& instance) {
+            for (std::size_t i = 0; i < instance.materials.size() && status; ++i) {
+                if (instance.materials[i].generation != 0) {
+                    const StoredMesh& mesh = *store_.meshes.find(instance.mesh);
+                    status = checkUse(instance.materials[i], mesh.primitives[i].attributes);
+                }
+            }
+        });
+        return status;
+    }
+
+    const SceneStore& store_;
+    const Package& package_;
+    const PackageScene& known_;
+    MaterialTable layout_;
+    std::vector<RecordField> fields_;
+    FeatureMap features_;
+    EditedTables tables_;
+};
+
+}  // namespace
+
+void addKey(StoredMaterial& material, const package::PrimitiveEntry& entry, AttributeMask attributes) {
+    if (std::ranges::find(material.keys, attributes, &MaterialKey::attributes) == material.keys.end()) {
+        const std::uint64_t features = std::uint64_t{entry.featureInputs} << 32U | entry.featureLobes;
+        material.keys.push_back({attributes, features, features, entry.geometryFlags});
+    }
+}
+
+Result<EditedTables> editedTables(const SceneStore& store, const std::shared_ptr<const Package>& package,
+                                  const PackageScene& known) {
+    return TableMaker(store, package, known).make();
+}
+
+void exchangeTables(SceneStore& store, EditedTables& tables) {
+    std::swap(*store.cases, tables.cases);
+    std::swap(store.materialSlots, tables.materialSlots);
+    std::swap(store.firstMaterials, tables.firstMaterials);
+    std::swap(store.materials, tables.materials);
+    for (auto& [mesh, materials] : tables.meshMaterials) {
+        for (std::size_t i = 0; i < materials.size(); ++i) {
+            std::swap(store.meshes.at(mesh).primitives[i].material, materials[i]);
+        }
+    }
+    store.textures.forEach([&](TextureHandle handle, StoredTexture& texture) {
+        std::swap(texture.uses, tables.textureUses[handle.index]);
+    });
+    store.trustsTextures = store.cases->package().trustTextures();
+}
+
+}  // namespace glint

@@ -1,0 +1,420 @@
+// An engine's scene whose content changes while frames are in flight, and RaySteps that replace their
+// package.
+#include "context/commands.h"
+#include "render/edited_scene.h"
+#include "render/harness.h"
+#include "render/replacement.h"
+#include "render/scene_builder.h"
+#include "scene/scene_store.h"
+
+#include <glint/session/scene_view.h>
+#include <glint/steps.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+
+constexpr std::uint32_t kColumns = 24;
+constexpr std::uint32_t kRows = 16;
+constexpr std::uint32_t kRays = kColumns * kRows;
+constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_ALL;
+
+compiler::CompileSettings stepSettings() {
+    compiler::CompileSettings settings = roomSettings(package::kStrategyUber | package::kStrategyHitShaders);
+    settings.passes = package::Passes::Steps;
+    settings.effects = {false, compiler::builtinEffects({"shadow"})};
+    return settings;
+}
+
+// The room of replacement.h with two textured squares.
+gltf::Scene texturedRoom() {
+    gltf::Scene scene = roomScene();
+    for (const float x : {-1.5F, 0.5F}) {
+        materials::Material material = glossyMaterial({0.9F, 0.9F, 0.9F});
+        const bool isFirst = x < 0.0F;
+        material.texture("baseColorTexture").texture =
+            isFirst ? addTexture(scene, 2, 1, {255, 40, 40, 255, 40, 40, 255, 255})
+                    : addTexture(scene, 1, 2, {40, 255, 40, 255, 200, 200, 40, 255});
+        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), {x, -0.5F, -3.5F}, {1, 0, 0},
+                                                   {0, 1, 0})));
+    }
+    return scene;
+}
+
+// A scene that Glint has uploaded, and the same as an engine would have it.
+struct Content {
+    std::unique_ptr<GpuScene> gpu;
+    std::vector<EngineGeometryView> geometries;
+    std::vector<std::array<float, 12>> instances;
+    std::vector<LightView> lights;
+    std::vector<EngineTextureView> textures;
+    std::vector<EngineSamplerView> samplers;
+
+    EngineSceneView view() const {
+        EngineSceneView view;
+        view.geometries = geometries;
+        view.instances = instances;
+        view.lights = lights;
+        view.textures = textures;
+        view.samplers = samplers;
+        return view;
+    }
+};
+
+template <typename Change>
+Content contentOf(const Package& package, const gltf::Scene& scene, const Change& change) {
+    session::SceneViewData data = session::makeSceneView(scene);
+    data.vertices = VertexForm::Full;
+    change(data);
+    const SceneView view = data.view();
+    Content content;
+    content.gpu = uploadScene(package, view);
+    if (content.gpu == nullptr) {
+        return content;
+    }
+    const GpuScene::State& state = content.gpu->state();
+    for (std::uint32_t i = 0; i < state.store->geometries.count(); ++i) {
+        const auto record = state.store->geometries.read<gpu::GeometryRecord>(i);
+        const GeometryPlace place = *placeOf(state, i);
+        content.geometries.push_back({place.mesh, place.primitive, record.instanceIndex, record.indices,
+                                      record.positions, record.normals, record.tangents, record.texCoords0,
+                                      record.texCoords1, record.colors, record.attributes});
+    }
+    for (const InstanceView& instance : view.instances) {
+        content.instances.push_back(instance.objectToWorld);
+    }
+    content.lights = data.lights;
+    const PackageScene known = package.scene(0);
+    for (std::uint32_t i = 0; i < known.textures.size(); ++i) {
+        const ImageView& image = view.images[known.textures[i].image];
+        content.textures.push_back({i, image.width, image.height});
+    }
+    for (std::uint32_t i = 0; i < known.samplers.size(); ++i) {
+        content.samplers.push_back({i, sharedContext().state().limits.samplerAnisotropy});
+    }
+    return content;
+}
+
+// An engine with two frames in flight, which asks for the light of the same rays in each.
+class Engine {
+public:
+    explicit Engine(const GpuScene& like)
+        : context_(sharedContext().state()), pool_(context_), frames_(sharedContext()) {
+        const VkDescriptorSetLayout set = like.descriptorSetLayout();
+        const VkPushConstantRange range{kStages, 0, RaySteps::kPushBytes};
+        VkPipelineLayoutCreateInfo info{};
+        info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+        info.setLayoutCount = 1;
+        info.pSetLayouts = &set;
+        info.pushConstantRangeCount = 1;
+        info.pPushConstantRanges = &range;
+        VkPipelineLayout layout = VK_NULL_HANDLE;
+        EXPECT_EQ(context_.vk.CreatePipelineLayout(context_.handles.device, &info, nullptr, &layout),
+                  VK_SUCCESS);
+        layout_ = UniquePipelineLayout(context_, layout);
+        rays_ = make(kRays * sizeof(EngineRay), MemoryUse::Upload);
+        for (std::uint32_t i = 0; i < kRays; ++i) {
+            const float x = (static_cast<float>(i % kColumns) + 0.5F) / kColumns - 0.5F;
+            const float y = (static_cast<float>(i / kColumns) + 0.5F) / kRays * kColumns - 0.5F;
+            const float length = std::sqrt(x * x + y * y + 1.0F);
+            const EngineRay ray{{0, 0, 0}, i, {x / length, y / length, -1.0F / length}, 0.0F, 0.05F};
+            std::memcpy(rays_.mapped + i * sizeof ray, &ray, sizeof ray);
+        }
+    }
+    std::unique_ptr<RaySteps> makeSteps(const Package& package, EngineScene& scene,
+                                        package::Strategy strategy) {
+        RayStepsOptions options;
+        options.strategy = strategy;
+        options.tracer = strategy == package::kStrategyUber ? tracerOfDevice() : package::kTracerRayPipeline;
+        options.maxRays = kRays;
+        options.layout = layout_.get();
+        options.pushStages = kStages;
+        auto steps = RaySteps::create(sharedContext(), package, scene, options);
+        EXPECT_TRUE(steps) << (steps ? "" : toString(steps.error()));
+        return steps ? std::move(*steps) : nullptr;
+    }
+    VkCommandBuffer begin() {
+        return commands_ = frames_.begin();
+    }
+    std::uint64_t frame() const {
+        return frames_.frame();
+    }
+    std::uint64_t completed() const {
+        return frames_.completed();
+    }
+    // Records a batch over the structures and textures of a GpuScene. Its answers get the next number.
+    Status ask(RaySteps& steps, const GpuScene& bound) {
+        const VkDescriptorSet set = bound.descriptorSet();
+        for (const VkPipelineBindPoint point :
+             {VK_PIPELINE_BIND_POINT_COMPUTE, VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR}) {
+            context_.vk.CmdBindDescriptorSets(commands_, point, layout_.get(), 0, 1, &set, 0, nullptr);
+        }
+        answers_.push_back(make(kRays * sizeof(EngineRadiance), MemoryUse::Readback));
+        RayBatch batch;
+        batch.rays = rays_.address;
+        batch.rayCount = kRays;
+        batch.answers = answers_.back().address;
+        const Status status = steps.record(commands_, batch);
+        recordDependency(context_, commands_,
+                         {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
+                          VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
+        return status;
+    }
+    void submit() {
+        frames_.submit();
+    }
+    void drain() {
+        frames_.drain();
+    }
+    std::vector<float> answers(std::size_t number) const {
+        std::vector<float> values(kRays * sizeof(EngineRadiance) / sizeof(float));
+        std::memcpy(values.data(), answers_[number].mapped, values.size() * sizeof(float));
+        return values;
+    }
+    // The answers by steps of their own over a scene that Glint has uploaded.
+    std::vector<float> expected(const Package& package, GpuScene& scene, package::Strategy strategy) {
+        auto shared = EngineScene::share(sharedContext(), scene);
+        const auto steps = makeSteps(package, **shared, strategy);
+        if (steps == nullptr) {
+            return {};
+        }
+        begin();
+        EXPECT_TRUE(ask(*steps, scene));
+        submit();
+        drain();
+        std::vector<float> found = answers(answers_.size() - 1);
+        answers_.pop_back();
+        return found;
+    }
+
+private:
+    Buffer make(std::size_t bytes, MemoryUse use) {
+        Result<Buffer> buffer = createBuffer(context_, pool_, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, use);
+        EXPECT_TRUE(buffer) << toString(buffer.error());
+        return std::move(*buffer);
+    }
+
+    Context::State& context_;
+    MemoryPool pool_;
+    UniquePipelineLayout layout_;
+    Buffer rays_;
+    std::vector<Buffer> answers_;
+    TwoFrames frames_;
+    VkCommandBuffer commands_ = VK_NULL_HANDLE;
+};
+
+// The strategies that the device can run with steps of both kinds of shader binding tables.
+std::vector<package::Strategy> strategiesOfDevice() {
+    const bool hasPipelines = (sharedContext().handles().tracers & package::kTracerRayPipeline) != 0;
+    return hasPipelines ? std::vector{package::kStrategyUber, package::kStrategyHitShaders}
+                        : std::vector{package::kStrategyUber};
+}
+
+void keepAll(session::SceneViewData& /*data*/) {}
+
+void expectOthers(const std::vector<float>& first, const std::vector<float>& second) {
+    EXPECT_NE(first, second) << "the contents look alike";
+}
+
+// Fewer and more instances, geometries and lights, other textures and transforms.
+TEST(EngineSceneContent, FramesInFlightKeepTheirs) {
+    const gltf::Scene room = texturedRoom();
+    const std::shared_ptr<const Package> package = packageOf(room, stepSettings());
+    ASSERT_NE(package, nullptr);
+    const Content small =
+        contentOf(*package, room, [](session::SceneViewData& data) { data.instances.resize(2); });
+    const Content large = contentOf(*package, room, [](session::SceneViewData& data) {
+        for (int i = 0; i < 3; ++i) {
+            InstanceView copy = data.instances.back();
+            copy.objectToWorld[3] += 0.2F * static_cast<float>(i) - 1.0F;
+            copy.objectToWorld[7] += 0.8F;
+            data.instances.push_back(copy);
+            LightView light;
+            light.type = LightView::Type::Point;
+            light.position = {static_cast<float>(i) - 1.0F, 0.5F, -2.0F};
+            light.intensity = {1.0F, 0.5F, 0.2F};
+            data.lights.push_back(light);
+        }
+    });
+    const Content repainted = contentOf(
+        *package, room, [](session::SceneViewData& data) { std::swap(data.images[0], data.images[1]); });
+    ASSERT_TRUE(small.gpu != nullptr && large.gpu != nullptr && repainted.gpu != nullptr);
+    for (const package::Strategy strategy : strategiesOfDevice()) {
+        Engine engine(*small.gpu);
+        const std::array wanted{engine.expected(*package, *small.gpu, strategy),
+                                engine.expected(*package, *large.gpu, strategy),
+                                engine.expected(*package, *repainted.gpu, strategy)};
+        expectOthers(wanted[0], wanted[1]);
+        expectOthers(wanted[1], wanted[2]);
+        VkCommandBuffer commands = engine.begin();
+        auto scene = EngineScene::record(sharedContext(), *package, small.view(), commands, engine.frame());
+        ASSERT_TRUE(scene) << toString(scene.error());
+        const std::uint64_t bytes = (*scene)->bytes();
+        const auto steps = engine.makeSteps(*package, **scene, strategy);
+        ASSERT_NE(steps, nullptr);
+        std::vector<std::size_t> order{0};
+        FinishedRecordings finished;
+        ASSERT_TRUE(engine.ask(*steps, *small.gpu));
+        engine.submit();
+        const std::array contents{&small, &large, &repainted};
+        for (const std::size_t next : {1U, 0U, 2U, 1U, 1U}) {
+            commands = engine.begin();
+            (*scene)->complete(engine.completed());
+            finished.completed(*steps, engine.completed());
+            const Content& content = *contents[next];
+            const bool isSame = order.back() == next;
+            const Status updated =
+                isSame ? (*scene)->update(commands, content.instances, content.lights, engine.frame())
+                       : (*scene)->update(commands, *package, content.view(), engine.frame());
+            ASSERT_TRUE(updated) << toString(updated.error());
+            ASSERT_TRUE(engine.ask(*steps, *content.gpu));
+            finished.recorded(*steps, engine.frame());
+            engine.submit();
+            order.push_back(next);
+        }
+        engine.drain();
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            EXPECT_EQ(engine.answers(i), wanted[order[i]]) << "frame " << i;
+        }
+        EXPECT_GT((*scene)->bytes(), bytes);
+        (*scene)->complete(engine.completed());
+        const Status refused = (*scene)->update(VK_NULL_HANDLE, small.instances, {}, engine.frame());
+        ASSERT_FALSE(refused) << "the geometries name more instances";
+        EXPECT_EQ(refused.error().id, "engine-scene");
+        EXPECT_EQ((*scene)->update(VK_NULL_HANDLE, large.instances, {}, 0).error().id, "engine-scene")
+            << "the frame's number has fallen";
+    }
+    expectNoValidationMessages();
+}
+
+// The room with another material, whose records are longer, and merged cases.
+std::pair<gltf::Scene, compiler::CompileSettings> otherCompilation() {
+    gltf::Scene scene = texturedRoom();
+    giveSheen(scene.materials[kGlossy]);
+    scene.materials[kGlossy]["baseColorFactor"] = {0.2F, 0.7F, 0.9F, 1.0F};
+    compiler::CompileSettings settings = stepSettings();
+    settings.plan.merge = compiler::MergePolicy::All;
+    return {std::move(scene), settings};
+}
+
+TEST(RayStepsReplacement, BatchesUseTheNewPackageAtOnce) {
+    const gltf::Scene room = texturedRoom();
+    const auto [changed, settings] = otherCompilation();
+    const std::shared_ptr<const Package> original = packageOf(room, stepSettings());
+    const std::shared_ptr<const Package> other = packageOf(changed, settings);
+    ASSERT_TRUE(original != nullptr && other != nullptr);
+    ASSERT_NE(original->scene(0).materials.recordBytes, other->scene(0).materials.recordBytes);
+    const Content content = contentOf(*original, room, keepAll);
+    const Content after = contentOf(*other, changed, keepAll);
+    ASSERT_TRUE(content.gpu != nullptr && after.gpu != nullptr);
+    for (const package::Strategy strategy : strategiesOfDevice()) {
+        Engine engine(*content.gpu);
+        const std::array wanted{engine.expected(*original, *content.gpu, strategy),
+                                engine.expected(*other, *after.gpu, strategy)};
+        expectOthers(wanted[0], wanted[1]);
+        const VkCommandBuffer commands = engine.begin();
+        auto scene =
+            EngineScene::record(sharedContext(), *original, content.view(), commands, engine.frame());
+        ASSERT_TRUE(scene) << toString(scene.error());
+        const auto steps = engine.makeSteps(*original, **scene, strategy);
+        const auto second = engine.makeSteps(*original, **scene, strategy);
+        ASSERT_TRUE(steps != nullptr && second != nullptr);
+        std::vector<std::size_t> order;
+        FinishedRecordings finished;
+        for (const std::size_t number : {0U, 0U, 1U, 1U, 0U, 1U}) {
+            if (!order.empty()) {
+                engine.begin();
+                (*scene)->complete(engine.completed());
+                finished.completed(*steps, engine.completed());
+            }
+            const bool switches = !order.empty() && order.back() != number;
+            if (switches) {
+                const auto replaced = steps->replacePackage(number == 0 ? original : other);
+                ASSERT_TRUE(replaced) << toString(replaced.error());
+                EXPECT_TRUE(steps->replacementProgress().ready);
+            }
+            // The second one switches with the first.
+            ASSERT_TRUE(engine.ask(*steps, *content.gpu));
+            ASSERT_TRUE(engine.ask(*second, *content.gpu));
+            order.push_back(number);
+            finished.recorded(*steps, engine.frame());
+            order.push_back(number);
+            engine.submit();
+        }
+        EXPECT_EQ(steps->replacementProgress().inUse, 3U);
+        engine.drain();
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            EXPECT_EQ(engine.answers(i), wanted[order[i]]) << "batch " << i;
+        }
+        // Another package of the same records suits an engine that gives its content by update().
+        compiler::CompileSettings unlike = settings;
+        unlike.answer = package::HitAnswer::Surface;
+        const auto refused = steps->replacePackage(packageOf(changed, unlike));
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().id, "ray-steps");
+    }
+    expectNoValidationMessages();
+}
+
+// A scene that Glint has uploaded is shared by RaySteps and a Renderer, whose packages are of the same scene.
+TEST(RayStepsReplacement, ARendererOfTheSceneLeadsOrFollows) {
+    const gltf::Scene room = texturedRoom();
+    const auto [changed, settings] = otherCompilation();
+    compiler::CompileSettings frames = stepSettings();
+    frames.passes = package::Passes::Frame;
+    compiler::CompileSettings otherFrames = frames;
+    otherFrames.plan.merge = settings.plan.merge;
+    const std::array ofSteps{packageOf(room, stepSettings()), packageOf(changed, settings)};
+    const std::array ofFrames{packageOf(room, frames), packageOf(changed, otherFrames)};
+    const Content after = contentOf(*ofSteps[1], changed, keepAll);
+    for (const bool editable : {false, true}) {
+        const auto scene = uploadScene(*ofSteps[0], room, [&](SceneView& view) { view.editable = editable; });
+        ASSERT_TRUE(scene != nullptr && after.gpu != nullptr);
+        Engine engine(*scene);
+        const std::array wanted{engine.expected(*ofSteps[0], *scene, package::kStrategyUber),
+                                engine.expected(*ofSteps[1], *after.gpu, package::kStrategyUber)};
+        auto shared = EngineScene::share(sharedContext(), *scene);
+        const auto steps = engine.makeSteps(*ofSteps[0], **shared, package::kStrategyUber);
+        RendererOptions options;
+        options.width = options.height = 16;
+        options.strategy = package::kStrategyUber;
+        const auto renderer = makeRenderer(*ofFrames[0], *scene, options);
+        ASSERT_TRUE(steps != nullptr && renderer != nullptr);
+        const FrameOptions frame = defaultSetup(room, 16, 16).frame;
+        ASSERT_TRUE(renderer->replacePackage(ofFrames[1]));
+        const LinearImage image = drawn(*renderer, frame);
+        engine.begin();
+        const Status stale = engine.ask(*steps, *scene);
+        ASSERT_FALSE(stale);
+        EXPECT_EQ(stale.error().id, "package-replaced");
+        ASSERT_TRUE(steps->replacePackage(ofSteps[1]));
+        ASSERT_TRUE(engine.ask(*steps, *scene));
+        engine.submit();
+        engine.drain();
+        EXPECT_EQ(engine.answers(1), wanted[1]);
+        // And back, by the steps first.
+        ASSERT_TRUE(steps->replacePackage(ofSteps[0]));
+        engine.begin();
+        ASSERT_TRUE(engine.ask(*steps, *scene));
+        engine.submit();
+        engine.drain();
+        EXPECT_EQ(engine.answers(2), wanted[0]);
+        const auto refused = renderer->render(frame);
+        ASSERT_FALSE(refused);
+        EXPECT_EQ(refused.error().id, "package-replaced");
+        ASSERT_TRUE(renderer->replacePackage(ofFrames[0]));
+        EXPECT_TRUE(differ(drawn(*renderer, frame), image));
+    }
+    expectNoValidationMessages();
+}
+
+}  // namespace
