@@ -26,6 +26,8 @@ namespace glint {
 
 class Environment;
 class GpuScene;
+struct PackageProgress;     // glint/scene.h
+struct PackageReplacement;  // as well
 
 // --- The scene of a host ---
 
