@@ -333,6 +333,11 @@ TEST(Tables, HoldWhatTheHeaderSays) {
     ASSERT_EQ(cases.size(), compiled.plan.cases.size());
     EXPECT_EQ(text(cases[1].name), compiled.plan.cases[1].name);
     EXPECT_EQ(reader.count(SectionKind::Materials), 4U);
+    const auto fields = reader.read<package::FieldEntry>(SectionKind::Fields);
+    const compiler::MaterialLayout layout = compiler::materialLayoutOf(compiled.plan);
+    ASSERT_EQ(fields.size(), layout.fields.size() + layout.textures.size());
+    EXPECT_EQ(text(fields[0].name), layout.fields[0].name);
+    EXPECT_EQ(fields.back().offset + fields.back().bytes, layout.bytes);
 
     const auto samplers = reader.read<package::SamplerEntry>(SectionKind::Samplers);
     ASSERT_EQ(samplers.size(), 2U);

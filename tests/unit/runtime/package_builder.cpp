@@ -191,6 +191,10 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
         effects[i].name =
             addString(strings, i < std::size(kEffects) ? std::string(kEffects[i].name) : "further");
     }
+    std::vector<package::FieldEntry> fields = spec.fields;
+    for (package::FieldEntry& field : fields) {
+        field.name = addString(strings, "field " + std::to_string(field.offset));
+    }
     Writer writer;
     writer.add(package::SectionKind::Modules, modules);
     writer.add(package::SectionKind::Scenes, scenes);

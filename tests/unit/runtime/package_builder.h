@@ -68,6 +68,7 @@ struct PackageSpec {
     std::vector<package::SamplerEntry> samplers;
     std::vector<package::AttributeEntry> attributes;
     std::vector<package::EffectEntry> effects;  // their names are the builder's
+    std::vector<package::FieldEntry> fields;    // the same
     std::vector<CaseSpec> cases;
     std::vector<SceneSpec> scenes;  // empty: one, named "scene", that has all elements
 };

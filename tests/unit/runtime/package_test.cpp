@@ -50,6 +50,7 @@ PackageSpec makeRichSpec() {
     spec.samplers = {{0, 1, 1, 1, 1, 1}};
     spec.materials[0].textures[0].textureIndex = 1;
     spec.primitives = {test::makePrimitive(0, 0, gpu::kGeometryAlphaTested), test::makePrimitive(2, 1)};
+    spec.fields = {{{}, 0, 4}, {{}, 4, sizeof(gpu::TextureRecord)}};
     return spec;
 }
 
@@ -73,6 +74,8 @@ TEST_F(PackageTest, LoadsAValidPackage) {
     EXPECT_TRUE(package.supports(package::kStrategyUber));
     EXPECT_TRUE(package.supports(package::kStrategyVisibility));
     EXPECT_TRUE(package.alphaTested());
+    ASSERT_EQ(package.fields().size(), 2U);
+    EXPECT_EQ(package.string(package.fields()[1].name), "field 4");
     EXPECT_EQ(package.precision(), package::ShadingPrecision::Half);
     EXPECT_EQ(package.caseCount(), 2U);
     EXPECT_EQ(package.bucketCount(), 3U);
@@ -344,6 +347,9 @@ TEST_F(PackageTest, BrokenPromisesAreErrors) {
              s.cases[0].always |= std::uint64_t{1} << 40;
              s.cases[0].sometimes &= ~(std::uint64_t{1} << 40);
          }},
+        {"field beyond the record", [](PackageSpec& s) { s.fields[1].offset = sizeof(test::TestMaterial); }},
+        {"fields in each other", [](PackageSpec& s) { s.fields[1].offset = 0; }},
+        {"empty field", [](PackageSpec& s) { s.fields[0].bytes = 0; }},
         {"case count", [](PackageSpec& s) { s.caseCount = 0; }},
         {"case features",
          [](PackageSpec& s) {
