@@ -37,11 +37,6 @@ public:
         if (!setup_.edits.edits.empty()) {
             session::makeEditable(*package, data);
         }
-        // Once for all pictures: a sequence would flicker otherwise.
-        sky_ = session::chooseSky(setup_.settings, scene_, data);
-        if (setup_.environment == nullptr) {
-            report_.sky = sky_;
-        }
         const base::Clock::time_point begin = base::Clock::now();
         GLINT_TRY(device_, session::DeviceScene::upload(context, std::move(package), std::move(data)));
         if (device_.data.editable) {
@@ -60,10 +55,18 @@ public:
     Status advance(std::size_t moment, FrameReport& frame) {
         const base::Clock::time_point begin = base::Clock::now();
         GLINT_TRY_DO(edit(frame));
-        if (moment == 0 && frame.edits == 0) {
+        const bool isUploaded = moment == 0 && frame.edits == 0;
+        if (!isUploaded) {
+            GLINT_TRY_DO(pose(moment, device_.data));
+        }
+        // Once for all pictures: a sequence would flicker otherwise.
+        if (moment == 0) {
+            sky_ = session::chooseSky(setup_.settings, scene_, device_.data);
+            report_.sky = setup_.environment == nullptr ? std::optional(sky_) : std::nullopt;
+        }
+        if (isUploaded) {
             return okStatus();
         }
-        GLINT_TRY_DO(pose(moment, device_.data));
         frame.poseMs = base::millisecondsSince(begin);
         MotionView motion = live_ ? live_->motion() : device_.data.motion();
         motion.builds = setup_.movement ? setup_.movement->builds : MotionView::Builds::ByRule;
