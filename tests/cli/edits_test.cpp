@@ -161,7 +161,8 @@ TEST_F(Edits, GoOnWhileAnAnimationPlays) {
     baked["nodes"][0]["children"] = {3};
     baked["nodes"].push_back(baked["nodes"][1]);
     for (const char* property : {"translation", "weights"}) {
-        for (const Json channel : Json(baked["animations"][0]["channels"])) {
+        const Json channels = baked["animations"][0]["channels"];
+        for (const Json& channel : channels) {
             if (channel["target"]["path"] == property && channel["target"]["node"] == 1) {
                 Json copy = channel;
                 copy["target"]["node"] = 3;
@@ -185,7 +186,9 @@ TEST_F(Edits, ChooseAVariantWhileTheSceneIsDrawn) {
         {{"frame", 1}, {"edit", "variant"}, {"variant", "Day"}},
         {{"frame", 2}, {"edit", "variant"}},
     });
-    ASSERT_EQ(render("out.exr", {"--frames", "0:2", "--edits", edits, "--sky", "1", "--validate"}).exit, 0);
+    const Outcome outcome =
+        render("out.exr", {"--frames", "0:2", "--edits", edits, "--sky", "1", "--validate"});
+    ASSERT_EQ(outcome.exit, 0) << outcome.err;
     ASSERT_EQ(render("day.exr", {"--variant", "Day", "--sky", "1"}).exit, 0);
     expectSame("out.0001.exr", "day.exr");
     expectSame("out.0000.exr", "out.0002.exr");

@@ -31,6 +31,12 @@ std::vector<int> listMaterials(const gltf::Mesh& mesh) {
     return materials;
 }
 
+void addOnce(std::vector<AttributeMask>& masks, AttributeMask mask) {
+    if (std::ranges::find(masks, mask) == masks.end()) {
+        masks.push_back(mask);
+    }
+}
+
 }  // namespace
 
 void makeEditable(const Package& package, SceneViewData& data) {
@@ -66,6 +72,10 @@ LiveScene::LiveScene(const Package& package, GpuScene& gpu, SceneViewData& data,
             LiveMesh& mesh = meshOf(primitive.mesh);
             mesh.handle = editor.mesh(primitive.mesh);
             mesh.materials = listMaterials(scene.meshes[primitive.mesh]);
+            for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
+                // The package has the keys of the primitives that have the material.
+                addOnce(materials_[mesh.materials[i]].attributes, mesh.attributes[i]);
+            }
         }
     }
     for (std::uint32_t i = 0; i < instances_.size(); ++i) {
@@ -129,24 +139,7 @@ Result<MaterialHandle> LiveScene::materialFor(const gltf::Scene& scene, int inde
         return material.handle;
     }
     std::vector<AttributeMask> wanted = material.attributes;
-    if (wanted.empty()) {
-        // A material of the package keeps its keys for the primitives that have it.
-        for (const auto& [number, mesh] : meshes_) {
-            for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
-                if (mesh.materials[i] == index &&
-                    std::ranges::find(wanted, mesh.attributes[i]) == wanted.end()) {
-                    wanted.push_back(mesh.attributes[i]);
-                }
-            }
-        }
-        if (std::ranges::find(wanted, attributes) != wanted.end() && material.handle.generation != 0) {
-            material.attributes = wanted;
-            return material.handle;
-        }
-    }
-    if (std::ranges::find(wanted, attributes) == wanted.end()) {
-        wanted.push_back(attributes);
-    }
+    wanted.push_back(attributes);
     GLINT_TRY(const MaterialSourceData source, sourceOf(scene, index, wanted));
     if (material.handle.generation == 0) {
         GLINT_TRY(material.handle, gpu_.editor()->addMaterial(source.view()));

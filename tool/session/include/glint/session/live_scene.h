@@ -54,7 +54,7 @@ public:
 private:
     struct LiveMaterial {
         MaterialHandle handle;
-        std::vector<AttributeMask> attributes;  // that its keys are for; empty: those of the package
+        std::vector<AttributeMask> attributes;  // that it has keys for
         std::vector<std::uint8_t> record;       // as it was given last; of animated materials of edits
     };
     struct LiveMesh {
