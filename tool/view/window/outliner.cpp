@@ -18,6 +18,7 @@ using session::Edit;
 using session::EditKind;
 
 constexpr float kMetresPerPixel = 0.01F;
+constexpr std::size_t kOpenNodes = 256;  // trees of more nodes begin closed
 
 std::string kindOf(const gltf::Node& node) {
     std::string kind = node.mesh >= 0 ? (node.skin >= 0 ? "skinned mesh" : "mesh") : "";
@@ -170,6 +171,7 @@ void Window::drawNode(const gltf::Scene& scene, const std::vector<std::vector<in
     const std::vector<int>& below = children[static_cast<std::size_t>(index)];
     ImGuiTreeNodeFlags flags = ImGuiTreeNodeFlags_OpenOnArrow | ImGuiTreeNodeFlags_SpanAvailWidth;
     flags |= below.empty() ? ImGuiTreeNodeFlags_Leaf : ImGuiTreeNodeFlags_None;
+    flags |= scene.nodes.size() <= kOpenNodes ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None;
     flags |= index == selected_ ? ImGuiTreeNodeFlags_Selected : ImGuiTreeNodeFlags_None;
     const std::string kind = kindOf(node);
     const std::string label = fmt::format("{}{}{}###{}", titleOf(node), kind.empty() ? "" : "  " + kind,
