@@ -70,8 +70,9 @@ void checkMembers(base::JsonReader& reader, const base::Json& json, const std::s
     known.insert(known.end(), row.may.begin(), row.may.end());
     for (const auto& [name, value] : json.items()) {
         if (std::ranges::find(known, name) == known.end()) {
-            reader.fail(place + "/" + name, fmt::format("is no member of an edit \"{}\"{}", nameOf(edit.kind),
-                                                        base::suggestion(name, known)));
+            reader.fail(fmt::format("{}/{}", place, name),
+                        fmt::format("is no member of an edit \"{}\"{}", nameOf(edit.kind),
+                                    base::suggestion(name, known)));
         }
     }
 }
@@ -79,7 +80,8 @@ void checkMembers(base::JsonReader& reader, const base::Json& json, const std::s
 void checkValues(base::JsonReader& reader, const std::string& place, const Edit& edit) {
     const auto count = [&](const char* name, const std::vector<double>& values, std::size_t wanted) {
         if (!values.empty() && values.size() != wanted) {
-            reader.fail(place + "/" + name, fmt::format("has {} numbers, not {}", values.size(), wanted));
+            reader.fail(fmt::format("{}/{}", place, name),
+                        fmt::format("has {} numbers, not {}", values.size(), wanted));
         }
     };
     count("translation", edit.translation, 3);

@@ -524,6 +524,23 @@ bool needShaders(std::span<const Edit> edits) {
     });
 }
 
+bool needsShaders(const Edit& edit, const gltf::Scene& scene) {
+    const std::optional<int> node = findNode(scene, edit.node);
+    if (node && edit.kind == EditKind::Light) {
+        const int light = scene.nodes[indexOf(*node)].light;
+        return light >= 0 && !scene.lights[indexOf(light)].canShine;
+    }
+    if (!node || edit.kind != EditKind::Show) {
+        return needShaders(std::span(&edit, 1));
+    }
+    const std::vector<bool> inside = below(scene, *node);
+    bool allCanShow = true;
+    for (std::size_t i = 0; i < inside.size(); ++i) {
+        allCanShow = allCanShow && (!inside[i] || !isPresent(scene.nodes[i]) || scene.nodes[i].canShow);
+    }
+    return !allCanShow;
+}
+
 Result<gltf::Scene> plannedScene(const gltf::Scene& scene, std::span<const Edit> edits,
                                  const SceneFiles& files) {
     Scene planned = scene;

@@ -274,7 +274,7 @@ Status Picture::makeEdits(std::uint64_t frame) {
     Status first = okStatus();
     const auto keep = [&](const Status& status) { first = first ? status : first; };
     const auto isReadyFor = [&](std::size_t index) {
-        return index < build_.edits || !session::needShaders(std::span(edits_).subspan(index, 1));
+        return index < build_.edits || !session::needsShaders(edits_[index], scene());
     };
     if (edited_ == edits_.size() || !isReadyFor(edited_)) {
         return okStatus();

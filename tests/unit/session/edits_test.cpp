@@ -162,6 +162,15 @@ TEST(Edits, PlanningHasEveryMaterialOfAPrimitive) {
                                   {.kind = EditKind::Delete, .node = "Body"}};
     EXPECT_TRUE(needShaders(edits));
     EXPECT_FALSE(needShaders(std::span(edits).subspan(1)));
+    const Edit show{.kind = EditKind::Show, .node = "Root"};
+    EXPECT_FALSE(needsShaders(show, scene));
+    gltf::Scene hidden = editedRoom();
+    hidden.nodes[1].canShow = false;
+    EXPECT_TRUE(needsShaders(show, hidden));
+    const Edit light{.kind = EditKind::Light, .node = "Lamp", .intensity = 2.0};
+    EXPECT_TRUE(needsShaders(light, scene));
+    hidden.lights[0].canShine = true;
+    EXPECT_FALSE(needsShaders(light, hidden));
     const Result<gltf::Scene> planned = plannedScene(scene, edits, {});
     ASSERT_TRUE(planned.ok());
     ASSERT_EQ(planned->meshes.size(), 2U);

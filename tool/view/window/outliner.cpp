@@ -101,7 +101,7 @@ void Window::editNode(EditKind kind) {
 // Forgets the edits for which there is no build, because it has failed.
 void Window::dropEdits(const Diagnostic& error) {
     const std::size_t made = side().picture.isReady() ? side().picture.build().edits : 0;
-    std::size_t kept = made;
+    std::size_t kept = std::min(made, edits_.size());
     while (kept < edits_.size() && !session::needShaders(std::span(edits_).subspan(kept, 1))) {
         ++kept;
     }
@@ -233,7 +233,7 @@ void Window::drawTransform(const gltf::Scene& scene) {
     const auto [x, y, z, w] = parts->rotation;
     constexpr double kDegrees = 180.0 / std::numbers::pi;
     const glm::dvec3 angles = glm::eulerAngles(glm::dquat(w, x, y, z)) * kDegrees;
-    std::array<double, 3> turn{angles.x, angles.y, angles.z};
+    std::array<double, 3> turn{angles.x + 0.0, angles.y + 0.0, angles.z + 0.0};  // no -0
     if (dragNumbers(controls_, "node.turn", kAxes, turn, 0.5F, "%.1f\u00b0")) {
         const glm::dquat turned(glm::dvec3(turn[0], turn[1], turn[2]) / kDegrees);
         move.rotation = {turned.x, turned.y, turned.z, turned.w};

@@ -106,6 +106,8 @@ Result<int> applyEdit(const Edit& edit, const SceneFiles& files, gltf::Scene& sc
 // Returns whether the edits need shaders that a package of the scene alone may lack: for other materials,
 // for files, for lights.
 bool needShaders(std::span<const Edit> edits);
+// Returns the same of one edit of `scene`. What was seen or shone once needs no others to do so again.
+bool needsShaders(const Edit& edit, const gltf::Scene& scene);
 // Returns the local transform of a node at rest, or nothing if its matrix has a shear.
 std::optional<gltf::Transform> localTransform(const gltf::Node& node);
 // Returns the scene with all materials, primitives and lights that it has at some time between its edits,
