@@ -8,6 +8,7 @@
 
 #include <glint/measure/device_file.h>
 #include <glint/measure/report.h>
+#include <glint/session/edits.h>
 
 #include <gtest/gtest.h>
 
@@ -56,6 +57,7 @@ std::vector<Part> parts() {
                  schemaOf<measure::CalibrationReport>()),
         outputOf("render", "glint render --json; --stats writes the same without diagnostics",
                  schemaOf<cli::RenderReport>()),
+        fileOf("edits", "The file of glint render --edits", schemaOf<session::EditList>()),
         fileOf("device", "The device file of glint bench --calibrate", schemaOf<measure::DeviceFile>()),
         fileOf("gpu", "A table of --gpu", schemaOf<compiler::GpuCosts>()),
         fileOf("manifest", "manifest.json of a package", schemaOf<compiler::Manifest>()),

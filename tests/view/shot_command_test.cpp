@@ -37,7 +37,8 @@ TEST(ShotCommand, HasWhatDiffersFromTheDefaults) {
     rowOf("effects").values.set(settings, "auto,ambient-occlusion");
     rowOf("batch-effects").values.set(settings, "on");
     settings.materials = {"packs"};
-    const Words words = shotWords(settings, {"a b.gltf", "out.png", "1,2,3/0,0,0/30", -0.5, "1.5", "all"});
+    const Words words = shotWords(
+        settings, {"a b.gltf", "out.png", "1,2,3/0,0,0/30", -0.5, "1.5", "all", "", "", "edits.json"});
     EXPECT_EQ(words, (Words{"glint",
                             "render",
                             "a b.gltf",
@@ -52,6 +53,8 @@ TEST(ShotCommand, HasWhatDiffersFromTheDefaults) {
                             "1,2,3/0,0,0/30",
                             "--time",
                             "1.5",
+                            "--edits",
+                            "edits.json",
                             "--animation",
                             "all",
                             "--materials",

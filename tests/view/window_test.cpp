@@ -589,6 +589,69 @@ TEST_F(WindowTest, FinerLevelsOfTexturesFollow) {
     EXPECT_LT(shareDiffering(image("shot.png"), image("scene-001.png")), 0.02);
 }
 
+// Nodes are edited while an animation plays. The command beside a screenshot makes the same edits with
+// `glint render --edits`, and the same picture. The window fits the screen, which is 1280 x 1000.
+TEST_F(WindowTest, EditsNodesWhileAnAnimationPlays) {
+    const fs::path scene = writeTinyScene(path(""), {.animated = true});
+    fs::create_directories(path("other"));
+    writeTinyScene(path("other"), {.camera = false});
+    Json gltf = Json::parse(readText(scene));
+    gltf["nodes"][0]["name"] = "Ground";
+    gltf["nodes"][1]["name"] = "Screen";
+    writeText(scene, gltf.dump());
+    view(R"(
+        wait complete
+        report size.json
+        size 800 640
+        key m m m
+        click Play
+        click tab Nodes
+        click node Screen
+        click Duplicate
+        click node Screen copy
+        number node.place.x 0.5
+        number node.scale.y 0.5
+        wait control node Screen
+        click node Screen
+        click Hide
+        wait control Show
+        click node Ground
+        choose node.material Wall
+        pause 0.5
+        drop other/scene.gltf
+        wait control node scene
+        click node scene
+        number node.place.y 1
+        number node.scale.x 0.25
+        wait frames 4
+        key space
+        wait complete
+        number time 0.5
+        wait complete
+        report edited.json
+        picture window.png
+        key p
+        wait complete
+        click node scene
+        click Delete
+        wait complete
+        report deleted.json
+        picture deleted.png
+        quit
+    )",
+         {"--size", "1500x700", "--sky", "1"});
+    EXPECT_EQ(report("size.json").at("width"), 1280 - 440);
+    EXPECT_TRUE(report("edited.json").at("error").is_null()) << report("edited.json").at("error");
+    EXPECT_TRUE(report("deleted.json").at("error").is_null()) << report("deleted.json").at("error");
+    const std::string search = fs::path(commandPath()).parent_path().string() + ":" + std::getenv("PATH");
+    fs::rename(path("scene-001.png"), path("shot.png"));
+    const Outcome again = runProgram({"sh", "scene-001.sh"}, {{"PATH", search}});
+    ASSERT_EQ(again.exit, 0) << readText(path("scene-001.sh")) << again.err;
+    EXPECT_EQ(shareDiffering(image("shot.png"), image("scene-001.png")), 0.0)
+        << readText(path("scene-001.edits.json"));
+    EXPECT_GT(shareDiffering(image("window.png"), image("deleted.png"), 0, 300, 600), 0.002);
+}
+
 TEST_F(WindowTest, RefusesWhatItCantDo) {
     writeTinyScene(path(""));
     writeText(path("script"), "wait complete\nfly to the moon\n");

@@ -20,6 +20,7 @@
 #include <glint/package.h>
 #include <glint/renderer.h>
 #include <glint/session/camera.h>
+#include <glint/session/edits.h>
 #include <glint/session/session.h>
 #include <glint/session/textures.h>
 
@@ -121,14 +122,15 @@ void warnOfNonFinite(const Console& console, const RenderReport& report) {
 
 // Decides what the command line leaves open, and reports it with the options that change nothing.
 Result<compiler::Build> resolve(const Console& console, const RenderArguments& arguments, Context& context,
-                                const gltf::Scene& scene, const Package* package, RenderReport& report) {
+                                std::span<const gltf::Scene> scenes, const Package* package,
+                                RenderReport& report) {
     compiler::Settings asked = settingsOf(arguments);
     asked.renderer.pipelineStatistics = arguments.pipelineStatistics && context.handles().pipelineStatistics;
     // Counting takes time that would be added to that of the passes.
     asked.renderer.countsLight = !arguments.stats.empty();
     asked.compile.progress = console.countTo("compiling");
-    GLINT_TRY(const auto target, measure::targetOf(asked, context, package, scene));
-    GLINT_TRY(auto build, compiler::resolve(std::span(&scene, 1), asked, target));
+    GLINT_TRY(const auto target, measure::targetOf(asked, context, package, scenes.front()));
+    GLINT_TRY(auto build, compiler::resolve(scenes, asked, target));
     console.report(build.messages);
     if (const std::optional<compiler::StrategyAdvice>& advice = build.settings.compile.strategyChoice) {
         console.detail(fmt::format("strategy {}: {}", advice->choice.strategy, advice->choice.why));
@@ -197,7 +199,7 @@ Result<std::shared_ptr<const session::TextureSet>> readTextures(
     GLINT_TRY(auto textures, session::loadTextures(
                                  scene, session::textureOptions(arguments, context, package, cache.store())));
     console.report(textures->notes);
-    report.start.texturesMs = textures->milliseconds;
+    report.start.texturesMs += textures->milliseconds;
     return textures;
 }
 
@@ -243,11 +245,56 @@ Result<std::optional<LinearImage>> readReference(const RenderArguments& argument
     return std::optional<LinearImage>(std::move(read));
 }
 
+// Reads the files that edits add, and makes all edits with a copy of the first of `scenes`, to find out
+// whether they can be made. Where they need shaders, the copy joins the scenes of the package that is
+// compiled.
+Status planEdits(const Console& console, const RenderArguments& arguments, const Package* given,
+                 const std::optional<Movement>& movement, std::vector<gltf::Scene>& scenes, EditPlan& plan) {
+    if (plan.edits.empty()) {
+        return okStatus();
+    }
+    const bool needShaders = session::needShaders(plan.edits);
+    if (needShaders && given != nullptr && given->trustTextures()) {
+        return makeError("package-mismatch", arguments.package,
+                         "relies on what textures hold where they are now, and edits change materials",
+                         "compile it with --no-trust-textures");
+    }
+    GLINT_TRY(auto import, session::importOptions(arguments, session::ImageReading::Files, nullptr));
+    import.materialModel =
+        scenes.front().materials.empty() ? import.materialModel : &scenes.front().materials.front().model();
+    GLINT_TRY_DO(session::readFiles(plan.edits, import, plan.files));
+    for (const auto& [file, read] : plan.files) {
+        console.report(read->warnings);
+    }
+    GLINT_TRY(auto planned, session::plannedScene(scenes.front(), plan.edits, plan.files));
+    if (needShaders && given == nullptr) {
+        scenes.push_back(std::move(planned));
+    }
+    const std::int64_t last =
+        movement && movement->isSequence
+            ? movement->firstFrame + static_cast<std::int64_t>(movement->seconds.size()) - 1
+            : std::int64_t{plan.edits.back().frame};
+    const auto late =
+        std::ranges::count_if(plan.edits, [&](const session::Edit& edit) { return edit.frame > last; });
+    if (late > 0) {
+        console.report(Diagnostic{
+            Severity::Note, "edit-unused", arguments.edits,
+            fmt::format("{} of {} edits come after the last frame, {}", late, plan.edits.size(), last),
+            "render further frames"});
+    }
+    return okStatus();
+}
+
 // Does all the work between reading the scene and writing the files.
 Status render(const Console& console, const RenderArguments& arguments, session::Opened opened,
-              CompileCache& cache, RenderReport& report) {
-    gltf::Scene& scene = opened.scene;
-    GLINT_TRY(const auto movement, chooseMovement(arguments.motion, scene, !arguments.materials.empty()));
+              EditPlan edits, CompileCache& cache, RenderReport& report) {
+    // Those that the package is made for; the first is drawn.
+    std::vector<gltf::Scene> scenes;
+    scenes.push_back(std::move(opened.scene));
+    GLINT_TRY(const auto movement, chooseMovement(arguments.motion, scenes.front(),
+                                                  !arguments.materials.empty() || !edits.edits.empty()));
+    GLINT_TRY_DO(planEdits(console, arguments, opened.package.get(), movement, scenes, edits));
+    gltf::Scene& scene = scenes.front();
     GLINT_TRY(const auto compared, readReference(arguments));
     session::SceneViewData data = session::sceneView(arguments, scene);
     const double aspect = static_cast<double>(report.width) / report.height;
@@ -265,7 +312,7 @@ Status render(const Console& console, const RenderArguments& arguments, session:
     report.start.deviceMs = base::millisecondsSince(begin);
     report.device = context->deviceName();
     report.driver = context->driverName();
-    GLINT_TRY(const auto build, resolve(console, arguments, *context, scene, opened.package.get(), report));
+    GLINT_TRY(const auto build, resolve(console, arguments, *context, scenes, opened.package.get(), report));
     if (console.refused()) {
         return okStatus();
     }
@@ -275,19 +322,19 @@ Status render(const Console& console, const RenderArguments& arguments, session:
     GLINT_TRY(const auto textures,
               readTextures(console, arguments, *context, *package, scene, cache, report));
     session::usePackage(*package, scene, textures, data);
+    for (const auto& [file, read] : edits.files) {
+        GLINT_TRY(edits.textures[file],
+                  readTextures(console, arguments, *context, *package, *read, cache, report));
+    }
     report.textures = textureReport(data.images);
     report.textures.found = textures->found;
     cache.close(console);
     console.progress("rendering " + arguments.scene);
-    const FrameSetup setup{console,
-                           arguments,
-                           build.settings,
-                           environment.get(),
-                           movement,
-                           camera,
-                           aspect,
-                           compared ? &*compared : nullptr,
-                           console.countTo("rendering sample")};
+    const FrameSetup setup{console,        arguments,
+                           build.settings, environment.get(),
+                           movement,       camera,
+                           aspect,         compared ? &*compared : nullptr,
+                           edits,          console.countTo("rendering sample")};
     bool warned = false;
     const auto accept = [&]() -> Result<bool> {
         GLINT_TRY_DO(measure::checkValidation(console, *context));
@@ -319,11 +366,19 @@ Status render(const Console& console, const RenderArguments& arguments, session:
 }
 
 Status readAndRender(const Console& console, const RenderArguments& arguments, RenderReport& report) {
+    EditPlan edits;
+    RenderArguments wanted = arguments;
+    if (!arguments.edits.empty()) {
+        GLINT_TRY(edits.edits, session::readEdits(arguments.edits));
+        // Other primitives than those of the file may show a texture.
+        wanted.compile.trustTextures = wanted.compile.trustTextures && !session::needShaders(edits.edits);
+    }
     console.progress("reading " + arguments.scene);
     CompileCache cache(arguments.cache, "");
-    GLINT_TRY(auto opened, session::open(arguments.scene, arguments, cache.store()));
+    GLINT_TRY(auto opened, session::open(arguments.scene, wanted, cache.store()));
     console.report(opened.scene.warnings);
-    return console.refused() ? okStatus() : render(console, arguments, std::move(opened), cache, report);
+    return console.refused() ? okStatus()
+                             : render(console, wanted, std::move(opened), std::move(edits), cache, report);
 }
 
 int run(const Console& console, const RenderArguments& arguments) {

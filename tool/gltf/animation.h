@@ -23,6 +23,14 @@ enum class AnimationPath : std::uint8_t {
     Camera
 };
 
+// Returns whether a channel's target is a node, and whether it drives the transform of one.
+constexpr bool drivesNode(AnimationPath path) {
+    return path <= AnimationPath::Visible;
+}
+constexpr bool drivesTransform(AnimationPath path) {
+    return path <= AnimationPath::Scale;
+}
+
 // The keyframes of an animation. A keyframe has as many values as its property has numbers: 1, 2, 3, 4 (a
 // colour, or a quaternion x, y, z, w), or one for each morph target.
 struct AnimationSampler {

@@ -159,7 +159,9 @@ void warnOfMissingInputs(Document& document, const Scene& scene) {
 bool usesMaterial(const Scene& scene, std::size_t material) {
     return std::ranges::any_of(scene.meshes, [&](const Mesh& mesh) {
         return std::ranges::any_of(mesh.primitives, [&](const Primitive& primitive) {
-            return static_cast<std::size_t>(primitive.material) == material;
+            return static_cast<std::size_t>(primitive.material) == material ||
+                   (!primitive.variantMaterials.empty() &&
+                    static_cast<std::size_t>(primitive.variantMaterials.back()) == material);
         });
     });
 }

@@ -327,6 +327,25 @@ void checkMappings(Document& document) {
     }
 }
 
+// Fills Primitive::variantMaterials of a primitive with its own material. The first mapping of a variant
+// holds.
+void mapVariants(const tinygltf::Primitive& inFile, std::size_t variants, Primitive& primitive) {
+    std::vector<std::optional<int>> chosen(variants);
+    bool maps = false;
+    visitMappings(inFile, [&](int variant, int material) {
+        std::optional<int>& one = chosen[static_cast<std::size_t>(variant)];
+        one = one.value_or(material);
+        maps = true;
+    });
+    if (!maps) {
+        return;
+    }
+    for (const std::optional<int>& one : chosen) {
+        primitive.variantMaterials.push_back(one.value_or(primitive.material));
+    }
+    primitive.variantMaterials.push_back(primitive.material);
+}
+
 }  // namespace
 
 Status applyVariant(Document& document, Scene& scene) {
@@ -337,25 +356,21 @@ Status applyVariant(Document& document, Scene& scene) {
     }
     checkMappings(document);
     scene.variant = document.options().variant;
-    if (scene.variant.empty()) {
-        return okStatus();
-    }
     const auto found = std::ranges::find(scene.variants, scene.variant);
-    if (found == scene.variants.end()) {
+    if (!scene.variant.empty() && found == scene.variants.end()) {
         return unknownVariant(document, scene);
     }
-    const auto index = static_cast<int>(found - scene.variants.begin());
+    const auto index = static_cast<std::size_t>(found - scene.variants.begin());
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
         // The scene's mesh lacks the primitives that have nothing to draw.
         auto primitive = scene.meshes[m].primitives.begin();
         const std::vector<tinygltf::Primitive>& inFile = document.model().meshes[m].primitives;
         for (std::size_t i = 0; i < inFile.size() && primitive != scene.meshes[m].primitives.end(); ++i) {
             if (primitive->pointer == fmt::format("/meshes/{}/primitives/{}", m, i)) {
-                std::optional<int> chosen;
-                visitMappings(inFile[i], [&](int variant, int material) {
-                    chosen = variant == index && !chosen ? material : chosen;
-                });
-                primitive->material = chosen.value_or(primitive->material);
+                mapVariants(inFile[i], scene.variants.size(), *primitive);
+                if (!scene.variant.empty() && !primitive->variantMaterials.empty()) {
+                    primitive->material = primitive->variantMaterials[index];
+                }
                 ++primitive;
             }
         }

@@ -34,6 +34,9 @@ struct VertexValues {
 struct Primitive {
     std::string pointer;  // JSON pointer, "/meshes/0/primitives/1"
     int material = 0;     // always valid: primitives without one use Scene::defaultMaterial
+    // The materials of Scene::variants, in their order, and last that of no variant. Empty if the primitive
+    // maps no variant.
+    std::vector<int> variantMaterials;
     std::vector<Float3> positions;
     std::vector<Float3> normals;   // unit length; empty: flat shading
     std::vector<Float4> tangents;  // xyz has unit length, w = ±1; empty: the hit derives a frame from the UVs
@@ -57,6 +60,8 @@ struct Mesh {
     std::vector<double> weights{};  // of the morph targets, one for each, for nodes that give none
     // The file's primitives without a triangle, and why: "/meshes/0/primitives/1: has no triangle".
     std::vector<std::string> leftOut{};
+    int copyOf =
+        -1;  // a mesh with the same vertices and other materials, from which edits have made this one
 };
 
 // The transform is the product T * R * S.

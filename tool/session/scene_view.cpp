@@ -76,12 +76,18 @@ bool hasTriangles(const gltf::Primitive& primitive) {
     return primitive.indices.size() >= 3;
 }
 
-// Returns for each mesh whether a node that is shown at some time places it.
+// Returns the mesh that has the vertices of a node's mesh.
+std::size_t verticesOf(const gltf::Scene& scene, const gltf::Node& node) {
+    const int copyOf = scene.meshes[static_cast<std::size_t>(node.mesh)].copyOf;
+    return static_cast<std::size_t>(copyOf < 0 ? node.mesh : copyOf);
+}
+
+// Returns for each mesh whether a node that is shown at some time places its vertices.
 std::vector<bool> placedMeshes(const gltf::Scene& scene) {
     std::vector<bool> placed(scene.meshes.size(), false);
     for (const gltf::Node& node : scene.nodes) {
         if (node.mesh >= 0 && node.canShow) {
-            placed[static_cast<std::size_t>(node.mesh)] = true;
+            placed[verticesOf(scene, node)] = true;
         }
     }
     return placed;
@@ -303,6 +309,8 @@ SceneView SceneViewData::view() const {
     SceneView view{primitives, instances, images,         lights,   packageScene,
                    moves,      materials, traversalOrder, vertices, opacity};
     view.origin = origin;
+    view.editable = editable;
+    view.textureRoom = textureRoom;
     return view;
 }
 
@@ -317,43 +325,64 @@ std::array<float, 12> toRows(const gltf::Matrix4& matrix) {
     return rows;
 }
 
-SceneViewData makeSceneView(const gltf::Scene& scene) {
-    SceneViewData data;
+namespace {
+
+void listPrimitives(const gltf::Scene& scene, std::size_t mesh, SceneViewData& data) {
+    data.meshBoxes[mesh] = boxOf(scene.meshes[mesh]);
+    data.meshOrigins[mesh] = originOf(data.meshBoxes[mesh]);
+    const std::vector<gltf::Primitive>& primitives = scene.meshes[mesh].primitives;
+    for (std::size_t index = 0; index < primitives.size(); ++index) {
+        if (hasTriangles(primitives[index])) {
+            PrimitiveView& view = data.primitives.emplace_back(toView(primitives[index], mesh, index));
+            rebase(primitives[index], data.meshOrigins[mesh], data, view);
+            view.targets = data.targets.emplace_back(toViews(primitives[index].targets));
+            view.attributes = data.attributes.emplace_back(toViews(primitives[index].attributes));
+            data.listed[mesh] = true;
+        }
+    }
+}
+
+// Adds the meshes, instances and lights that `data` lacks.
+void addContent(const gltf::Scene& scene, SceneViewData& data) {
     const std::vector<bool> placed = placedMeshes(scene);
-    std::vector<bool> visible(scene.meshes.size(), false);
+    data.listed.resize(scene.meshes.size(), false);
     data.meshBoxes.resize(scene.meshes.size());
     data.meshOrigins.resize(scene.meshes.size());
     for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
-        if (placed[mesh]) {
-            data.meshBoxes[mesh] = boxOf(scene.meshes[mesh]);
-            data.meshOrigins[mesh] = originOf(data.meshBoxes[mesh]);
+        if (placed[mesh] && !data.listed[mesh]) {
+            listPrimitives(scene, mesh, data);
         }
-        const std::vector<gltf::Primitive>& primitives = scene.meshes[mesh].primitives;
-        for (std::size_t index = 0; placed[mesh] && index < primitives.size(); ++index) {
-            if (hasTriangles(primitives[index])) {
-                data.primitives.push_back(toView(primitives[index], mesh, index));
-                rebase(primitives[index], data.meshOrigins[mesh], data, data.primitives.back());
-                data.primitives.back().targets =
-                    data.targets.emplace_back(toViews(primitives[index].targets));
-                data.primitives.back().attributes =
-                    data.attributes.emplace_back(toViews(primitives[index].attributes));
-                visible[mesh] = true;
-            }
-        }
+    }
+    std::vector<bool> isDrawn(scene.nodes.size(), false);
+    for (const SceneViewData::Source& source : data.sources) {
+        isDrawn[source.node] = true;
     }
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
         const gltf::Node& node = scene.nodes[i];
-        if (node.mesh < 0 || !node.canShow || !visible[static_cast<std::size_t>(node.mesh)]) {
+        if (node.mesh < 0 || !node.canShow || isDrawn[i] || !data.listed[verticesOf(scene, node)]) {
             continue;
         }
         const std::size_t count = placementsOf(scene, node);
         for (std::size_t placement = 0; placement < count; ++placement) {
-            data.instances.emplace_back().mesh = static_cast<std::uint32_t>(node.mesh);
+            data.instances.emplace_back().mesh = static_cast<std::uint32_t>(verticesOf(scene, node));
             data.sources.push_back({i, placement});
         }
     }
     data.joints.resize(data.instances.size());
     data.weights.resize(data.instances.size());
+    const auto known = std::ranges::count_if(data.lightSources, [](int source) { return source >= 0; });
+    data.lightSources.resize(data.lights.size(), -1);
+    for (std::size_t i = static_cast<std::size_t>(known); i < scene.lights.size(); ++i) {
+        data.lights.emplace_back();
+        data.lightSources.push_back(static_cast<int>(i));
+    }
+}
+
+}  // namespace
+
+SceneViewData makeSceneView(const gltf::Scene& scene) {
+    SceneViewData data;
+    addContent(scene, data);
     for (const gltf::AnimatedMaterial& animated : scene.animatedMaterials) {
         data.materials.push_back({static_cast<std::uint32_t>(animated.material), {}});
     }
@@ -365,16 +394,26 @@ SceneViewData makeSceneView(const gltf::Scene& scene) {
              image.format == gltf::PixelFormat::Rgba16 ? ImageView::Format::Rgba16 : ImageView::Format::Rgba8,
              static_cast<std::uint32_t>(image.levels)});
     }
-    data.lights.resize(scene.lights.size());
     poseSceneView(scene, data);
     return data;
 }
 
+void extendSceneView(const gltf::Scene& scene, SceneViewData& data) {
+    data.keepsOrigin = true;
+    addContent(scene, data);
+}
+
 void poseSceneView(const gltf::Scene& scene, SceneViewData& data) {
-    data.origin = originOf(placedThings(scene, data));
+    if (!data.keepsOrigin) {
+        data.origin = originOf(placedThings(scene, data));
+    }
     for (std::size_t i = 0; i < data.instances.size(); ++i) {
         const gltf::Node& node = scene.nodes[data.sources[i].node];
         InstanceView& instance = data.instances[i];
+        if (node.mesh < 0) {
+            instance.visible = false;  // an edit has removed the node
+            continue;
+        }
         instance.visible = node.shown;
         const bool skinned = isSkinned(scene, node);
         // Only the sign of its transform's determinant counts, because it decides which side of a triangle is
@@ -401,8 +440,10 @@ void poseSceneView(const gltf::Scene& scene, SceneViewData& data) {
         instance.morphWeights = data.weights[i];
     }
     poseMaterials(scene, data);
-    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        data.lights[i] = toView(scene.lights[i], data);
+    for (std::size_t i = 0; i < data.lightSources.size(); ++i) {
+        if (data.lightSources[i] >= 0) {
+            data.lights[i] = toView(scene.lights[static_cast<std::size_t>(data.lightSources[i])], data);
+        }
     }
 }
 

@@ -166,12 +166,17 @@ Result<std::shared_ptr<const TextureSet>> loadTextures(const gltf::Scene& scene,
 
 void useTextures(std::shared_ptr<const TextureSet> textures, SceneViewData& data) {
     data.images.clear();
+    data.textures.clear();
+    addTextures(std::move(textures), data);
+}
+
+void addTextures(std::shared_ptr<const TextureSet> textures, SceneViewData& data) {
     for (const gltf::FittedImage& image : textures->images) {
         data.images.push_back({static_cast<std::uint32_t>(image.width),
                                static_cast<std::uint32_t>(image.height), image.texels, image.format,
                                static_cast<std::uint32_t>(image.levels), image.channels, image.decoded});
     }
-    data.textures = std::move(textures);
+    data.textures.push_back(std::move(textures));
 }
 
 }  // namespace glint::session

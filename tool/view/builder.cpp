@@ -143,12 +143,18 @@ void Builder::work() {
     }
 }
 
-Result<Build> Builder::build(const BuildOrder& order) {
+Result<Build> Builder::build(const BuildOrder& asked) {
     Build build;
+    BuildOrder order = asked;
+    if (session::needShaders(order.edits)) {
+        // Other primitives than those of the file may show a texture.
+        order.settings.compile.trustTextures = false;
+    }
     changed_[order.picture].insert(order.changed.begin(), order.changed.end());
     made_.reset();
     GLINT_TRY(auto given, session::givenPackage(order.settings));
     GLINT_TRY_DO(readScene(order, given.get(), build));
+    GLINT_TRY_DO(readEdits(order, given.get(), build));
     GLINT_TRY_DO(makePackage(order, std::move(given), build));
     GLINT_TRY_DO(readTextures(build));
     wholes_[order.picture].reset();
@@ -169,6 +175,8 @@ Status Builder::readScene(const BuildOrder& order, const Package* package, Build
         fmt::format("{}|{}|{}|{}|{}|{}", order.scene, settings.sceneInFile, settings.variant,
                     settings.strictPaths, import.trustTextures, fmt::join(settings.materials, "|"));
     if (!order.changed.empty() || key != sceneKey_) {
+        files_.clear();
+        fileTextures_.clear();
         say("reading " + order.scene);
         GLINT_TRY(auto scene, importScene(order.scene, import));
         // The contents of pictures depend on their files alone.
@@ -178,9 +186,9 @@ Status Builder::readScene(const BuildOrder& order, const Package* package, Build
         const std::lock_guard lock(mutex_);
         messages_.insert(messages_.end(), scene.warnings.begin(), scene.warnings.end());
         scene_ = std::make_shared<const gltf::Scene>(std::move(scene));
-        list_ = std::make_shared<const gltf::SceneList>(std::span(scene_.get(), 1));
         sceneKey_ = key;
     }
+    list_ = std::make_shared<const gltf::SceneList>(std::span(scene_.get(), 1));
     build.scene = scene_;
     for (const gltf::SourceFile& file : scene_->files) {
         build.inputs.push_back({file.path, file.hash});
@@ -193,6 +201,39 @@ Status Builder::readScene(const BuildOrder& order, const Package* package, Build
         }
     }
     build.readMs = base::millisecondsSince(start);
+    return okStatus();
+}
+
+// Reads the files that edits add. Where edits need shaders, the package is made for the scene and for all
+// that they make of it.
+Status Builder::readEdits(const BuildOrder& order, const Package* package, Build& build) {
+    if (order.edits.empty()) {
+        return okStatus();
+    }
+    GLINT_TRY(auto import,
+              session::importOptions(order.settings, session::ImageReading::Files, request_.store, package));
+    import.materialModel =
+        scene_->materials.empty() ? import.materialModel : &scene_->materials.front().model();
+    GLINT_TRY_DO(session::readFiles(order.edits, import, files_));
+    for (const auto& [name, scene] : files_) {
+        for (const gltf::SourceFile& file : scene->files) {
+            build.inputs.push_back({file.path, file.hash});
+        }
+    }
+    build.files = files_;
+    build.edits = order.edits.size();
+    if (package != nullptr || !session::needShaders(order.edits)) {
+        return okStatus();
+    }
+    struct Scenes {
+        std::vector<gltf::Scene> scenes;
+        std::optional<gltf::SceneList> list;
+    };
+    const auto made = std::make_shared<Scenes>();
+    made->scenes.push_back(*scene_);
+    GLINT_TRY(made->scenes.emplace_back(), session::plannedScene(*scene_, order.edits, files_));
+    made->list.emplace(made->scenes);
+    list_ = std::shared_ptr<const gltf::SceneList>(made, &*made->list);
     return okStatus();
 }
 
@@ -293,11 +334,19 @@ Status Builder::readTextures(Build& build) {
         say("reading textures");
         GLINT_TRY(textures_, session::loadTextures(*build.scene, options));
         texturesKey_ = key;
+        fileTextures_.clear();
         build.texturesMs = textures_->milliseconds;
         const std::lock_guard lock(mutex_);
         messages_.insert(messages_.end(), textures_->notes.begin(), textures_->notes.end());
     }
     build.textures = textures_;
+    for (const auto& [name, scene] : build.files) {
+        if (!fileTextures_.contains(name)) {
+            GLINT_TRY(auto read, session::loadTextures(*scene, options));
+            fileTextures_.emplace(name, std::move(read));
+        }
+    }
+    build.fileTextures = fileTextures_;
     return okStatus();
 }
 

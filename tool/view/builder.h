@@ -10,11 +10,13 @@
 #include "view/request.h"
 
 #include <glint/package.h>
+#include <glint/session/edits.h>
 #include <glint/session/textures.h>
 
 #include <array>
 #include <condition_variable>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -34,6 +36,11 @@ struct Build {
     // The length of each case's own shader in SPIR-V instructions, by shader ID; 0: it has none, or it is
     // unknown.
     std::vector<std::uint32_t> instructions;
+    // The number of edits, from the first on, for which the package is made, and the files that they add,
+    // with their textures by the same names.
+    std::size_t edits = 0;
+    session::SceneFiles files;
+    std::map<std::string, std::shared_ptr<const session::TextureSet>, std::less<>> fileTextures;
     std::vector<std::string> layers;      // names of those that its packages may have (PackageLayer::name)
     compiler::BenchFacts facts;           // of the scene, about settings that change nothing
     std::vector<base::InputFile> inputs;  // files to watch
@@ -61,7 +68,8 @@ struct BuildOrder {
     std::size_t picture = 0;
     compiler::Settings settings;
     std::string scene;
-    std::set<std::string> changed{};  // files of the scene, its packs and host, since the order before
+    std::vector<session::Edit> edits{};  // all that were made, and those that wait for the build
+    std::set<std::string> changed{};     // files of the scene, its packs and host, since the order before
 };
 
 class Builder {
@@ -91,10 +99,11 @@ public:
 
 private:
     void work();
-    Result<Build> build(const BuildOrder& order);
+    Result<Build> build(const BuildOrder& asked);
     Status readScene(const BuildOrder& order, const Package* package, Build& build);
     Status makePackage(const BuildOrder& order, std::shared_ptr<const Package> given, Build& build);
     Status readTextures(Build& build);
+    Status readEdits(const BuildOrder& order, const Package* package, Build& build);
     std::optional<compiler::EarlyShowing> earlyShowing(std::size_t picture, const Build& build);
     bool publishEarly(std::size_t picture, const compiler::CompiledPackage& early);
     void say(std::string text);
@@ -104,10 +113,13 @@ private:
     compiler::WarmModules warm_;
     // The last scene and its textures, and the settings with which they were read.
     std::shared_ptr<const gltf::Scene> scene_;
-    std::shared_ptr<const gltf::SceneList> list_;  // of it
+    std::shared_ptr<const gltf::SceneList> list_;  // of it, and with edits of all that they make of it
     std::string sceneKey_;
     std::shared_ptr<const session::TextureSet> textures_;
     std::string texturesKey_;
+    // The files that edits have added.
+    session::SceneFiles files_;
+    std::map<std::string, std::shared_ptr<const session::TextureSet>, std::less<>> fileTextures_;
     std::uint32_t strategies_ = 0;  // bits
     std::string strategiesKey_;
     // The inputs of a picture's last whole build, for an early package of the next edit.

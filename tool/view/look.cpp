@@ -367,22 +367,28 @@ Result<Pick> pickPixel(const Request& request, Picture& picture, std::uint32_t x
     }
     const gltf::Scene& scene = picture.scene();
     const SurfacePlace& surface = *place;
-    const std::size_t node = picture.data().sources[surface.instance].node;
-    pick.fields.push_back({"instance", fmt::format("{} (/nodes/{})", surface.instance, node)});
-    pick.fields.push_back(
-        {"primitive", fmt::format("/meshes/{}/primitives/{}", surface.mesh, surface.primitive)});
-    for (const materials::PrimitiveInputs& inputs : planningInputs(scene)) {
-        if (static_cast<std::uint32_t>(inputs.mesh) == surface.mesh &&
-            static_cast<std::uint32_t>(inputs.primitive) == surface.primitive) {
-            pick.material = inputs.material;
-        }
-    }
-    if (pick.material >= 0) {
+    const std::optional<std::size_t> instance = picture.instanceAt(surface);
+    pick.node = instance ? static_cast<int>(picture.data().sources[*instance].node) : -1;
+    const int mesh = instance ? scene.nodes[static_cast<std::size_t>(pick.node)].mesh : -1;
+    if (mesh >= 0) {
+        const gltf::Primitive& primitive =
+            scene.meshes[static_cast<std::size_t>(mesh)].primitives[surface.primitive];
+        pick.fields.push_back({"instance", fmt::format("{} (/nodes/{})", *instance, pick.node)});
+        pick.fields.push_back({"primitive", primitive.pointer});
+        pick.material = primitive.material;
         const compiler::Build& build = *picture.build().resolved;
+        const std::string& name = scene.materials[static_cast<std::size_t>(pick.material)].name;
+        // Materials that edits have added are those of the second scene of the package.
+        const std::size_t known = build.scenes->materialsOf(0).count;
+        const bool isAdded = static_cast<std::size_t>(pick.material) >= known;
+        const std::size_t planned = static_cast<std::size_t>(pick.material) + (isAdded ? known : 0);
         pick.fields.push_back(
-            {"material", fmt::format("{}: {}", pick.material, build.scenes->materialName(pick.material))});
-        const std::vector<Field> why = request.explain(build, pick.material);
-        pick.fields.insert(pick.fields.end(), why.begin(), why.end());
+            {"material", fmt::format("{}: {}", pick.material,
+                                     isAdded ? name : build.scenes->materialName(pick.material))});
+        if (planned < build.scenes->materials().size()) {
+            const std::vector<Field> why = request.explain(build, static_cast<int>(planned));
+            pick.fields.insert(pick.fields.end(), why.begin(), why.end());
+        }
     }
     const std::span<const package::CaseEntry> cases = picture.build().package->cases();
     pick.fields.push_back(

@@ -59,6 +59,7 @@ struct Pick {
     std::uint32_t y = 0;
     std::vector<Field> fields;
     int material = -1;  // index into Scene::materials; -1: the sky
+    int node = -1;      // index into Scene::nodes
 };
 
 // Describes the surface that the pixel sees in the last sample: material, key, case and the reasons for them,

@@ -42,14 +42,16 @@ Status Picture::readEnvironment(const Build& build, std::vector<Diagnostic>& not
     return okStatus();
 }
 
-// Records the upload of a build's scene on any thread. `posed` is null, or the scene in its present pose if
-// it moves.
-Result<Picture::Device> Picture::recordUpload(Context& context, const Build& build,
-                                              const gltf::Scene* posed) {
+// Records the upload of a build's scene on any thread. `scene` is that of the build, in its rest pose or in
+// the present one.
+Result<Picture::Device> Picture::recordUpload(Context& context, const Build& build, const gltf::Scene& scene,
+                                              Use use) {
     const base::Clock::time_point start = base::Clock::now();
-    const gltf::Scene& scene = posed != nullptr ? *posed : *build.scene;
     session::SceneViewData data = session::sceneView(build.settings(), scene);
-    data.moves = posed != nullptr;
+    data.moves = use == Use::Moves;
+    if (use == Use::Edited) {
+        session::makeEditable(*build.package, data);
+    }
     session::usePackage(*build.package, scene, build.textures, data);
     Device made;
     made.read = build.scene;
@@ -62,20 +64,28 @@ Result<Picture::Device> Picture::recordUpload(Context& context, const Build& bui
 
 // Returns whether the scene on the device can go on with the build's package.
 bool Picture::isSameScene(const Build& build) const {
-    // A scene that moves has its materials from the scene with which it was read.
-    return isReady() &&
+    // A scene that moves has its materials from the scene with which it was read. One that is edited has the
+    // keys of its package.
+    return isReady() && edits_.empty() &&
            (build.scene == build_.scene || (!posed_ && haveSameFiles(*build.scene, *build_.scene))) &&
            build.textures == build_.textures &&
            (changeBetween(build.settings(), build_.settings()) & compiler::kChangesUpload) == 0;
 }
 
+// Edits are those of a file.
+bool Picture::keepsEdits(const Build& build) const {
+    return !edits_.empty() && (!isReady() || build.scene->path == build_.scene->path);
+}
+
 bool Picture::load(const Build& build) {
-    const bool moves = posed_ && build.scene == build_.scene;
+    const bool moves = edits_.empty() && posed_ && build.scene == build_.scene;
     if (moves || isSameScene(build)) {
         return false;
     }
-    loading_ = std::async(std::launch::async,
-                          [&context = context_, build] { return recordUpload(context, build, nullptr); });
+    const Use use = keepsEdits(build) ? Use::Edited : Use::Still;
+    loading_ = std::async(std::launch::async, [&context = context_, build, use] {
+        return recordUpload(context, build, *build.scene, use);
+    });
     return true;
 }
 
@@ -92,6 +102,7 @@ Status Picture::adopt(Device made, const RendererOptions& options, std::uint64_t
         // The frame that follows its upload may not exist yet.
         retired_.push_back({frame, std::move(device_)});
     }
+    live_.reset();
     device_ = std::move(made);
     levelsIn_ = frame;
     levelsAreNew_ = true;
@@ -138,9 +149,11 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, 
     const RendererOptions options = optionsOf(build.settings(), width, height);
     GLINT_TRY(const auto replaced, loaded ? Result<bool>(false) : replace(build, options));
     if (!replaced) {
-        const bool keepsPose = posed_ && build.scene == build_.scene;
+        const bool keepsPose = edits_.empty() && posed_ && build.scene == build_.scene;
         if (!loaded) {
-            loaded = recordUpload(context_, build, keepsPose ? posed_.get() : nullptr);
+            loaded = keepsPose ? recordUpload(context_, build, *posed_, Use::Moves)
+                               : recordUpload(context_, build, *build.scene,
+                                              keepsEdits(build) ? Use::Edited : Use::Still);
         }
         if (!*loaded) {
             return loaded->error();
@@ -157,12 +170,25 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, 
         lastChange_ = fmt::format("upload recorded in {:.0f} ms, renderer made in {:.0f} ms",
                                   device_.recordMs, base::millisecondsSince(start));
     }
+    if (!keepsEdits(build)) {
+        edits_.clear();
+        edited_ = 0;
+        addedAnimations_.clear();
+    }
     build_ = std::move(build);
     beforeEarly_.reset();
     settings_ = build_.settings();
     options_ = options;
+    Status edited = okStatus();
+    if (device_.scene.data.editable) {
+        startEdits();
+        edited = makeEdits(frame);
+    }
     sky_ = session::chooseSky(settings_, scene(), data());
     restart();
+    if (!edited) {
+        notes.push_back(edited.error());
+    }
     return okStatus();
 }
 
@@ -206,7 +232,7 @@ Status Picture::pose(const std::optional<session::Moment>& moment, std::uint64_t
     if (!posed_) {
         auto copy = std::make_unique<gltf::Scene>(*build_.scene);
         std::swap(posed_, copy);
-        Result<Device> loaded = recordUpload(context_, build_, posed_.get());
+        Result<Device> loaded = recordUpload(context_, build_, *posed_, Use::Moves);
         Status adopted = loaded ? adopt(std::move(*loaded), options_, frame) : Status(loaded.error());
         if (!adopted) {
             posed_.reset();
@@ -214,18 +240,76 @@ Status Picture::pose(const std::optional<session::Moment>& moment, std::uint64_t
         }
     }
     moment_ = moment;
-    session::moveTo(moment, *posed_);
-    session::poseSceneView(*posed_, device_.scene.data);
+    return followScene();
+}
+
+// Brings the scene's present moment and edits to the data of the next recording.
+Status Picture::followScene() {
+    session::moveTo(moment_, *posed_);
     poseIsNew_ = true;
     restart();
+    if (live_) {
+        return live_->follow(*posed_);
+    }
+    session::poseSceneView(*posed_, device_.scene.data);
     return okStatus();
+}
+
+// Begins with the scene as the device has it: without edits.
+void Picture::startEdits() {
+    posed_ = std::make_unique<gltf::Scene>(*build_.scene);
+    live_.emplace(*device_.scene.package, *device_.scene.gpu, device_.scene.data, *posed_,
+                  build_.settings().compile.plan.keys.keptLobes);
+    edited_ = 0;
+    addedAnimations_.clear();
+}
+
+Status Picture::edit(std::span<const session::Edit> edits, std::size_t same, std::uint64_t frame) {
+    edits_.assign(edits.begin(), edits.end());
+    edited_ = std::min(edited_, same);
+    return isReady() ? makeEdits(frame) : okStatus();
+}
+
+Status Picture::makeEdits(std::uint64_t frame) {
+    Status first = okStatus();
+    const auto keep = [&](const Status& status) { first = first ? status : first; };
+    const auto isReadyFor = [&](std::size_t index) {
+        return index < build_.edits || !session::needsShaders(edits_[index], scene());
+    };
+    if (edited_ == edits_.size() || !isReadyFor(edited_)) {
+        return okStatus();
+    }
+    if (!live_) {
+        GLINT_TRY(auto loaded, recordUpload(context_, build_, *build_.scene, Use::Edited));
+        GLINT_TRY_DO(adopt(std::move(loaded), options_, frame));
+        startEdits();
+    }
+    for (; edited_ < edits_.size() && isReadyFor(edited_); ++edited_) {
+        const session::Edit& edit = edits_[edited_];
+        const std::size_t known = posed_->animations.size();
+        const Result<int> node = session::applyEdit(edit, build_.files, *posed_);
+        keep(node ? okStatus() : Status(node.error()));
+        if (node && edit.kind == session::EditKind::Add) {
+            session::addTextures(build_.fileTextures.find(edit.file)->second, device_.scene.data);
+        }
+        if (posed_->animations.size() > known) {
+            addedAnimations_.push_back(known);
+        }
+    }
+    keep(followScene());
+    sky_ = session::chooseSky(settings_, scene(), data());
+    return first;
+}
+
+std::optional<std::size_t> Picture::instanceAt(const SurfacePlace& place) const {
+    return live_ ? live_->instanceOf(place.handle) : std::optional<std::size_t>(place.instance);
 }
 
 Status Picture::record(VkCommandBuffer commands, const CameraView& camera, Timing timing,
                        std::uint64_t number) {
     GLINT_TRY([[maybe_unused]] const auto compacted, gpuScene().recordCompaction(commands, number));
     if (poseIsNew_) {
-        GLINT_TRY_DO(gpuScene().update(commands, data().motion(), number));
+        GLINT_TRY_DO(gpuScene().update(commands, live_ ? live_->motion() : data().motion(), number));
         poseIsNew_ = false;
         restart();
     }

@@ -4,6 +4,8 @@
 #include "view/builder.h"
 #include "view/vulkan.h"
 
+#include <glint/session/edits.h>
+#include <glint/session/live_scene.h>
 #include <glint/session/session.h>
 
 #include <cstdint>
@@ -47,8 +49,23 @@ public:
     Status change(const compiler::Settings& settings, std::uint32_t width, std::uint32_t height);
 
     // Shows another moment, or the rest pose. The first one uploads the scene anew, so that it can move,
-    // before the frame `frame`. The device must be idle.
+    // before the frame `frame`.
     Status pose(const std::optional<session::Moment>& moment, std::uint64_t frame);
+    // Takes the list of edits, whose first `same` are those of the last call, and makes those that the
+    // package is made for. The first one uploads the scene anew, so that it can be edited, before the frame
+    // `frame`. install() makes the others. Edits that can't be made are passed over, and the first error is
+    // returned.
+    Status edit(std::span<const session::Edit> edits, std::size_t same, std::uint64_t frame);
+    // Returns whether edits wait for another build.
+    bool needsBuild() const {
+        return edited_ < edits_.size();
+    }
+    // Returns the first animations of the files that edits have added, which play with the scene's.
+    const std::vector<std::size_t>& addedAnimations() const {
+        return addedAnimations_;
+    }
+    // Returns the index of an instance in data(), if `place` is one of it.
+    std::optional<std::size_t> instanceAt(const SurfacePlace& place) const;
 
     bool isReady() const {
         return device_.renderer != nullptr;
@@ -120,25 +137,36 @@ private:
         std::uint64_t uploadedIn = 0;  // frame that is done after the upload
         double recordMs = 0.0;         // of wall clock, until the upload was recorded
     };
-    static Result<Device> recordUpload(Context& context, const Build& build, const gltf::Scene* posed);
+    // What can happen to a scene on the device.
+    enum class Use : std::uint8_t { Still, Moves, Edited };
+    static Result<Device> recordUpload(Context& context, const Build& build, const gltf::Scene& scene,
+                                       Use use);
     bool isSameScene(const Build& build) const;
+    bool keepsEdits(const Build& build) const;
     Status adopt(Device made, const RendererOptions& options, std::uint64_t frame);
     Status readEnvironment(const Build& build, std::vector<Diagnostic>& notes);
     Result<bool> replace(Build& build, const RendererOptions& options);
+    void startEdits();
+    Status makeEdits(std::uint64_t frame);
+    Status followScene();
 
     Context& context_;
     compiler::Settings settings_;
     Build build_;
     std::shared_ptr<const Package> beforeEarly_;  // null: no early package is shown
-    std::unique_ptr<gltf::Scene> posed_;          // null until the scene moves
+    std::unique_ptr<gltf::Scene> posed_;          // null until the scene moves or is edited
+    std::vector<session::Edit> edits_;
+    std::size_t edited_ = 0;  // edits that were made, or passed over
+    std::vector<std::size_t> addedAnimations_;
     std::optional<session::Moment> moment_;
     bool poseIsNew_ = false;  // the device has another pose
     std::shared_ptr<Environment> environment_;
     std::string environmentKey_;
     session::SkyChoice sky_;
     Device device_;
-    std::uint64_t levelsIn_ = 0;  // frame that has got the last levels of textures
-    bool levelsAreNew_ = false;   // takeAllLevels() has not told yet
+    std::optional<session::LiveScene> live_;  // of `device_`, if it can be edited
+    std::uint64_t levelsIn_ = 0;              // frame that has got the last levels of textures
+    bool levelsAreNew_ = false;               // takeAllLevels() has not told yet
     // Earlier scenes, while frames may use them.
     struct RetiredDevice {
         std::uint64_t frame = 0;

@@ -43,6 +43,7 @@ std::vector<std::string> shotWords(const compiler::Settings& settings, const Sho
         {"time", options.time},
         {"view", options.view},
         {"layers", options.layers},
+        {"edits", options.edits},
     };
     for (const auto& [name, value] : files) {
         // Profiles are only for policies that count hits, whose word names the file.

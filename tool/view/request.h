@@ -61,6 +61,7 @@ struct ShotOptions {
     std::string animation;  // with `time`: the value of --animation
     std::string view{};     // the value of --view; empty: the picture itself
     std::string layers{};   // the value of --layers, with an `output` that holds layers; empty: none
+    std::string edits{};    // the value of --edits; empty: none
 };
 
 // Returns the words, from "glint" on. `settings` has the size of the picture and the number of its samples.

@@ -23,7 +23,8 @@ constexpr DiagnosticList kLists[] = {
      " check-density check-energy check-proof check-range check-reciprocity check-samples"
      " check-unreachable context-handles context-queue context-services data-uri declaration denoise-failed"
      " denoise-missing depfile-name device-features device-layers device-missing device-tracer"
-     " draco-attribute draco-decode draco-size effect-missing effect-unknown emissive-lights engine-scene"
+     " draco-attribute draco-decode draco-size edit-format edit-unknown edit-value effect-missing"
+     " effect-unknown emissive-lights engine-scene"
      " environment-missing environment-radiance environment-size environment-unread environment-unsampled"
      " exception exr-encode extension-unsupported file-open file-read file-size file-write frame-not-recorded"
      " frame-options glb-chunk glb-length glb-version glsl gltf gpu-table gpu-unknown half-precision"
@@ -75,7 +76,7 @@ constexpr DiagnosticList kLists[] = {
      " "},
     {kNote,
      " alpha-blend alpha-stochastic alpha-tested animation-pointer cache-write calibration-points"
-     " effect-absent environment-resampled extension-no-picture gpu-choice lock-moved lock-stale"
+     " edit-fallback edit-unused effect-absent environment-resampled extension-no-picture gpu-choice lock-moved lock-stale"
      " node-instances payload-bytes pipeline-cache pipeline-statistics profile-keys profile-stale"
      " query-flags scene-choice texture-basisu texture-compression texture-source texture-unknown"
      " window-shot"

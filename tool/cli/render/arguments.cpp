@@ -378,6 +378,11 @@ void addRenderOptions(CLI::App& command, const std::shared_ptr<RenderArguments>&
         .required();
     addSceneOptions(command, *arguments);
     addMotionOptions(command, arguments->motion);
+    addText(
+        command, "--edits", arguments->edits, "FILE.json",
+        "edit the scene while it is drawn: hide, move, delete, copy nodes, change materials and lights, add "
+        "glTF files; each edit before a frame, all of them without --frames (docs/live.md)")
+        .group("Movement");
     addPackageOption(command, *arguments);
     addFlag(command, "--denoise", arguments->denoise,
             "remove the noise of each picture; by Open Image Denoise, if glint was built with it "

@@ -72,6 +72,7 @@ struct RenderArguments : compiler::Settings {
     std::string scene;
     std::string output;
     MotionArguments motion;
+    std::string edits;         // a file of edits; empty: none
     std::string settingsFile;  // that completeLine() has read
     std::string exposure = "auto";
     std::string stats;

@@ -5,6 +5,7 @@
 #include "image/tone.h"
 
 #include <glint/measure/views.h>
+#include <glint/session/live_scene.h>
 
 #include <algorithm>
 #include <chrono>
@@ -24,21 +25,24 @@ public:
           options_(session::rendererOptions(setup.settings)),
           scene_(scene),
           report_(report),
-          camera_(setup.camera) {}
+          camera_(setup.camera),
+          animations_(setup.movement ? setup.movement->animations : std::vector<std::size_t>()) {}
 
-    // The scene is uploaded in the pose of the first moment.
+    // The scene is uploaded in the pose of the first moment, before all edits.
     Status start(Context& context, std::shared_ptr<const Package> package, session::SceneViewData data) {
         if (setup_.movement) {
             GLINT_TRY_DO(pose(0, data));
             data.moves = setup_.movement->seconds.size() > 1;
         }
-        // Once for all pictures: a sequence would flicker otherwise.
-        sky_ = session::chooseSky(setup_.settings, scene_, data);
-        if (setup_.environment == nullptr) {
-            report_.sky = sky_;
+        if (!setup_.edits.edits.empty()) {
+            session::makeEditable(*package, data);
         }
         const base::Clock::time_point begin = base::Clock::now();
         GLINT_TRY(device_, session::DeviceScene::upload(context, std::move(package), std::move(data)));
+        if (device_.data.editable) {
+            live_.emplace(*device_.package, *device_.gpu, device_.data, scene_,
+                          setup_.settings.compile.plan.keys.keptLobes);
+        }
         const base::Clock::time_point onDevice = base::Clock::now();
         report_.start.uploadMs = base::millisecondsBetween(begin, onDevice);
         GLINT_TRY(renderer_, device_.makeRenderer(context, options_));
@@ -46,13 +50,26 @@ public:
         return describe();
     }
 
-    // Moves the uploaded scene to a later moment.
+    // Makes the edits before a frame, and moves the scene on the device to its moment. The upload has that of
+    // the first frame.
     Status advance(std::size_t moment, FrameReport& frame) {
         const base::Clock::time_point begin = base::Clock::now();
-        GLINT_TRY_DO(pose(moment, device_.data));
+        GLINT_TRY_DO(edit(frame));
+        const bool isUploaded = moment == 0 && frame.edits == 0;
+        if (!isUploaded) {
+            GLINT_TRY_DO(pose(moment, device_.data));
+        }
+        // Once for all pictures: a sequence would flicker otherwise.
+        if (moment == 0) {
+            sky_ = session::chooseSky(setup_.settings, scene_, device_.data);
+            report_.sky = setup_.environment == nullptr ? std::optional(sky_) : std::nullopt;
+        }
+        if (isUploaded) {
+            return okStatus();
+        }
         frame.poseMs = base::millisecondsSince(begin);
-        MotionView motion = device_.data.motion();
-        motion.builds = setup_.movement->builds;
+        MotionView motion = live_ ? live_->motion() : device_.data.motion();
+        motion.builds = setup_.movement ? setup_.movement->builds : MotionView::Builds::ByRule;
         const base::Clock::time_point updated = base::Clock::now();
         GLINT_TRY_DO(device_.gpu->updateAndWait(motion));
         frame.updateMs = base::millisecondsSince(updated);
@@ -162,10 +179,42 @@ private:
         return okStatus();
     }
 
-    // Takes a moment of the movement.
+    // Makes the edits that are due before a frame; without a sequence these are all.
+    Status edit(FrameReport& frame) {
+        const std::vector<session::Edit>& edits = setup_.edits.edits;
+        const bool isSequence = setup_.movement && setup_.movement->isSequence;
+        for (; edited_ < edits.size() && (!isSequence || edits[edited_].frame <= frame.frame); ++edited_) {
+            const session::Edit& edit = edits[edited_];
+            const std::size_t known = scene_.animations.size();
+            GLINT_TRY([[maybe_unused]] const int node, session::applyEdit(edit, setup_.edits.files, scene_));
+            if (edit.kind == session::EditKind::Add) {
+                session::addTextures(setup_.edits.textures.find(edit.file)->second, device_.data);
+            }
+            // The file plays its first animation, or all of them, as the scene does.
+            const std::size_t last =
+                setup_.arguments.motion.animation == "all" ? scene_.animations.size() : known + 1;
+            for (std::size_t i = known; i < std::min(last, scene_.animations.size()); ++i) {
+                animations_.push_back(i);
+            }
+            ++frame.edits;
+        }
+        return okStatus();
+    }
+
+    // Takes a moment of the movement, or the rest pose.
     Status pose(std::size_t moment, session::SceneViewData& data) {
-        session::moveTo(setup_.movement->moment(moment), scene_);
-        session::poseSceneView(scene_, data);
+        session::moveTo(setup_.movement
+                            ? std::optional(session::Moment{animations_, setup_.movement->seconds[moment]})
+                            : std::nullopt,
+                        scene_);
+        if (live_) {
+            GLINT_TRY_DO(live_->follow(scene_));
+            for (const Diagnostic& note : live_->takeNotes()) {
+                setup_.console.report(note);
+            }
+        } else {
+            session::poseSceneView(scene_, data);
+        }
         if (session::framesEverything(scene_, setup_.arguments.camera)) {
             return okStatus();  // that one stands still
         }
@@ -215,10 +264,13 @@ private:
     gltf::Scene& scene_;
     RenderReport& report_;
     session::CameraChoice camera_;
-    std::size_t samplesDone_ = 0;  // of all pictures
+    std::vector<std::size_t> animations_;  // that play
+    std::size_t edited_ = 0;               // edits that were made
+    std::size_t samplesDone_ = 0;          // of all pictures
     session::SkyChoice sky_;
     package::Effect onScreen_ = 0;  // for --coverage
     session::DeviceScene device_;
+    std::optional<session::LiveScene> live_;  // with edits
     std::unique_ptr<Renderer> renderer_;
     bool begun_ = false;   // a sample is complete
     bool warned_ = false;  // a picture shows nothing
@@ -250,9 +302,7 @@ Status renderFrames(Context& context, std::shared_ptr<const Package> package, co
         frame.seconds = movement.seconds[i];
         const std::string& output = setup.arguments.output;
         frame.image = movement.isSequence ? numberedFile(output, frame.frame).string() : output;
-        if (i > 0) {
-            GLINT_TRY_DO(loop.advance(i, frame));
-        }
+        GLINT_TRY_DO(loop.advance(i, frame));
         GLINT_TRY(const auto image, loop.render(frame));
         GLINT_TRY(const auto accepted, accept());
         if (!accepted) {

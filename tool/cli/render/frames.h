@@ -9,15 +9,26 @@
 #include <glint/renderer.h>
 #include <glint/result.h>
 #include <glint/session/camera.h>
+#include <glint/session/edits.h>
 #include <glint/session/session.h>
+#include <glint/session/textures.h>
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace glint::cli {
+
+// The edits of --edits, and what they need.
+struct EditPlan {
+    std::vector<session::Edit> edits;  // by frame
+    session::SceneFiles files;
+    // Of the files, by the same names.
+    std::map<std::string, std::shared_ptr<const session::TextureSet>, std::less<>> textures;
+};
 
 struct FrameSetup {
     const Console& console;
@@ -28,6 +39,7 @@ struct FrameSetup {
     session::CameraChoice camera;              // of the first picture
     double aspect = 1.0;                       // width / height
     const LinearImage* reference = nullptr;    // that of --view-reference; null: none
+    const EditPlan& edits;
     // Gets how many samples of all pictures are done, and how many there are.
     std::function<void(std::size_t done, std::size_t all)> progress{};
 };

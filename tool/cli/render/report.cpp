@@ -230,6 +230,7 @@ static base::Fields fieldsOf(const FrameReport*) {
     return {output<&T::frame>("frame", "Number of the picture."),
             output<&T::seconds>("seconds", "Time of the animation in seconds."),
             output<&T::image>("image", "File of the picture."),
+            output<&T::edits>("edits", "Edits that were made before it, since the picture before."),
             output<&T::motion, &Motion::deformed>("deformed", "Instances whose vertices moved."),
             output<&T::motion, &Motion::refits>("refits", "Number of BLASes that were refitted."),
             output<&T::motion, &Motion::rebuilds>("rebuilds", "Number of BLASes that were rebuilt."),

@@ -88,6 +88,7 @@ struct FrameReport {
     std::int64_t frame = 0;
     double seconds = 0.0;  // of the animation
     std::string image;
+    std::uint32_t edits = 0;  // that were made before it
     MotionStatistics motion;
     double poseMs = 0.0;  // wall clock: nodes, joints and weights on the CPU
     double updateMs =

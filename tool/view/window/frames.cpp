@@ -100,6 +100,8 @@ Status Window::applyPose() {
         std::iota(animations_.begin(), animations_.end(), std::size_t{0});
     } else {
         animations_.push_back(static_cast<std::size_t>(animationChoice_));
+        const std::vector<std::size_t>& added = sides_[0]->picture.addedAnimations();
+        animations_.insert(animations_.end(), added.begin(), added.end());
     }
     const auto moment = poses_ ? std::optional(session::Moment{animations_, time_}) : std::nullopt;
     for (std::unique_ptr<Side>& one : sides_) {

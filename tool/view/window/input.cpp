@@ -47,13 +47,32 @@ void Window::onScroll(double steps) {
 
 void Window::onDrop(const std::string& file) {
     wakes_ = 4;
-    openFile(file);
+    const std::string extension = lowerExtension(file);
+    if (showsOutliner_ && side().picture.isReady() && (extension == ".gltf" || extension == ".glb")) {
+        addFile(file);
+    } else {
+        openFile(file);
+    }
+}
+
+// Adds a file below the selected node.
+void Window::addFile(const std::string& file) {
+    session::Edit one{.kind = session::EditKind::Add};
+    std::error_code error;
+    const fs::path whole = fs::absolute(file, error);
+    one.file = error ? file : whole.string();
+    one.parent = selected_ < 0 ? std::string() : session::nodeLabel(side().picture.scene(), selected_);
+    edit(std::move(one));
 }
 
 void Window::openFile(const std::string& file) {
     const std::string extension = lowerExtension(file);
     if (extension == ".gltf" || extension == ".glb") {
-        opening_ = Opening{scene_, {}};
+        opening_ = Opening{scene_, {}, edits_};
+        if (file != scene_) {
+            edits_.clear();
+            selected_ = -1;
+        }
         scene_ = file;
         for (std::unique_ptr<Side>& one : sides_) {
             if (one) {
@@ -95,6 +114,7 @@ void Window::keepScene() {
         return;
     }
     scene_ = opening_->scene;
+    edits_ = std::move(opening_->edits);
     auto wanted = opening_->wanted.begin();
     for (std::size_t i = 0; i < kPictures; ++i) {
         if (sides_[i] && wanted != opening_->wanted.end()) {
@@ -353,6 +373,9 @@ void Window::compare(bool on) {
     }
     sides_[1] = std::make_unique<Side>(*context_);
     sides_[1]->wanted = sides_[0]->wanted;
+    if (const Status kept = sides_[1]->picture.edit(edits_, 0, 0); !kept) {
+        report(kept.error());
+    }
     shown_ = Shown::Wipe;
     edited_ = 1;
     order(1);
@@ -382,7 +405,8 @@ void Window::pickAt(double x, double y) {
         return;
     }
     pick_ = std::move(*picked);
-    wantedTab_ = "Pixel";
+    selected_ = pick_->node;
+    wantedTab_ = showsOutliner_ ? "Nodes" : "Pixel";
 }
 
 }  // namespace glint::view

@@ -49,7 +49,8 @@ constexpr Shortcut kShortcuts[] = {
     {"Esc", "close what is open"},
     {"F1", "this list"},
     {"Ctrl + Q", "quit"},
-    {"drop a file", ".gltf, .glb: open it; .hdr, .exr: light the scene by it"},
+    {"drop a file",
+     ".gltf, .glb: open it, or add it where the tab Nodes is open; .hdr, .exr: light the scene by it"},
 };
 
 std::string mebibytes(std::uint64_t bytes) {
@@ -89,6 +90,7 @@ void Window::drawInterface() {
     drawMarks();
     drawStatus(width, height, line);
     const bool measured = std::exchange(measuresPasses_, false);
+    showsOutliner_ = showsOutliner_ && showsPanel_;
     if (showsPanel_) {
         drawSidePanel(width, panel, io.DisplaySize.y);
     }
@@ -492,6 +494,8 @@ void Window::drawSidePanel(float x, float width, float height) {
         });
         tab("Views", "Views", [this] { drawLooksTab(); });
         tab("Pixel", "Pixel", [this] { drawPixel(); });
+        showsOutliner_ = false;
+        tab("Nodes", "Nodes", [this] { drawOutliner(); });
         tab("Scene", "Scene", [this] { drawScene(); });
         tab("Messages", unread_ > 0 ? fmt::format("Messages ({})", unread_) : "Messages",
             [this] { drawMessages(); });

@@ -25,7 +25,7 @@ namespace glint::view {
 void Window::order(std::size_t index, std::span<const std::string> changed) {
     Side& one = *sides_[index];
     one.ordered = one.wanted;
-    builder_->start({index, one.wanted, scene_, {changed.begin(), changed.end()}});
+    builder_->start({index, one.wanted, scene_, edits_, {changed.begin(), changed.end()}});
 }
 
 void Window::pollFiles() {
@@ -97,6 +97,7 @@ Status Window::takeBuilds() {
         }
         keepScene();
         fail(installed.error());
+        dropEdits(installed.error());
     }
     return okStatus();
 }
@@ -133,6 +134,9 @@ Status Window::install(std::size_t index, Build build) {
     }
     if (isUploaded) {
         pick_.reset();
+    }
+    if (one.picture.needsBuild()) {
+        order(index);  // edits have come meanwhile
     }
     if (isOtherScene) {
         cameraIsNew_ = true;
@@ -266,10 +270,20 @@ void Window::saveScreenshot() {
     // A camera that frames everything was placed for another moment.
     const bool isPlaced = poses_ && session::framesEverything(picture.scene(), sides_[0]->wanted.camera);
     const std::string camera = isPlaced ? session::toText(camera_.placed()) : camera_.name();
+    fs::path edits;
+    if (!edits_.empty()) {
+        edits = file;
+        edits.replace_extension(".edits.json");
+        const std::string text = base::toText(base::jsonOf(session::EditList{edits_}));
+        if (Status written = base::writeFile(edits, text); !written) {
+            report(written.error());
+            return;
+        }
+    }
     const std::vector<std::string> words =
         shotWords(settings, {scene_, file.string(), camera, static_cast<double>(exposure_),
                              poses_ ? fmt::format("{}", time_) : std::string(), animation, shown.view,
-                             shown.layer.empty() ? std::string() : layerWord(shown.layer)});
+                             shown.layer.empty() ? std::string() : layerWord(shown.layer), edits.string()});
     fs::path command = file;
     command.replace_extension(".sh");
     const std::string line = base::shellWords(words);

@@ -11,6 +11,8 @@
 #include <fmt/format.h>
 
 #include <GLFW/glfw3.h>
+#include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace glint::view {
@@ -21,6 +23,17 @@ constexpr std::size_t kMessages = 200;  // the most that are kept
 
 Window& windowOf(GLFWwindow* window) {
     return *static_cast<Window*>(glfwGetWindowUserPointer(window));
+}
+
+// Returns the part of the first screen that windows may cover, in window coordinates.
+Presenter::Area workArea() {
+    Presenter::Area room{0, 0, std::numeric_limits<int>::max(), std::numeric_limits<int>::max()};
+    if (GLFWmonitor* const monitor = glfwGetPrimaryMonitor()) {
+        Presenter::Area found;
+        glfwGetMonitorWorkarea(monitor, &found.x, &found.y, &found.width, &found.height);
+        room = found.width > 0 && found.height > 0 ? found : room;
+    }
+    return room;
 }
 
 Diagnostic windowError(const std::string& message) {
@@ -107,12 +120,17 @@ Status Window::open() {
     showsPanel_ = request_.showsPanel;
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     const int panel = showsPanel_ ? static_cast<int>(kPanelWidth) : 0;
-    window_ = glfwCreateWindow(
-        static_cast<int>(request_.settings.renderer.width) + panel,
-        static_cast<int>(request_.settings.renderer.height) + static_cast<int>(kStatusHeight),
-        ("glint view: " + scene_).c_str(), nullptr, nullptr);
+    const Presenter::Area room = workArea();
+    const int width = std::min(static_cast<int>(request_.settings.renderer.width) + panel, room.width);
+    const int height = std::min(
+        static_cast<int>(request_.settings.renderer.height) + static_cast<int>(kStatusHeight), room.height);
+    window_ = glfwCreateWindow(width, height, ("glint view: " + scene_).c_str(), nullptr, nullptr);
     if (window_ == nullptr) {
         return windowError("the window could not be opened");
+    }
+    // A window that fills the screen has no other place.
+    if (width == room.width || height == room.height) {
+        glfwSetWindowPos(window_, room.x, room.y);
     }
     glfwSetWindowUserPointer(window_, this);
     // Dear ImGui's callbacks, which are set later, call these.

@@ -110,6 +110,7 @@ private:
     void handleKey(const KeyPress& press);
     void handleMouse();
     void fly(double seconds);
+    void addFile(const std::string& file);
     void openFile(const std::string& file);
     void keepScene();
     void showTitle();
@@ -125,6 +126,18 @@ private:
     void saveScreenshot();
     void measureDifference();
     Status writeReport(const std::string& file);
+
+    // --- outliner.cpp: the tree of nodes, and edits ---
+    void edit(session::Edit edit);
+    void editNode(session::EditKind kind);
+    void dropEdits(const Diagnostic& error);
+    void drawOutliner();
+    void drawNode(const gltf::Scene& scene, const std::vector<std::vector<int>>& children, int node);
+    void drawSelected(const gltf::Scene& scene);
+    void drawTransform(const gltf::Scene& scene);
+    void drawMaterials(const gltf::Scene& scene);
+    void drawLight(const gltf::Scene& scene);
+    void drawVariants(const gltf::Scene& scene);
 
     // --- panels.cpp ---
     void drawInterface();
@@ -156,6 +169,7 @@ private:
     struct Opening {
         std::string scene;
         std::vector<compiler::Settings> wanted;  // of the sides that are there
+        std::vector<session::Edit> edits;
     };
     std::optional<Opening> opening_;
     std::size_t edited_ = 0;  // side
@@ -192,6 +206,11 @@ private:
     std::uint64_t viewedFrame_ = 0;  // 0: none
     float viewedExposure_ = 0.0F;
     base::Clock::time_point viewed_{};
+
+    std::vector<session::Edit> edits_;  // all that were made, of both sides
+    int selected_ = -1;                 // node
+    bool showsOutliner_ = false;        // in the last frame; a file that is dropped is added then
+    std::string addedFile_;             // as it is typed
 
     std::optional<Pick> pick_;
     bool wantsShot_ = false;

@@ -33,13 +33,16 @@ struct Bounds {
 
 // The arrays behind a SceneView. Spans point into the Scene, which must outlive it and must not change.
 struct SceneViewData {
-    std::vector<PrimitiveView> primitives;  // sorted by (mesh, primitive)
+    // Sorted by (mesh, primitive), mesh by mesh from those that extendSceneView() has added last.
+    std::vector<PrimitiveView> primitives;
     std::vector<InstanceView> instances;
     std::vector<ImageView> images;
     std::vector<LightView> lights;
 
-    std::uint32_t packageScene = 0;  // as in SceneView
-    bool moves = false;              // as in SceneView
+    std::uint32_t packageScene = 0;    // as in SceneView
+    bool moves = false;                // as in SceneView
+    bool editable = false;             // as in SceneView
+    std::uint32_t textureRoom = 1024;  // as in SceneView
     TraversalOrder traversalOrder = TraversalOrder::Auto;
     OpacityUse opacity = OpacityUse::Proved;
     VertexForm vertices = VertexForm::Compact;
@@ -55,14 +58,18 @@ struct SceneViewData {
     std::vector<std::array<double, 3>> meshOrigins;    // by mesh number, in the mesh's space in the file
     std::vector<std::vector<gltf::Float3>> positions;  // of primitives whose mesh has an origin
     std::vector<Bounds> meshBoxes;                     // by mesh number, in the mesh's space in the file
+    bool keepsOrigin = false;                          // poses leave the origin as it is
+    std::vector<bool> listed;                          // by mesh number: its primitives are there
+    // The light of Scene::lights that each light is, or -1.
+    std::vector<int> lightSources;
     // The node that places each instance.
     struct Source {
         std::size_t node = 0;       // index into Scene::nodes
         std::size_t placement = 0;  // index into its Instancing, if it has one
     };
     std::vector<Source> sources;
-    // Holds the images that useTextures() has given.
-    std::shared_ptr<const TextureSet> textures;
+    // Hold the images that useTextures() and addTextures() have given.
+    std::vector<std::shared_ptr<const TextureSet>> textures;
     // The data to which the spans of primitives, instances and materials point.
     compiler::MaterialLayout materialLayout;  // of the package's records; without fields until useLayoutOf()
     std::vector<std::vector<std::uint8_t>> materialRecords;
@@ -92,6 +99,11 @@ struct SceneViewData {
 // outlive the result. Its images must have been decoded, or loadTextures() must read them, or the runtime
 // refuses them.
 SceneViewData makeSceneView(const gltf::Scene& scene);
+
+// Adds what edits have added to `scene` since: primitives of meshes that are now placed, instances of nodes,
+// and lights. Meshes that are copies of others share their primitives. What edits have removed stays, and
+// poses hide it. Poses keep the origin from then on.
+void extendSceneView(const gltf::Scene& scene, SceneViewData& data);
 
 // Returns the layout of the package's material records. `model` is that of the materials which it was
 // compiled from.

@@ -42,5 +42,7 @@ Result<std::shared_ptr<const TextureSet>> loadTextures(const gltf::Scene& scene,
 
 // Gives the images to `data`, which keeps them.
 void useTextures(std::shared_ptr<const TextureSet> textures, SceneViewData& data);
+// Adds the images of another scene behind those that are there.
+void addTextures(std::shared_ptr<const TextureSet> textures, SceneViewData& data);
 
 }  // namespace glint::session
