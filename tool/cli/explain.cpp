@@ -55,12 +55,6 @@ constexpr std::string_view nameOf(gltf::AnimationPath path) {
     return "weights";
 }
 
-// Returns whether a channel of that path drives a node.
-bool drivesNode(gltf::AnimationPath path) {
-    return path != gltf::AnimationPath::Material && path != gltf::AnimationPath::Light &&
-           path != gltf::AnimationPath::Camera;
-}
-
 constexpr gltf::AnimationPath kPaths[] = {gltf::AnimationPath::Translation, gltf::AnimationPath::Rotation,
                                           gltf::AnimationPath::Scale,       gltf::AnimationPath::Weights,
                                           gltf::AnimationPath::Visible,     gltf::AnimationPath::Material,
