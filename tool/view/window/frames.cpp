@@ -104,10 +104,12 @@ Status Window::applyPose() {
         animations_.insert(animations_.end(), added.begin(), added.end());
     }
     const auto moment = poses_ ? std::optional(session::Moment{animations_, time_}) : std::nullopt;
+    bool isNew = false;
     for (std::unique_ptr<Side>& one : sides_) {
         if (!one || !one->picture.isReady() || one->picture.moment() == moment) {
             continue;
         }
+        isNew = true;
         finishSamples();
         if (Status posed = one->picture.pose(moment, presenter_->submitted() + 1); !posed) {
             report(posed.error());
@@ -115,7 +117,7 @@ Status Window::applyPose() {
             poses_ = false;
         }
     }
-    if (!camera_.moved() && poses_) {
+    if (isNew && !camera_.moved()) {
         // A camera of the scene may move, too.
         const Picture& picture = sides_[0]->picture;
         if (!session::framesEverything(picture.scene(), sides_[0]->wanted.camera)) {

@@ -89,6 +89,8 @@ void Window::edit(Edit edit) {
             order(i);
         }
     }
+    // A camera of the scene may be below a node that has moved.
+    cameraIsNew_ = cameraIsNew_ || !camera_.moved();
     wakes_ = 4;
 }
 
