@@ -49,8 +49,9 @@ TEST(GltfVariants, DecideTheMaterialsOfPrimitives) {
     ASSERT_TRUE(day.ok()) << toString(day.error());
     EXPECT_EQ(materialsOf(*day), (std::vector<int>{1, 0, 1}));
     EXPECT_EQ(day->variant, "Day");
-    // No primitive remains without a material.
-    EXPECT_EQ(day->defaultMaterial, -1);
+    // A primitive without a material has that of glTF's default when no variant is chosen, which an edit may
+    // do.
+    EXPECT_EQ(day->defaultMaterial, 3);
     const Result<gltf::Scene> night = import(withVariants(), with("Night"));
     ASSERT_TRUE(night.ok()) << toString(night.error());
     EXPECT_EQ(materialsOf(*night), (std::vector<int>{2, 2, 1}));
