@@ -10,16 +10,15 @@ import argparse
 import json
 import math
 import pathlib
-import struct
 import subprocess
 import sys
 import tempfile
-import zlib
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "examples"))
+sys.path[:0] = [str(ROOT / "examples"), str(ROOT / "scripts")]
 
 from scene_parts import Buffer, sphere, write_scene  # noqa: E402
+from views import sheet  # noqa: E402
 
 FRAMES = 16
 FPS = 8
@@ -112,49 +111,6 @@ def write_lamp(path):
                 extensions=light("point", color=[1, 0.75, 0.45], intensity=4))
 
 
-def read_png(path):
-    """Returns width, height and the rows of an 8-bit RGB file."""
-    data = path.read_bytes()
-    at, packed = 8, b""
-    while at < len(data):
-        size, kind = struct.unpack(">I4s", data[at:at + 8])
-        body = data[at + 8:at + 8 + size]
-        if kind == b"IHDR":
-            width, height, depth, color = struct.unpack(">IIBB", body[:10])
-            assert (depth, color) == (8, 2), path
-        packed += body if kind == b"IDAT" else b""
-        at += size + 12
-    raw, line, rows = zlib.decompress(packed), 3 * width, []
-    above = bytearray(line)
-    for y in range(height):
-        start = y * (line + 1)
-        form, row = raw[start], bytearray(raw[start + 1:start + 1 + line])
-        for i in range(line):
-            left = row[i - 3] if i >= 3 else 0
-            corner = above[i - 3] if i >= 3 else 0
-            guess = left + above[i] - corner
-            near = min((abs(guess - left), 0, left), (abs(guess - above[i]), 1, above[i]),
-                       (abs(guess - corner), 2, corner))[2]
-            row[i] = row[i] + (0, left, above[i], (left + above[i]) // 2, near)[form] & 255
-        rows.append(bytes(row))
-        above = row
-    return width, height, rows
-
-
-def write_png(path, width, rows):
-    def chunk(kind, body):
-        return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
-
-    # Each row as the differences to the one above, which packs smooth pictures well.
-    above, lines = bytes(3 * width), []
-    for row in rows:
-        lines.append(b"\2" + bytes((a - b) & 255 for a, b in zip(row, above)))
-        above = row
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" +
-                     chunk(b"IHDR", struct.pack(">IIBBBBB", width, len(rows), 8, 2, 0, 0, 0)) +
-                     chunk(b"IDAT", zlib.compress(b"".join(lines), 9)) + chunk(b"IEND", b""))
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("output", type=pathlib.Path)
@@ -170,13 +126,7 @@ def main():
         subprocess.run([options.glint, "render", folder / "room.gltf", "-o", folder / "out.png", "--edits",
                         folder / "edits.json", "--frames", f"0:{FRAMES - 1}", "--fps", str(FPS), "--size", options.size,
                         "--spp", options.spp, "--camera", "0.3,2.2,6.5/0,1,0/32", "--sky", "0.6"], check=True)
-        pictures = [read_png(folder / f"out.{frame:04}.png") for frame in range(1, FRAMES, 2)]
-    width, columns = pictures[0][0], 4
-    rows = []
-    for first in range(0, len(pictures), columns):
-        band = pictures[first:first + columns]
-        rows += [b"".join(picture[2][y] for picture in band) for y in range(band[0][1])]
-    write_png(options.output, width * columns, rows)
+        sheet(options.output, [folder / f"out.{frame:04}.png" for frame in range(1, FRAMES, 2)], 4)
 
 
 if __name__ == "__main__":

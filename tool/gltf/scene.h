@@ -60,8 +60,8 @@ struct Mesh {
     std::vector<double> weights{};  // of the morph targets, one for each, for nodes that give none
     // The file's primitives without a triangle, and why: "/meshes/0/primitives/1: has no triangle".
     std::vector<std::string> leftOut{};
-    int copyOf =
-        -1;  // a mesh with the same vertices and other materials, from which edits have made this one
+    // The mesh with the same vertices and other materials from which edits have made this one; -1: none.
+    int copyOf = -1;
 };
 
 // The transform is the product T * R * S.

@@ -77,7 +77,7 @@ Diagnostic unknown(const Edit& edit, const char* member, const std::string& what
     std::erase_if(names, [](const std::string& name) { return name.empty(); });
     return makeError("edit-unknown", edit.place + "/" + member,
                      fmt::format("there is no {} \"{}\"{}", what, text, base::suggestion(text, names)),
-                     fmt::format("use a name, or a number of the file as a text"));
+                     "use a name, or a number of the file as a text");
 }
 
 Diagnostic impossible(const Edit& edit, const std::string& member, const std::string& message,

@@ -1,4 +1,4 @@
-// What the window shows in place of the picture, a view or a layer, and what it says of a pixel.
+// A view or a layer that the window shows in place of the picture, and the text about a pixel.
 #pragma once
 
 #include "image/exr.h"

@@ -137,7 +137,7 @@ private:
         std::uint64_t uploadedIn = 0;  // frame that is done after the upload
         double recordMs = 0.0;         // of wall clock, until the upload was recorded
     };
-    // What can happen to a scene on the device.
+    // The changes that a scene on the device can take.
     enum class Use : std::uint8_t { Still, Moves, Edited };
     static Result<Device> recordUpload(Context& context, const Build& build, const gltf::Scene& scene,
                                        Use use);

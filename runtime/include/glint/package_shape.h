@@ -150,6 +150,10 @@ enum class Ordering : std::uint32_t {
 // The most lights that a surface chooses by a hierarchy.
 inline constexpr std::uint32_t kMaxLightSamples = 64;
 
+// Returns the Tracer bits that strategies use. Those with a pipeline of their own use the ray tracing
+// pipeline; the others use the package's tracers.
+std::uint32_t tracersOf(std::uint32_t strategies, std::uint32_t tracers);
+
 // --- Rows of its tables ---
 
 // A text: Package::string() returns it.
@@ -204,6 +208,12 @@ struct AttributeEntry {
     std::uint32_t hasFallback;  // 1: primitives may lack it
     float fallback[4];
     std::uint64_t feature;  // the bit of keys whose shaders read it
+};
+
+// A file of a package in memory. `glint compile --embed` makes such files, and Package::load() reads them.
+struct EmbeddedFile {
+    std::string_view name;                // file name in the package's folder: "tables.bin", "uber.spv"
+    std::span<const std::uint8_t> bytes;  // any alignment; not owned
 };
 
 // --- Names ---
@@ -299,15 +309,5 @@ constexpr std::uint32_t bitsOf(ShadingPrecision precision) {
 }
 
 inline constexpr auto kTracers = valuesOf(kTracerNames);
-
-// Returns the Tracer bits that strategies use. Those with a pipeline of their own use the ray tracing
-// pipeline; the others use the package's tracers.
-std::uint32_t tracersOf(std::uint32_t strategies, std::uint32_t tracers);
-
-// A file of a package in memory. `glint compile --embed` makes such files, and Package::load() reads them.
-struct EmbeddedFile {
-    std::string_view name;                // file name in the package's folder: "tables.bin", "uber.spv"
-    std::span<const std::uint8_t> bytes;  // any alignment; not owned
-};
 
 }  // namespace glint::package

@@ -112,8 +112,7 @@ public:
     // yet. The GpuScene must outlive it. It is updated and edited by its own functions; steps that are
     // recorded afterwards read it as it is then. If a Renderer replaces the scene's package,
     // RaySteps::begin() fails with "package-replaced" until RaySteps::replacePackage() gets one with the same
-    // records. Rays are relative to its SceneView::origin. The host
-    // binds GpuScene::descriptorSet().
+    // records. Rays are relative to its SceneView::origin. The host binds GpuScene::descriptorSet().
     static Result<std::unique_ptr<EngineScene>> share(Context& context, GpuScene& scene);
     ~EngineScene();
     EngineScene(const EngineScene&) = delete;

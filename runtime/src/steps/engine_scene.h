@@ -72,7 +72,7 @@ struct EngineScene::State final : DrawnScene {
     std::vector<std::array<float, 12>> placed;  // the transforms of the instances
     std::uint32_t leastInstances = 0;           // that the geometries name
 
-    // What the host has given, from which another package makes its records.
+    // The host's content, from which another package makes its records.
     std::string name;                                                 // of the scene in the package
     std::vector<std::pair<std::uint32_t, std::uint32_t>> primitives;  // mesh and primitive of each geometry
     std::vector<EngineTextureView> textures;

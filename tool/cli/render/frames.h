@@ -26,7 +26,7 @@ namespace glint::cli {
 struct EditPlan {
     std::vector<session::Edit> edits;  // by frame
     session::SceneFiles files;
-    // Of the files, by the same names.
+    // The textures of these files, by the same names.
     std::map<std::string, std::shared_ptr<const session::TextureSet>, std::less<>> textures;
 };
 

@@ -196,6 +196,9 @@ void Window::drawNode(const gltf::Scene& scene, const std::vector<std::vector<in
 
 void Window::drawSelected(const gltf::Scene& scene) {
     const gltf::Node& node = scene.nodes[static_cast<std::size_t>(selected_)];
+    // An edit may replace the scene, and the node with it.
+    const bool hasMesh = node.mesh >= 0;
+    const bool hasLight = node.light >= 0;
     ImGui::TextUnformatted(titleOf(node).c_str());
     const auto button = [&](const char* title, EditKind kind) {
         ImGui::SameLine();
@@ -206,16 +209,15 @@ void Window::drawSelected(const gltf::Scene& scene) {
         }
         return pressed;
     };
-    // The node may be gone after a button was pressed.
     if (button(node.visible ? "Hide" : "Show", node.visible ? EditKind::Hide : EditKind::Show) ||
         button("Duplicate", EditKind::Duplicate) || button("Delete", EditKind::Delete)) {
         return;
     }
     drawTransform(scene);
-    if (node.mesh >= 0) {
+    if (hasMesh) {
         drawMaterials(side().picture.scene());
     }
-    if (node.light >= 0) {
+    if (hasLight) {
         drawLight(side().picture.scene());
     }
 }
