@@ -1,5 +1,6 @@
 #version 460
-// G-buffer: stores which triangle each pixel sees. The lighting pass reads materials, once for each pixel.
+// G-buffer: stores which triangle each pixel sees. The passes of first hits read materials, once for each
+// pixel.
 #define GLINT_RASTER
 #include "bsdf/features.glsl"
 #include "hit/blend.glsl"

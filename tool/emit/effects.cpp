@@ -131,7 +131,7 @@ std::string layerDefines(const Plan& plan, bool deforms, bool findsSizedLights) 
     for (const LayerEntry& entry : plan.layers) {
         const LayerInfo& info = infoOf(entry);
         demands |= info.demands;
-        ofSurfaces = ofSurfaces || passOf(entry) == package::LayerPass::Lighting;
+        ofSurfaces = ofSurfaces || passOf(entry) == package::LayerPass::FirstHits;
         ofEffects = ofEffects || passOf(entry) == package::LayerPass::Compose;
         groups = groups || (!info.tally.empty() && package::hasSources(info));
         tallies.insert(info.tally);
@@ -220,21 +220,21 @@ void addTallies(mustache::data& context, const Plan& plan) {
 }  // namespace
 
 void addLayers(mustache::data& context, const Plan& plan) {
-    mustache::data lighting(mustache::data::type::list);
+    mustache::data ofFirstHits(mustache::data::type::list);
     mustache::data surface(mustache::data::type::list);
     for (const LayerEntry& entry : plan.layers) {
-        if (passOf(entry) != package::LayerPass::Lighting) {
+        if (passOf(entry) != package::LayerPass::FirstHits) {
             continue;
         }
         const LayerInfo& info = infoOf(entry);
         mustache::data fields = fieldsOf(entry, plan);
         fields.set("access", info.continues ? "" : "writeonly ");
-        lighting.push_back(fields);
+        ofFirstHits.push_back(fields);
         if (info.subject == LayerSubject::Surface) {
             surface.push_back(fields);
         }
     }
-    context.set("lightingLayers", lighting);
+    context.set("firstLayers", ofFirstHits);
     context.set("surfaceLayers", surface);
     context.set("directLight", lightFields(plan, 0));
 

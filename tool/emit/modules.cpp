@@ -196,7 +196,7 @@ ShaderStage stageOf(const package::RoleInfo& info, std::uint32_t tracer) {
 constexpr std::string_view kTemplateSuffix = ".mustache";
 constexpr std::string_view kComputeExtension = ".comp";
 
-// "passes/lighting.comp" gives lighting.comp, or lighting.rgen if it is a ray generation shader. If a role
+// "passes/trace.comp" gives trace.comp, or trace.rgen if it is a ray generation shader. If a role
 // has several modules, the name says which one it is.
 std::string moduleName(std::string_view source, const package::RoleInfo& info, const package::ModuleKey& key,
                        std::string_view caseName, const materials::MaterialModel& model) {
@@ -224,8 +224,9 @@ std::string moduleName(std::string_view source, const package::RoleInfo& info, c
         name = model.effects[key.index].file() + "_walk";
     } else if (info.purpose == package::Purpose::Fallback) {
         // "shade_case" gives shade_fallback, "sky" would give sky_fallback.
-        constexpr std::string_view kCase = "_case";
-        name.resize(name.size() - (name.ends_with(kCase) ? kCase.size() : 0));
+        for (const std::string_view ofCase : {"_case", "_hit"}) {
+            name.resize(name.size() - (name.ends_with(ofCase) ? ofCase.size() : 0));
+        }
         name += "_fallback";
     }
     if (extension == kComputeExtension && stageOf(info, key.tracer) == ShaderStage::RayGeneration) {
@@ -266,38 +267,6 @@ Result<std::string> makeText(std::string_view source, const std::string& defines
     }
     insertDefines(text, defines);
     return text;
-}
-
-// Returns the part of the lighting pass that evaluates materials. An edit of their GLSL changes it alone.
-Result<std::shared_ptr<const ModuleSource>> makeSurfacePart(const SourceSet& sources,
-                                                            const kainjow::mustache::data& context,
-                                                            package::ShadingPrecision precision,
-                                                            const SourceSet& own, ModuleDrafts& drafts) {
-    constexpr std::string_view kSource = "passes/primary_surface.comp";
-    GLINT_TRY(auto text, makeText(kSource, "", sources, context));
-    insertPartDefines(text, precision);
-    const std::shared_ptr<ModuleSource> part = makePart("primary_surface.part", {"surfaceOfPrimary"});
-    drafts.add(part, std::string(kSource), std::move(text), own);
-    return std::shared_ptr<const ModuleSource>(part);
-}
-
-// Returns what stands in for the functions of that part in the rest of the lighting pass, which evaluates the
-// materials of emissive lights alone.
-SourceSet surfaceApart(const SourceSet& sources, EmissiveLights emissive) {
-    SourceSet apart;
-    if (emissive != EmissiveLights::On) {
-        apart.add("light/emitter.glsl", "");
-    }
-    apart.add("passes/primary_surface.glsl", std::string(*sources.find("passes/primary_surface_apart.glsl")));
-    return apart;
-}
-
-// Adds the parts of the lighting pass, whose text is `text`: `surface`, and all else.
-void addLightingParts(ModuleSource& module, const std::string& origin, std::string text, const SourceSet& own,
-                      const std::shared_ptr<const ModuleSource>& surface, ModuleDrafts& drafts) {
-    const std::shared_ptr<ModuleSource> head = makeHead(module, surface->link->exported);
-    drafts.add(head, origin, std::move(text), own);
-    module.parts = {head, surface};
 }
 
 // Every module that shades surfaces evaluates what emissive lights emit.
@@ -345,8 +314,6 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
     ModuleDrafts drafts(sources, warm);
     SwitchParts parts(context, scenes, plan, sources, settings, drafts, codeOfCases, ofEmitters);
     GLINT_TRY_DO(parts.makeSwitches());
-    std::shared_ptr<const ModuleSource> surface;  // of the lighting pass, whatever traces its rays
-    const SourceSet apart = surfaceApart(sources, settings.emissiveLights);
     std::vector<std::shared_ptr<ModuleSource>> modules;
     for (const package::ModuleKey& key : package::requiredModules(shapeOf(scenes, plan, settings))) {
         const package::RoleInfo& info = *package::findRole(key.role);
@@ -356,7 +323,8 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
         const SourceSet* own = ofSwitch ? &parts.wholeSwitch(ofFallback) : &none;
         const bool ofDraft = info.purpose == package::Purpose::Draft;
         if (ofCase || ofDraft || (ofFallback && !ofSwitch)) {
-            const Case& shaderCase = ofCase ? plan.cases[key.index] : ofDraft ? draft : fallback;
+            const Case& hitCase = ofCase ? plan.cases[key.index] : ofDraft ? draft : fallback;
+            const Case shaderCase = info.shadesFirst() ? firstCase(plan, hitCase) : hitCase;
             addCase(context, scenes, *plan.model, shaderCase);
             context.set("skipsMisses", ofFallback);
             GLINT_TRY(own, codeOfCases.find(shaderCase.always | shaderCase.sometimes | ofEmitters));
@@ -374,11 +342,6 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
         const std::string origin = source.ends_with(kTemplateSuffix) ? module->name : std::string(source);
         if (ofSwitch) {
             GLINT_TRY_DO(parts.addTo(*module, origin, text, ofFallback));
-        } else if (key.role == ModuleRole::Lighting) {
-            if (!surface) {
-                GLINT_TRY(surface, makeSurfacePart(sources, context, settings.precision, none, drafts));
-            }
-            addLightingParts(*module, origin, text, apart, surface, drafts);
         }
         drafts.add(module, origin, std::move(text), *own);
         modules.push_back(std::move(module));

@@ -34,8 +34,9 @@ namespace {
 
 constexpr std::string_view kInteropFolder = "interop/";
 // The files of generated/ that are made from templates.
-constexpr std::string_view kGenerated[] = {"cases.glsl",       "effects.glsl",        "compose_effects.glsl",
-                                           "hit_effects.glsl", "surface_layers.glsl", "tallies.glsl"};
+constexpr std::string_view kGenerated[] = {"cases.glsl",           "effects.glsl",     "skip_effects.glsl",
+                                           "compose_effects.glsl", "hit_effects.glsl", "surface_layers.glsl",
+                                           "tallies.glsl"};
 
 void defineFeatures(std::string& text, std::string_view prefix, materials::FeatureMask always,
                     materials::FeatureMask sometimes) {

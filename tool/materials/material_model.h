@@ -252,7 +252,7 @@ struct Feature {
     int needsTexCoord = -1;          // the UV set that its GLSL reads by itself, or -1
     bool hasOwnCoordinates = false;  // the texture's GLSL makes its coordinates; it needs no UV set
     bool isOfBase = false;           // Hits keep it with --hit-lobes base.
-    bool isInDraft = false;          // The draft of the lighting pass shows it.
+    bool isInDraft = false;          // The draft of first hits shows it.
     FeatureCost cost{};
 
     FeatureMask mask() const {

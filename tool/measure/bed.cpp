@@ -54,7 +54,9 @@ SceneSize sizeOf(const session::SceneViewData& data) {
 
 // A pass of a case counts with those of the others.
 std::string nameOfPass(const PassTiming& pass) {
-    return pass.pass == Pass::ShadeCase ? std::string(kShadeCases) : pass.name;
+    return pass.pass == Pass::FirstCase   ? std::string("first")
+           : pass.pass == Pass::ShadeCase ? std::string(kShadeCases)
+                                          : pass.name;
 }
 
 }  // namespace

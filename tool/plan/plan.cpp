@@ -238,6 +238,28 @@ Case fallbackCase(const Plan& plan) {
     return shaderCase;
 }
 
+Case firstCase(const Plan& plan, const Case& shaderCase) {
+    Case first = shaderCase;
+    const materials::FeatureMask ofPrimary = plan.primaryAlways | plan.primarySometimes;
+    if (shaderCase.isRetired()) {
+        first.always = 0;
+        first.sometimes = ofPrimary;
+        return first;
+    }
+    std::vector<materials::FeatureMask> masks;
+    for (const int key : shaderCase.keys) {
+        for (const int primitive : plan.keys[static_cast<std::size_t>(key)].primitives) {
+            masks.push_back(plan.primaryMaskOfPrimitive[static_cast<std::size_t>(primitive)]);
+        }
+    }
+    // The key of hits does not say whether a material that an edit chooses has these.
+    const materials::FeatureMask dropped = ofPrimary & ~(plan.always | plan.sometimes);
+    const FeatureSpread spread = spreadOf(masks);
+    first.always = spread.always & ~dropped;
+    first.sometimes = (spread.sometimes | dropped) & ~first.always;
+    return first;
+}
+
 Case draftCase(const Plan& plan) {
     Case shaderCase;
     shaderCase.shaderId = -1;

@@ -117,7 +117,11 @@ inline Plan makePlan(std::span<const materials::Material> materials,
 // material may have, and no shader ID, keys or materials.
 Case fallbackCase(const Plan& plan);
 
-// Returns the case of the draft of the lighting pass: the features of primary surfaces that it shows.
+// Returns the case with which first hits of those materials are shaded: primary surfaces keep lobes that hits
+// of rays may drop. `shaderCase` is one of the plan's, or its fallbackCase().
+Case firstCase(const Plan& plan, const Case& shaderCase);
+
+// Returns the case of the draft of first hits: the features of primary surfaces that it shows.
 Case draftCase(const Plan& plan);
 // Returns the case of a draft of the primitives that have an `edited` feature. It shows those features beside
 // those of draftCase(), and their textures. With `fallback`, materials that come later may have any features.

@@ -256,7 +256,9 @@ enum class Pass : std::uint32_t {
     Frame,  // the whole frame, with Timing::Frame
     Hits,   // a round of rays, from their list to their shaded hits, with Timing::Frame
     Gbuffer,
-    Lighting,
+    FirstOrder,  // the order of the pixels by the case of what they see
+    FirstShade,  // the shading of pixels, except in passes of one case
+    FirstCase,
     EffectWalk,
     EffectRays,
     PathRays,
@@ -273,11 +275,16 @@ enum class Pass : std::uint32_t {
     Compose,
 };
 
+// Returns whether a pass shades one case, whose shader ID is PassTiming::shaderId.
+constexpr bool isOfCase(Pass pass) {
+    return pass == Pass::FirstCase || pass == Pass::ShadeCase;
+}
+
 struct PassTiming {
     std::string name;  // for people; it is also the debug label of the pass
     double milliseconds = 0.0;
     Pass pass = Pass::Frame;
-    std::uint32_t shaderId = 0;  // the shader ID of Pass::ShadeCase
+    std::uint32_t shaderId = 0;  // of Pass::FirstCase and Pass::ShadeCase
 };
 
 }  // namespace glint

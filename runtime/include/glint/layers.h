@@ -49,9 +49,9 @@ inline constexpr std::uint32_t kMostLayerBounces = 4;
 
 // The pass that writes a layer.
 enum class LayerPass : std::uint32_t {
-    Lighting,
+    FirstHits,
     Compose,
-    Several,  // lighting begins it, and the passes whose work it counts add to it
+    Several,  // first hits begin it, and the passes whose work it counts add to it
 };
 
 // The combination of a picture's samples into one value.
@@ -138,7 +138,7 @@ struct PackageLayer {
 // Returns the name of a layer, whose source of light has the name `source`.
 std::string layerName(const LayerInfo& info, std::string_view source, std::uint32_t bounce);
 
-// Returns the pass that writes the layer. Lighting writes surfaces and their direct light, several passes
+// Returns the pass that writes the layer. First hits write surfaces and their direct light, several passes
 // write a layer with a tally, and compose writes the rest.
 LayerPass passOf(const LayerEntry& entry);
 // Returns the LayerDemand bits of all of them.

@@ -102,7 +102,7 @@ inline constexpr std::uint32_t kMaxBounces = 64;
 
 // The passes that a package has.
 enum class Passes : std::uint32_t {
-    Frame = 0,  // a whole frame: the raster pass, lighting, effects, and the hits of their rays
+    Frame = 0,  // a whole frame: the raster pass, first hits, effects, and the hits of their rays
     Steps = 1,  // the passes that trace, order and shade a host's own rays (RaySteps)
 };
 

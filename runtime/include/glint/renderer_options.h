@@ -67,7 +67,7 @@ struct RendererOptions {
     // made, the package's fallback shades its hits; apart from drafts, the pictures are the same. Requires a
     // package with PackageShape::fallback, which must outlive the Renderer. Error "package-fallback".
     bool backgroundPipelines = false;
-    // With backgroundPipelines, lets frames begin as soon as the raster pass, a draft of the lighting pass
+    // With backgroundPipelines, lets frames begin as soon as the raster pass, a draft of first hits
     // and the last pass are made. A draft shows the base of materials under the sky and the lights, without
     // shadows, and no ray is traced. The first recording with all fixed passes starts the picture anew.
     // PipelineProgress and FrameCounters say whether a frame is a draft. Without it, Renderer::create() waits

@@ -18,8 +18,12 @@ VkDeviceSize listRays(const FrameSize& size) {
     return size.pixelsOfBand() * size.batchCount;
 }
 
+VkDeviceSize orderedSlots(const FrameSize& size, VkDeviceSize hits) {
+    return hits + VkDeviceSize{size.bucketCount} * (size.bucketAlignment - 1);
+}
+
 VkDeviceSize listSlots(const FrameSize& size) {
-    return listRays(size) + VkDeviceSize{size.bucketCount} * (size.bucketAlignment - 1);
+    return orderedSlots(size, std::max(listRays(size), size.firstHits()));
 }
 
 // Lists are dispatched in one dimension. A dispatch over an image is no wider, and its height is within the
@@ -36,9 +40,17 @@ VkDeviceSize counterBytes(const FrameSize& size) {
     return sizeof(std::uint32_t) * (gpu::kCounterEffects + ofEffects + size.textureLevels);
 }
 
+VkDeviceSize bucketBytes(const FrameSize& size) {
+    return sizeof(std::uint32_t) * size.bucketCount;
+}
+
+VkDeviceSize readbackFirst(const FrameSize& size, std::uint32_t band) {
+    return counterBytes(size) + (size.hostRays ? 0 : band * bucketBytes(size));
+}
+
 VkDeviceSize readbackRound(const FrameSize& size, std::uint32_t round) {
-    const VkDeviceSize buckets = size.ordered ? sizeof(std::uint32_t) * size.bucketCount : 0;
-    return counterBytes(size) + round * (kRoundCounterBytes + buckets);
+    const VkDeviceSize buckets = size.ordered ? bucketBytes(size) : 0;
+    return readbackFirst(size, size.hostRays ? 0 : size.bandCount()) + round * (kRoundCounterBytes + buckets);
 }
 
 VkDeviceSize readbackDepth(const FrameSize& size, std::uint32_t slot) {
@@ -164,16 +176,18 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
     const VkDeviceSize rays = listRays(size);
     const VkDeviceSize ownRays = size.hostRays ? 0 : rays;
     const VkDeviceSize hits = size.ordered ? rays : 0;
-    const VkDeviceSize slots = size.ordered ? listSlots(size) : 0;
+    // The lists of first hits and of the hits of rays follow each other in the same memory.
+    const VkDeviceSize ordered = std::max(hits, size.firstHits());
+    const VkDeviceSize slots = ordered > 0 ? orderedSlots(size, ordered) : 0;
     // There is one bit for each hit, in whole words.
     const VkDeviceSize visitedWords = size.checksOrder ? (hits + 31) / 32 : 0;
     const VkDeviceSize shadows = size.deferredShadows ? rays : 0;
     // The keys end at the end of the last tile that may be read.
     const VkDeviceSize keys =
-        hits > 0 ? hits + VkDeviceSize{gpu::kLargeTileThreads} * gpu::kTileHitsOfThread : 0;
-    const VkDeviceSize bucketBytes = size.ordered ? sizeof(std::uint32_t) * size.bucketCount : 0;
-    const VkDeviceSize lists = rays > 0 ? 1 : 0;
-    const VkDeviceSize orderings = hits > 0 ? size.bucketCount + 1 : 0;
+        ordered > 0 ? ordered + VkDeviceSize{gpu::kLargeTileThreads} * gpu::kTileHitsOfThread : 0;
+    const VkDeviceSize buckets = ordered > 0 ? bucketBytes(size) : 0;
+    const VkDeviceSize lists = rays > 0 || ordered > 0 ? 1 : 0;
+    const VkDeviceSize orderings = ordered > 0 ? size.bucketCount + 1 : 0;
     const VkDeviceSize shadowLists = shadows > 0 ? 1 : 0;
     using Frame = FrameResources;
     return {{
@@ -201,9 +215,9 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
         {&Frame::shadows, shadows * sizeof(gpu::ShadowRecord), kStorage, MemoryUse::Device},
         {&Frame::shadowDispatch, shadowLists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
         {&Frame::bucketKeys, keys * size.keyBytes, kStorage, MemoryUse::Device},
-        {&Frame::bucketCounts, bucketBytes, kCleared, MemoryUse::Device},
-        {&Frame::bucketBegins, bucketBytes, kStorage, MemoryUse::Device},
-        {&Frame::bucketCursors, bucketBytes, kCleared, MemoryUse::Device},
+        {&Frame::bucketCounts, buckets, kCleared, MemoryUse::Device},
+        {&Frame::bucketBegins, buckets, kStorage, MemoryUse::Device},
+        {&Frame::bucketCursors, buckets, kCleared, MemoryUse::Device},
         {&Frame::rayDispatch, lists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
         {&Frame::bucketDispatch, orderings * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
         {&Frame::counters, counterBytes(size), kCleared, MemoryUse::Device},

@@ -23,8 +23,8 @@ inline constexpr VkFormat kDepthFormat = VK_FORMAT_D32_SFLOAT;
 inline constexpr VkFormat kLightFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
 inline constexpr VkFormat kHalfLightFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
 
-// The layout of the data that counters() reads: the counters first, then for each round of rays the counters
-// of its lists and its buckets.
+// The layout of the data that counters() reads: the counters first, then for each band the buckets of its
+// first hits, then for each round of rays the counters of its lists and its buckets.
 inline constexpr VkDeviceSize kRoundCounterBytes = 2 * sizeof(std::uint32_t);
 
 // Members are destroyed in reverse order: the pool's memory last. Resources that the frame's effects do not
@@ -58,7 +58,7 @@ struct FrameResources {
     Buffer bounceLight;  // present if layers need the light of bounces
     Buffer walkedLight;  // present if layers need the lights that walks find
     Buffer hits;         // full or packed records; present if hits are ordered and samples don't hold them
-    Buffer orderedHits;  // like `hits`, in the order of the buckets
+    Buffer orderedHits;  // the numbers of first hits or of `hits`, in the order of the buckets
     Buffer visitedHits;  // one bit for each hit; present if the order is checked
     Buffer shadows;      // present if shadow rays are deferred
     Buffer shadowDispatch;
@@ -113,7 +113,7 @@ struct FrameSize {
     // The number of samples of a pixel, and how many of them have their rays in the list at once.
     std::uint32_t sampleCount = 0;
     std::uint32_t batchCount = 0;
-    bool ordered = false;  // hits are stored and ordered by bucket
+    bool ordered = false;  // hits of rays are stored and ordered by bucket
     bool checksOrder = false;
     std::uint32_t bucketAlignment = 1;
     bool packedSamples = false;
@@ -153,7 +153,17 @@ struct FrameSize {
         return VkDeviceSize{width} * rowsOfBand();
     }
 
-    // The number of lists in a frame: one for each bounce of each round of effects of each band.
+    // The length of a band's list of first hits: its pixels, in whole tiles (hit/first_list.glsl). A host
+    // sees its first hits itself.
+    VkDeviceSize firstHits() const {
+        const auto tiles = [](std::uint32_t pixels) {
+            return VkDeviceSize{(pixels + gpu::kPixelGroupSize - 1) / gpu::kPixelGroupSize};
+        };
+        return hostRays ? 0
+                        : tiles(width) * tiles(rowsOfBand()) * gpu::kPixelGroupSize * gpu::kPixelGroupSize;
+    }
+
+    // The number of lists of rays in a frame: one for each bounce of each round of effects of each band.
     std::uint32_t roundCount() const {
         return batchCount > 0 ? sampleCount / batchCount * bounces * bandCount() : 0;
     }
@@ -167,6 +177,11 @@ inline std::uint32_t keyBytesOf(std::uint32_t bucketCount) {
 // Returns the size of the counters.
 VkDeviceSize counterBytes(const FrameSize& size);
 
+// Returns the size of the counts of all buckets.
+VkDeviceSize bucketBytes(const FrameSize& size);
+// Returns the offset at which the buckets of a band's first hits are read back. For the number of bands it
+// returns the end.
+VkDeviceSize readbackFirst(const FrameSize& size, std::uint32_t band);
 // Returns the offset at which a round of rays is read back. For the number of rounds it returns the end.
 VkDeviceSize readbackRound(const FrameSize& size, std::uint32_t round);
 
@@ -180,8 +195,10 @@ VkDeviceSize listRays(const FrameSize& size);
 // Error "render-size": the frame has no pixels, or more than the device supports.
 Status checkFrameSize(const Context::State& context, const FrameSize& size);
 
-// Returns the number of elements of the longest list. It is that of hits, where each bucket may leave all but
-// one slot of its last group empty.
+// Returns the number of elements of a list of hits in order, where each bucket may leave all but one slot of
+// its last group empty. `hits` is the length of the list before.
+VkDeviceSize orderedSlots(const FrameSize& size, VkDeviceSize hits);
+// Returns that of the longest list.
 VkDeviceSize listSlots(const FrameSize& size);
 
 // Returns the largest number of rays that one dispatch of a list can have.

@@ -217,7 +217,7 @@ constexpr LayerInfo kRows[] = {
      .absent = "uvec4(0xFFFFFFFFu)"},
     {.number = 24,
      .name = "branches",
-     .what = "features, beyond those of all materials, that the lighting pass runs for the pixel's subgroup",
+     .what = "features, beyond those of its case, that the shading of the pixel's subgroup runs",
      .subject = Subject::Surface,
      .format = Format::Integer,
      .channels = "I",
@@ -285,8 +285,7 @@ constexpr LayerInfo kRows[] = {
     {.number = 31,
      .demands = kLayerClock,
      .name = "clocks",
-     .what =
-         "ticks of the device's clock that lighting, tracing and shading of the pixel took, over all samples",
+     .what = "ticks of the device's clock that shading the pixel and its rays took, over all samples",
      .subject = Subject::Work,
      .format = Format::Integer,
      .channels = "I",
@@ -354,7 +353,7 @@ LayerPass passOf(const LayerEntry& entry) {
         return LayerPass::Several;
     }
     const bool ofSurface = info != nullptr && info->subject == LayerSubject::Surface;
-    return ofSurface || entry.effect == 0 ? LayerPass::Lighting : LayerPass::Compose;
+    return ofSurface || entry.effect == 0 ? LayerPass::FirstHits : LayerPass::Compose;
 }
 
 std::uint32_t demandsOf(std::span<const PackageLayer> layers) {

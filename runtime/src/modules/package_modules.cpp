@@ -64,17 +64,26 @@ std::vector<RoleInfo> sharedRoles() {
          Purpose::Picture},
         {ModuleRole::GBufferFragment, all, "GBufferFragment", "passes/gbuffer.frag", ShaderKind::Fragment,
          Purpose::Picture},
-        {ModuleRole::Lighting, all, "Lighting", "passes/lighting.comp", ShaderKind::Tracing,
-         Purpose::Picture},
+        {.role = ModuleRole::FirstHit,
+         .strategies = all,
+         .name = "FirstHit",
+         .source = "passes/first_hit.comp.mustache",
+         .kind = ShaderKind::Tracing,
+         .purpose = Purpose::Picture,
+         .repeated = Repeated::ByCase,
+         .over = Over::Buckets,
+         .pass = "first",
+         .fallback = ModuleRole::FirstFallback},
         {ModuleRole::EffectRays, all, "EffectRays", "effect_rays.comp.mustache", ShaderKind::Compute,
          Purpose::Hits, Repeated::ByEffect},
         {ModuleRole::RayDispatch, all, "RayDispatch", "passes/ray_dispatch.comp", ShaderKind::Compute},
         {ModuleRole::Trace, ordered, "Trace", "passes/trace.comp", ShaderKind::Tracing},
-        {ModuleRole::BucketCount, ordered, "BucketCount", "passes/bucket_count.comp", ShaderKind::Compute,
-         Purpose::Hits, Repeated::ByOrdering},
-        {ModuleRole::BucketOffset, ordered, "BucketOffset", "passes/bucket_offset.comp", ShaderKind::Compute},
-        {ModuleRole::BucketCopy, ordered, "BucketCopy", "passes/bucket_copy.comp", ShaderKind::Compute,
-         Purpose::Hits, Repeated::ByOrdering},
+        {ModuleRole::BucketCount, all, "BucketCount", "passes/bucket_count.comp", ShaderKind::Compute,
+         Purpose::Order, Repeated::ByOrdering},
+        {ModuleRole::BucketOffset, all, "BucketOffset", "passes/bucket_offset.comp", ShaderKind::Compute,
+         Purpose::Order},
+        {ModuleRole::BucketCopy, all, "BucketCopy", "passes/bucket_copy.comp", ShaderKind::Compute,
+         Purpose::Order, Repeated::ByOrdering},
         {ModuleRole::OrderCheck, ordered, "OrderCheck", "passes/order_check.comp", ShaderKind::Compute},
         {ModuleRole::Compose, all, "Compose", "passes/compose.comp", ShaderKind::Compute, Purpose::Picture},
         {ModuleRole::ShadowDispatch, all, "ShadowDispatch", "passes/shadow_dispatch.comp",
@@ -91,10 +100,32 @@ std::vector<RoleInfo> sharedRoles() {
          Repeated::ByWalk},
         {ModuleRole::PathRays, all, "PathRays", "passes/path_rays.comp", ShaderKind::Compute, Purpose::Paths},
         {ModuleRole::Deform, all, "Deform", "passes/deform.comp", ShaderKind::Compute, Purpose::Motion},
-        {ModuleRole::LightingDraft, all, "LightingDraft", "passes/lighting_draft.comp.mustache",
-         ShaderKind::Compute, Purpose::Draft},
+        {ModuleRole::FirstDraft, all, "FirstDraft", "passes/first_draft.comp.mustache", ShaderKind::Compute,
+         Purpose::Draft},
         {ModuleRole::LightingEdit, all, "LightingEdit", "passes/lighting_edit.comp.mustache",
          ShaderKind::Compute, Purpose::Edit},
+        {.role = ModuleRole::FirstBuckets,
+         .strategies = all,
+         .name = "FirstBuckets",
+         .source = "passes/first_buckets.comp",
+         .kind = ShaderKind::Compute,
+         .purpose = Purpose::Picture},
+        {.role = ModuleRole::FirstMiss,
+         .strategies = all,
+         .name = "FirstMiss",
+         .source = "passes/first_miss.comp",
+         .kind = ShaderKind::Compute,
+         .purpose = Purpose::Picture,
+         .over = Over::Misses,
+         .pass = "first miss"},
+        {.role = ModuleRole::FirstFallback,
+         .strategies = all,
+         .name = "FirstFallback",
+         .source = "passes/first_hit.comp.mustache",
+         .kind = ShaderKind::Tracing,
+         .purpose = Purpose::Fallback,
+         .over = Over::Misses,
+         .pass = "first"},
     };
 }
 
@@ -108,7 +139,8 @@ void addRoles(std::vector<RoleInfo>& roles, const StrategyInfo& strategy, std::u
                       .kind = module.kind,
                       .repeated = module.cases == CaseCode::Own ? Repeated::ByCase : Repeated::Once,
                       .declared = &module,
-                      .over = module.over};
+                      .over = module.over,
+                      .pass = module.pass};
         const auto fallback = static_cast<ModuleRole>(first++);
         if (module.fallback.empty()) {
             roles.push_back(info);
@@ -126,13 +158,15 @@ void addRoles(std::vector<RoleInfo>& roles, const StrategyInfo& strategy, std::u
     }
 }
 
-// Returns whether a package of this shape needs modules with this purpose.
-bool hasPurpose(Purpose purpose, const PackageShape& shape) {
+// Returns whether a package of this shape needs modules of a role, by its purpose.
+bool isNeeded(const RoleInfo& info, const PackageShape& shape) {
     const bool frame = shape.passes == Passes::Frame;
     const bool hits = !frame || shape.effects.rays != 0;
-    switch (purpose) {
+    switch (info.purpose) {
         case Purpose::Picture:
             return frame;
+        case Purpose::Order:
+            return frame || (shape.strategies & orderedStrategies()) != 0;
         case Purpose::Hits:
             return hits;
         case Purpose::Shadows:
@@ -146,7 +180,7 @@ bool hasPurpose(Purpose purpose, const PackageShape& shape) {
         case Purpose::Motion:
             return frame && shape.deforms;
         case Purpose::Fallback:
-            return hits && shape.fallback;
+            return shape.fallback && (info.shadesFirst() ? frame : hits);
         case Purpose::Draft:
             return frame && shape.fallback;
         case Purpose::Edit:
@@ -157,7 +191,7 @@ bool hasPurpose(Purpose purpose, const PackageShape& shape) {
 
 // Returns whether a module traces, given that modules of its kind may trace.
 bool traces(const RoleInfo& info, const PackageShape& shape) {
-    if (info.role == ModuleRole::Lighting) {
+    if (info.shadesFirst()) {
         return shape.effects.tracesAtSurfaces();
     }
     return info.kind == ShaderKind::Tracing ||
@@ -174,7 +208,7 @@ bool isLeftOut(const RoleInfo& info, const PackageShape& shape) {
 // The result is empty if the package does not need the role.
 std::vector<std::uint32_t> moduleTracers(const RoleInfo& info, const PackageShape& shape) {
     const std::uint32_t strategies = info.strategies & shape.strategies;
-    if (strategies == 0 || !hasPurpose(info.purpose, shape) || isLeftOut(info, shape)) {
+    if (strategies == 0 || !isNeeded(info, shape) || isLeftOut(info, shape)) {
         return {};
     }
     const std::uint32_t tracers = tracersOf(strategies, shape.tracers);
@@ -253,6 +287,13 @@ std::span<const RoleInfo> rolesOf(Strategy strategy) {
     const std::span<const RoleInfo> all = roles();
     const auto first = std::ranges::find_if(all, isOwn);
     return {first, std::find_if_not(first, all.end(), isOwn)};
+}
+
+std::span<const RoleInfo> firstRoles() {
+    static const std::vector<RoleInfo> kRoles{*findRole(ModuleRole::FirstMiss),
+                                              *findRole(ModuleRole::FirstHit),
+                                              *findRole(ModuleRole::FirstFallback)};
+    return kRoles;
 }
 
 const RoleInfo* findRole(ModuleRole role) {

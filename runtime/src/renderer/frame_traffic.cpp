@@ -68,8 +68,8 @@ void addSamples(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
     const std::uint32_t weight = packsSamples(shape) ? aim : weightBytes(shape);
     // A packed sample without a ray has only the word that says so.
     const std::uint32_t always = packsSamples(shape) ? kWord : kStart;
-    rows.push_back({"lighting", Unit::Sample, 0, always + lobe + (shape.marchesScreen ? weight : 0)});
-    rows.push_back({"lighting", Unit::Sent, 0,
+    rows.push_back({"first hits", Unit::Sample, 0, always + lobe + (shape.marchesScreen ? weight : 0)});
+    rows.push_back({"first hits", Unit::Sent, 0,
                     kStart - always + aim + weightBytes(shape) - (shape.marchesScreen ? weight : 0) + share +
                         (shape.paths ? kPath : 0)});
     if (shape.walks > 0) {
@@ -81,7 +81,8 @@ void addSamples(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
     if (shape.layerWalks) {
         rows.push_back({"effect walk", Unit::Sample, 0, kVector});
     }
-    rows.push_back({"lighting", Unit::Sent, 0, (shape.layerRays ? kWord : 0) + shape.layerBounces * kBounce});
+    rows.push_back(
+        {"first hits", Unit::Sent, 0, (shape.layerRays ? kWord : 0) + shape.layerBounces * kBounce});
     rows.push_back({"effect rays", Unit::Sample, kWord, 0});
     rows.push_back({"effect rays", Unit::Sent,
                     (shape.binsRays || shape.marchesScreen ? aim : 0) + (shape.marchesScreen ? kVector : 0),
@@ -196,8 +197,13 @@ std::vector<TrafficRow> trafficRows(const TrafficShape& shape) {
     std::vector<TrafficRow> rows;
     rows.push_back({"gbuffer", Unit::Pixel, 0, kIdentity + kWord});  // and the depth
     const std::uint32_t picture = shape.halfPicture ? kPixel / 2 : kPixel;
-    rows.push_back({"lighting", Unit::Pixel, kIdentity, picture + (shape.marchesScreen ? kPixel : 0)});
-    rows.push_back(layersOf(shape, package::LayerPass::Lighting, "lighting"));
+    const std::uint32_t key = keyBytesOf(shape.bucketCount);
+    rows.push_back({"first buckets", Unit::Pixel, kWord, key});
+    rows.push_back({"first count", Unit::Pixel, key, 0});
+    rows.push_back({"first copy", Unit::Pixel, key, kWord});
+    rows.push_back(
+        {"first hits", Unit::Pixel, kWord + kIdentity, picture + (shape.marchesScreen ? kPixel : 0)});
+    rows.push_back(layersOf(shape, package::LayerPass::FirstHits, "first hits"));
     if (shape.effects > 0) {
         addSamples(shape, rows);
         addShading(shape, rows);

@@ -2,6 +2,7 @@
 
 #include "renderer/pipeline_jobs.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -222,23 +223,39 @@ void HitPasses::trace() {
     }
 }
 
+void HitPasses::orderList(const PassLabel& count, const PassLabel& offset, const PassLabel& copy,
+                          VkDeviceSize hits) {
+    if (state_.choice.ordering == package::Ordering::TileSort) {
+        const TileSortGroups groups = tileSortGroups(state_.context.limits, state_.size.bucketCount, hits);
+        passes_.dispatchGroups(count, pass(ModuleRole::BucketCount), groups.count);
+        passes_.barrier(dependencies().passToPass);
+        passes_.dispatchGroups(copy, pass(ModuleRole::BucketCopy), groups.copy);
+        passes_.barrier(dependencies().passToDispatch);
+    } else {
+        dispatchRays(count, ModuleRole::BucketCount);
+        passes_.dispatchGroups(offset, pass(ModuleRole::BucketOffset), 1);
+        passes_.barrier(dependencies().passToDispatch);
+        dispatchRays(copy, ModuleRole::BucketCopy);
+    }
+}
+
+void HitPasses::orderFirst() {
+    passes_.dispatchPixels({"first buckets", Pass::FirstOrder}, pass(ModuleRole::FirstBuckets));
+    passes_.barrier(dependencies().passToDispatch);
+    orderList({"first count", Pass::FirstOrder}, {"first offset", Pass::FirstOrder},
+              {"first copy", Pass::FirstOrder}, state_.size.firstHits());
+}
+
+void HitPasses::shadeFirst() {
+    std::ranges::for_each(package::firstRoles(), [&](const package::RoleInfo& info) { dispatch(info); });
+    passes_.barrier(dependencies().passToPass);
+}
+
 void HitPasses::order() {
     if (!ordersHits()) {
         return;
     }
-    if (state_.choice.ordering == package::Ordering::TileSort) {
-        const TileSortGroups groups =
-            tileSortGroups(state_.context.limits, state_.size.bucketCount, listRays(state_.size));
-        passes_.dispatchGroups({"count", Pass::Count}, pass(ModuleRole::BucketCount), groups.count);
-        passes_.barrier(dependencies().passToPass);
-        passes_.dispatchGroups({"copy", Pass::Copy}, pass(ModuleRole::BucketCopy), groups.copy);
-        passes_.barrier(dependencies().passToDispatch);
-    } else {
-        dispatchRays({"count", Pass::Count}, ModuleRole::BucketCount);
-        passes_.dispatchGroups({"offset", Pass::Offset}, pass(ModuleRole::BucketOffset), 1);
-        passes_.barrier(dependencies().passToDispatch);
-        dispatchRays({"copy", Pass::Copy}, ModuleRole::BucketCopy);
-    }
+    orderList({"count", Pass::Count}, {"offset", Pass::Offset}, {"copy", Pass::Copy}, listRays(state_.size));
     if (state_.choice.checksOrder) {
         // This does not dispatch by the number of rays: if there are none, it must check that buckets are
         // empty.
@@ -248,21 +265,23 @@ void HitPasses::order() {
 }
 
 void HitPasses::shadeCases(const package::RoleInfo& info) {
-    const std::vector<PassPipeline>& cases = state_.pipelines.cases;
+    const std::vector<PassPipeline>& cases = state_.pipelines.cases.at(info.role);
+    const Pass kind = info.shadesFirst() ? Pass::FirstCase : Pass::ShadeCase;
     for (std::uint32_t shaderId = 0; shaderId < cases.size(); ++shaderId) {
         if (cases[shaderId].pipeline == VK_NULL_HANDLE) {
             continue;  // the bucket of a retired shader ID stays empty
         }
         passes_.setBucket(1 + shaderId);
-        passes_.dispatchList(
-            {std::string(info.declared->pass) + " " + state_.caseNames[shaderId], Pass::ShadeCase, shaderId},
-            cases[shaderId], state_.frame.bucketDispatch, 1 + shaderId);
+        passes_.dispatchList({std::string(info.pass) + " " + state_.caseNames[shaderId], kind, shaderId},
+                             cases[shaderId], state_.frame.bucketDispatch, 1 + shaderId);
     }
 }
 
 void HitPasses::dispatch(const package::RoleInfo& info) {
     const bool ofFallback = info.purpose == package::Purpose::Fallback;
-    const PassLabel label{std::string(info.declared->pass) + (ofFallback ? " fallback" : ""), Pass::Shade};
+    const bool ofStrategy = info.declared != nullptr;
+    const PassLabel label{std::string(info.pass) + (ofFallback ? " fallback" : ""),
+                          ofStrategy ? Pass::Shade : Pass::FirstShade};
     switch (info.over) {
         case package::Over::Nothing:
             break;

@@ -17,14 +17,15 @@
 
 namespace glint {
 
-// The largest number of passes of a round: the fixed ones of the longest strategy, and one for each case.
+// The largest number of passes of first hits and of a round, beside one for each case.
+inline constexpr std::uint32_t kMaxFirstPasses = 6;
 inline constexpr std::uint32_t kMaxFixedPasses = 27;
 
 // The label of a timer's stretch.
 struct PassLabel {
     std::string name;  // for people
     Pass pass = Pass::Frame;
-    std::uint32_t shaderId = 0;  // the shader ID of Pass::ShadeCase
+    std::uint32_t shaderId = 0;  // of Pass::FirstCase and Pass::ShadeCase
 };
 
 struct PassState {
@@ -144,7 +145,11 @@ class HitPasses {
 public:
     HitPasses(PassState& state, PassRecorder& passes) : state_(state), passes_(passes) {}
 
-    // Sets the indirect arguments of the list, from its counter.
+    // Orders the pixels of a band by the case of what they see, and shades them.
+    void orderFirst();
+    void shadeFirst();
+
+    // Sets the indirect arguments of the list of rays, from its counter.
     void dispatchOfList();
     // Strategies that shade where they trace have nothing to do in these two.
     void trace();
@@ -162,7 +167,9 @@ private:
         return (state_.choice.strategy & package::orderedStrategies()) != 0;
     }
     void dispatchRays(const PassLabel& label, package::ModuleRole role);
-    // Dispatches the pass of a strategy's role, if it has one.
+    // Orders a list of at most `hits` hits, whose keys are stored.
+    void orderList(const PassLabel& count, const PassLabel& offset, const PassLabel& copy, VkDeviceSize hits);
+    // Dispatches the pass of a role that shades hits, if it has one.
     void dispatch(const package::RoleInfo& info);
     void shadeCases(const package::RoleInfo& info);
 

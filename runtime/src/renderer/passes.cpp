@@ -33,11 +33,12 @@ public:
         passes_.bindSets(sets);
         bounces_ = bouncesToRecord(frame);
         state_.rounds.clear();
+        state_.orderedBands = 0;
         for (std::uint32_t band = 0; band < state_.size.bandCount(); ++band) {
             if (band > 0) {
                 startBand(band, constants);
             }
-            recordBand(frame, constants);
+            recordBand(band, frame, constants);
         }
         passes_.endStretch(whole);
         // Layers of motion describe a picture's first sample, so only that sample needs the state of the
@@ -95,28 +96,27 @@ private:
         vk_.CmdCopyBuffer(commands_, source.handle.get(), state_.frame.readback.handle.get(), 1, &region);
     }
 
-    // Lights the rows of a band.
-    void recordBand(const FrameOptions& frame, const gpu::FrameConstants& constants) {
+    // Shades the rows of a band.
+    void recordBand(std::uint32_t band, const FrameOptions& frame, const gpu::FrameConstants& constants) {
         passes_.setRows(band_.endRow - band_.firstRow);
         if (state_.pipelines.draft) {
-            passes_.dispatchPixels({"lighting draft", Pass::Lighting}, pass(ModuleRole::LightingDraft));
+            passes_.dispatchPixels({"first draft", Pass::FirstShade}, pass(ModuleRole::FirstDraft));
             passes_.barrier(dependencies().passToPass);
         } else {
-            passes_.dispatchPixels({"lighting", Pass::Lighting}, pass(ModuleRole::Lighting));
-            passes_.barrier(dependencies().passToPass);
-            recordEdit();
+            recordFirst(band);
             recordEffects(frame.effects & state_.size.effects.rays, constants);
         }
         passes_.dispatchPixels({"compose", Pass::Compose}, pass(ModuleRole::Compose));
     }
 
-    // Shades the surfaces with edited features as a draft, in place of the result of the lighting pass.
-    void recordEdit() {
-        const auto edit = state_.pipelines.passes.find(ModuleRole::LightingEdit);
-        if (edit != state_.pipelines.passes.end()) {
-            passes_.dispatchPixels({"lighting edit", Pass::Lighting}, edit->second);
-            passes_.barrier(dependencies().passToPass);
-        }
+    // Shades what the camera sees, by the same cases as hits of rays.
+    void recordFirst(std::uint32_t band) {
+        HitPasses hits(state_, passes_);
+        hits.orderFirst();
+        passes_.barrier(dependencies().passesToCopy);
+        copy(state_.frame.bucketCounts, 0, bucketBytes(state_.size), readbackFirst(state_.size, band));
+        state_.orderedBands = band + 1;
+        hits.shadeFirst();
     }
 
     // Leads the passes to the rows of another band. The band before used the same memory.
@@ -158,16 +158,14 @@ private:
 
     // Records the rays of all effects that are on, either together or effect by effect.
     void recordEffects(std::uint32_t withRays, const gpu::FrameConstants& constants) {
-        bool first = true;         // no list of the band has been traced yet
         std::uint32_t listed = 0;  // effects whose rays are in the list
         for (const EffectName& info : state_.effects) {
             if ((withRays & info.effect) == 0) {
                 continue;
             }
-            if (listed == 0 && !first) {
+            if (listed == 0) {
                 startRound(constants);
             }
-            first = false;
             recordRays(info);
             listed |= info.effect;
             if (state_.choice.batchEffects && listed != withRays) {
@@ -251,8 +249,7 @@ private:
         const VkDeviceSize place = readbackRound(state_.size, round);
         copy(state_.frame.counters, 0, kRoundCounterBytes, place);
         if (state_.size.ordered) {
-            copy(state_.frame.bucketCounts, 0, sizeof(std::uint32_t) * state_.size.bucketCount,
-                 place + kRoundCounterBytes);
+            copy(state_.frame.bucketCounts, 0, bucketBytes(state_.size), place + kRoundCounterBytes);
         }
     }
 

@@ -13,6 +13,7 @@
 #include <iterator>
 #include <map>
 #include <memory>
+#include <set>
 #include <utility>
 
 namespace glint {
@@ -38,7 +39,7 @@ PipelineTurn turnOf(const PipelineChoice& choice, package::ModuleRole role) {
         (info.fallback != ModuleRole::None || info.kind == package::ShaderKind::RayGeneration)) {
         return PipelineTurn::Case;
     }
-    // A draft is rasterised, lit and composed.
+    // A draft is rasterised, shaded and composed.
     const bool isOfDraft = info.purpose == package::Purpose::Draft || role == ModuleRole::Compose;
     return choice.draft && !isOfDraft ? PipelineTurn::Fixed : PipelineTurn::First;
 }
@@ -178,7 +179,7 @@ std::vector<RayPass> planCases(const Package& package, const PipelineChoice& cho
 std::vector<RayPass> planRayPasses(const Package& package, const PipelineChoice& choice,
                                    std::span<const std::uint32_t> shaderIds) {
     std::vector<RayPass> passes;
-    ModuleRole ofCases = ModuleRole::None;  // of cases that trace their own shadow rays
+    std::set<ModuleRole> ofCases;  // of cases that trace their own shadow rays
     for (const package::ModuleKey& key : package::requiredModules(chosenShape(package, choice))) {
         const package::RoleInfo& info = *package::findRole(key.role);
         const bool generatesRays = info.kind == package::ShaderKind::Tracing ||
@@ -188,7 +189,7 @@ std::vector<RayPass> planRayPasses(const Package& package, const PipelineChoice&
             continue;
         }
         if (info.over == package::Over::Buckets) {
-            ofCases = key.role;
+            ofCases.insert(key.role);
             continue;
         }
         RayPass pass;
@@ -209,8 +210,8 @@ std::vector<RayPass> planRayPasses(const Package& package, const PipelineChoice&
         }
         passes.push_back(std::move(pass));
     }
-    if (ofCases != ModuleRole::None) {
-        std::ranges::move(planCases(package, choice, ofCases), std::back_inserter(passes));
+    for (const ModuleRole role : ofCases) {
+        std::ranges::move(planCases(package, choice, role), std::back_inserter(passes));
     }
     return passes;
 }
@@ -231,12 +232,9 @@ std::size_t wordCount(const RayPipelineSource& source) {
 Status addRayPass(Context::State& context, const RayPass& pass, VkPipeline pipeline, Pipelines& pipelines) {
     GLINT_TRY(auto table, createTable(context, pipelines.pool, pipeline, pass.source));
     const PassPipeline made{pipeline, true, table.rayGeneration, table.miss, table.hit};
-    if (package::findRole(pass.key.role)->over == package::Over::Buckets) {
-        for (const std::uint32_t shaderId : pass.shaderIds) {
-            pipelines.cases[shaderId] = made;
-        }
-    } else {
-        pipelines.add(pass.key, made);
+    pipelines.add(pass.key, made);
+    for (const std::uint32_t shaderId : pass.shaderIds) {
+        pipelines.add({pass.key.role, shaderId, pass.key.tracer}, made);
     }
     pipelines.tables.push_back(std::move(table.buffer));
     return okStatus();
@@ -453,9 +451,6 @@ Status addPipeline(Context::State& context, const PlannedPipeline& planned, Made
     for (const package::ModuleKey& key : planned.keys) {
         if (key.role == ModuleRole::GBufferVertex) {
             pipelines.gbuffer = pipeline;
-        } else if (package::findRole(key.role)->over == package::Over::Buckets) {
-            pipelines.cases[key.index].pipeline = pipeline;
-            pipelines.cases[key.index].traces = false;
         } else {
             pipelines.add(key, {.pipeline = pipeline});
         }
@@ -468,19 +463,19 @@ void addFallback(const Package& package, const PipelineChoice& choice, Pipelines
     if (!choice.background) {
         return;
     }
-    for (const package::RoleInfo& info : package::rolesOf(choice.strategy)) {
+    for (const package::RoleInfo& info : package::roles()) {
         const auto made = pipelines.passes.find(info.fallback);
-        if (made == pipelines.passes.end()) {
+        if ((info.strategies & choice.strategy) == 0 || made == pipelines.passes.end()) {
             continue;
         }
         if (info.over != package::Over::Buckets) {
             pipelines.passes[info.role] = made->second;
             continue;
         }
-        for (std::size_t id = 0; id < pipelines.cases.size(); ++id) {
+        for (std::uint32_t id = 0; id < package.caseCount(); ++id) {
             // A retired shader ID has no hits and no pipeline.
             if (package.cases()[id].keyCount > 0) {
-                pipelines.cases[id] = made->second;
+                pipelines.add({info.role, id}, made->second);
             }
         }
     }
@@ -492,9 +487,20 @@ bool hasUnknown(const Package& package, std::span<const std::uint32_t> shaderIds
            });
 }
 
+void Pipelines::makeRoom(const Package& made, package::Strategy strategy) {
+    for (const package::RoleInfo& info : package::roles()) {
+        if (info.over == package::Over::Buckets && (info.strategies & strategy) != 0) {
+            cases[info.role].resize(made.caseCount());
+        }
+    }
+}
+
 void Pipelines::add(const package::ModuleKey& key, const PassPipeline& pass) {
-    const package::Repeated repeated = package::findRole(key.role)->repeated;
-    if (repeated == package::Repeated::ByEffect || repeated == package::Repeated::ByWalk) {
+    const package::RoleInfo& info = *package::findRole(key.role);
+    const package::Repeated repeated = info.repeated;
+    if (info.over == package::Over::Buckets) {
+        cases.at(key.role)[key.index] = pass;
+    } else if (repeated == package::Repeated::ByEffect || repeated == package::Repeated::ByWalk) {
         effectPasses[{key.role, key.index}] = pass;
     } else {
         passes[key.role] = pass;
@@ -553,9 +559,7 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
     const VkPipelineCreateFlags flags =
         making.captureStatistics ? VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR : 0;
     GLINT_TRY(auto made, makePipelines(jobs, flags, pipelines.threads));
-    if (package::infoOf(choice.strategy).dispatchesCases) {
-        pipelines.cases.resize(package.caseCount());
-    }
+    pipelines.makeRoom(package, choice.strategy);
     for (std::size_t i = 0; i < plan.size(); ++i) {
         GLINT_TRY_DO(addPipeline(context, plan[i], std::move(made[i]), pipelines));
     }

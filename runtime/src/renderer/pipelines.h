@@ -74,7 +74,8 @@ struct Pipelines {
     std::map<package::ModuleRole, PassPipeline> passes;
     // The passes of one effect, by role and package::effectNumber().
     std::map<std::pair<package::ModuleRole, std::uint32_t>, PassPipeline> effectPasses;
-    std::vector<PassPipeline> cases;  // indexed by shader ID; cases that share a module share a pipeline
+    // Those of passes over buckets, by role and shader ID. Cases that share a module share a pipeline.
+    std::map<package::ModuleRole, std::vector<PassPipeline>> cases;
     std::vector<MadePipeline> owned;
     std::shared_ptr<const Package> package;  // the package that threads read; null if the caller keeps it
     std::uint32_t threads = 0;               // threads that made them
@@ -90,7 +91,9 @@ struct Pipelines {
     std::unique_ptr<BackgroundPipelines> background;  // null if all pipelines were made at once
     std::size_t adoptedAtOnce = std::numeric_limits<std::size_t>::max();  // the most in a recording
 
-    // Sets the pipeline of a role, and of the effect if each has one of its own.
+    // Makes room for the cases of a choice of the package's modules.
+    void makeRoom(const Package& made, package::Strategy strategy);
+    // Sets the pipeline of a role, and of the case or effect if each has one of its own.
     void add(const package::ModuleKey& key, const PassPipeline& pass);
 };
 

@@ -302,10 +302,10 @@ EffectCounters countersOf(const std::vector<std::uint32_t>& values, const packag
     return counters;
 }
 
-// Returns the counts of the buckets of a round that was read back at `bytes`.
+// Returns the counts of buckets that were read back at `bytes`.
 std::vector<std::uint32_t> bucketsOf(const std::uint8_t* bytes, const FrameSize& size) {
     std::vector<std::uint32_t> counts(size.bucketCount);
-    std::memcpy(counts.data(), bytes + kRoundCounterBytes, counts.size() * sizeof(counts[0]));
+    std::memcpy(counts.data(), bytes, counts.size() * sizeof(counts[0]));
     return counts;
 }
 
@@ -327,7 +327,7 @@ void addRound(const std::uint8_t* bytes, const FrameSize& size, const Renderer::
     if (!size.ordered) {
         return;
     }
-    const std::vector<std::uint32_t> counts = bucketsOf(bytes, size);
+    const std::vector<std::uint32_t> counts = bucketsOf(bytes + kRoundCounterBytes, size);
     addTo(counters.bucketCounts, counts);
     for (EffectCounters& effect : counters.effects) {
         if (effect.effect == round.effects) {
@@ -345,11 +345,14 @@ EffectCounters FrameCounters::of(package::Effect effect) const {
     return found == effects.end() ? none : *found;
 }
 
-// Those of all rounds.
+// Those of the pixels and of all rounds.
 std::vector<std::uint32_t> Renderer::State::hits() const {
     std::vector<std::uint32_t> sums(size.bucketCount);
-    for (std::uint32_t round = 0; round < rounds.size(); ++round) {
-        addTo(sums, bucketsOf(frame.readback.mapped + readbackRound(size, round), size));
+    for (std::uint32_t band = 0; band < orderedBands; ++band) {
+        addTo(sums, bucketsOf(frame.readback.mapped + readbackFirst(size, band), size));
+    }
+    for (std::uint32_t round = 0; size.ordered && round < rounds.size(); ++round) {
+        addTo(sums, bucketsOf(frame.readback.mapped + readbackRound(size, round) + kRoundCounterBytes, size));
     }
     return sums;
 }

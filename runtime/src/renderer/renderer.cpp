@@ -148,7 +148,7 @@ void beginPicture(Renderer::State& state, std::uint32_t sampleIndex) {
 // Lets the case that had most hits be made next. The device may be writing the counts of a frame that is in
 // flight: they only decide about an order.
 void orderByHits(Renderer::State& state) {
-    if (state.recorded && state.size.ordered) {
+    if (state.recorded) {
         state.pipelines.background->setHits(state.hits());
     }
 }

@@ -125,7 +125,7 @@ Status makePipelinesOf(PackageUser& state, NextPackage& next) {
         const std::uint32_t threads = pipelineThreads(making.threads, missing.size() + 1);
         pipelines.background = std::make_unique<BackgroundPipelines>(state.context.jobs, std::move(missing),
                                                                      flags, std::max(threads, 2U) - 1);
-        if (state.recorded && state.size.ordered && next.size.bucketCount == state.size.bucketCount) {
+        if (state.recorded && next.size.bucketCount == state.size.bucketCount) {
             pipelines.background->setHits(state.hits());
         }
     }
@@ -181,9 +181,7 @@ void pauseBackground(PackageUser& state, bool paused) {
 
 // Lets the passes use the pipelines, which are all there but for spare ones.
 Status joinPasses(PackageUser& state, NextPackage& next) {
-    if (package::infoOf(next.choice.strategy).dispatchesCases) {
-        next.pipelines.cases.resize(next.package->caseCount());
-    }
+    next.pipelines.makeRoom(*next.package, next.choice.strategy);
     collect(next);
     for (const Done& done : next.ready) {
         GLINT_TRY_DO(addPipeline(state.context, done.planned, done.made, next.pipelines));
@@ -278,7 +276,8 @@ std::vector<std::string> caseNamesOf(const Package& package) {
 
 std::uint32_t timerCapacity(const Package& package, const FrameSize& size) {
     const std::uint32_t rounds = std::max(package::effectSlots(size.effects), 1U);
-    return size.bandCount() * rounds * size.bounces * (kMaxFixedPasses + package.caseCount());
+    const std::uint32_t first = kMaxFirstPasses + package.caseCount();
+    return size.bandCount() * (first + rounds * size.bounces * (kMaxFixedPasses + package.caseCount()));
 }
 
 void PipelineDisposal::take(std::unique_ptr<Pipelines> pipelines, std::unique_ptr<NextPackage> next) {

@@ -102,7 +102,7 @@ Status RaySteps::State::choose(const Package& other, NextPackage& made) const {
 }
 
 std::vector<std::uint32_t> RaySteps::State::hits() const {
-    return countersAt(*this, counterBytes(size), size.bucketCount);
+    return countersAt(*this, counterBytes(size), size.ordered ? size.bucketCount : 0);
 }
 
 Result<std::unique_ptr<RaySteps>> RaySteps::create(Context& context, const Package& package,

@@ -102,9 +102,9 @@ std::string effectText(const EffectCounters& effect) {
 }
 
 std::string titleOf(const PassTiming& pass, const RenderReport& report, Detail detail) {
-    return pass.pass == Pass::ShadeCase
-               ? "shade " + shaderTitle(pass.shaderId, report.caseNames.at(pass.shaderId), detail)
-               : pass.name;
+    return isOfCase(pass.pass) ? (pass.pass == Pass::FirstCase ? "first " : "shade ") +
+                                     shaderTitle(pass.shaderId, report.caseNames.at(pass.shaderId), detail)
+                               : pass.name;
 }
 
 // Describes the choice in one line.
@@ -181,8 +181,7 @@ static base::Fields fieldsOf(const PassTiming*) {
     return {base::output<&T::name>("name", "Name of the pass."),
             base::output("shaderId", "The case, for a pass that shades one; null for other passes.",
                          [](const T& pass) {
-                             return pass.pass == Pass::ShadeCase ? std::optional(pass.shaderId)
-                                                                 : std::nullopt;
+                             return isOfCase(pass.pass) ? std::optional(pass.shaderId) : std::nullopt;
                          }),
             base::output<&T::milliseconds>("milliseconds", "Device time of the pass.")};
 }

@@ -155,7 +155,7 @@ enum class ModuleRole : std::uint32_t {
     None = 0,
     GBufferVertex = 1,
     GBufferFragment = 2,
-    Lighting = 3,
+    FirstHit = 3,    // one entry for each case: shades the pixels that see it
     EffectRays = 4,  // one entry for each effect that sends rays
     RayDispatch = 5,
     Trace = 6,
@@ -172,7 +172,10 @@ enum class ModuleRole : std::uint32_t {
     EffectWalk = 17,     // one entry for each effect that follows its rays
     PathRays = 18,       // puts the next rays of paths on the list, in packages with several bounces
     Deform = 19,         // applies skins and morph targets to vertices; used by GpuScene, not by Renderer
-    LightingDraft = 20,  // stands in for Lighting until that is made
+    FirstDraft = 20,     // shades all pixels until the other modules are made
+    FirstBuckets = 22,   // stores the bucket of each pixel
+    FirstMiss = 23,      // shades pixels without a surface
+    FirstFallback = 24,  // shades pixels whose shader ID no case has
     LightingEdit = 21,   // shades surfaces with edited features, after Lighting
 };
 

@@ -130,13 +130,14 @@ enum class Repeated : std::uint8_t { Once, ByCase, ByOrdering, ByEffect, ByWalk 
 // The packages that have a role.
 enum class Purpose : std::uint8_t {
     Picture,   // packages that draw a frame
+    Order,     // packages that order hits: those that draw a frame order its first hits
     Hits,      // packages that shade hits: for a host, or with an effect that sends rays
     Shadows,   // those among them that defer shadow rays
     Walks,     // packages with effects that follow their rays in a pass of their own
     Tracing,   // packages in which a ray tracing pipeline traces
     Paths,     // packages whose paths have several bounces
     Motion,    // packages with meshes that follow skins or morph targets
-    Fallback,  // packages that shade hits, with shaders for every material
+    Fallback,  // packages that shade such hits, with shaders for every material
     Draft,     // packages that draw a frame and may do so before all pipelines are made
     Edit,      // early packages, which show an edit
 };
@@ -150,11 +151,16 @@ struct RoleInfo {
     Purpose purpose = Purpose::Hits;
     Repeated repeated = Repeated::Once;
 
-    // Only roles of strategies have these members; the strategy declares them.
-    const StrategyModule* declared = nullptr;
+    // Roles of strategies, whose row declares these members, and roles of first hits have them.
+    const StrategyModule* declared = nullptr;  // of a strategy
     Over over = Over::Nothing;  // of the fallback of Buckets: Misses; other fallbacks have no pass
+    std::string_view pass{};    // the name of its pass, as in StrategyModule
     ModuleRole fallback{};      // the role of its fallback
 
+    // Returns whether it shades first hits, with the features of primary surfaces.
+    bool shadesFirst() const {
+        return role == ModuleRole::FirstHit || role == ModuleRole::FirstFallback;
+    }
     // Returns whether its code chooses among cases.
     bool hasSwitch() const {
         return declared != nullptr && declared->cases == CaseCode::Switch;
@@ -181,6 +187,8 @@ inline constexpr NamedBinding kBindingNames[] = {
 std::span<const RoleInfo> roles();
 // Returns the roles that only this strategy has, in the order of its row.
 std::span<const RoleInfo> rolesOf(Strategy strategy);
+// Returns the roles whose passes shade first hits, which all strategies share, in the order of their passes.
+std::span<const RoleInfo> firstRoles();
 
 // Returns null for a number that is no role.
 const RoleInfo* findRole(ModuleRole role);

@@ -1,21 +1,7 @@
-#version 460
-// Lighting of the primary surfaces: materials, every punctual light, the sky. It also makes the samples of the effects.
-#define GLINT_MODULE_ALWAYS_LOBES GLINT_ALWAYS_LOBES
-#define GLINT_MODULE_ALWAYS_INPUTS GLINT_ALWAYS_INPUTS
-#define GLINT_MODULE_ANY_LOBES (GLINT_ALWAYS_LOBES | GLINT_SOMETIMES_LOBES)
-#define GLINT_MODULE_ANY_INPUTS (GLINT_ALWAYS_INPUTS | GLINT_SOMETIMES_INPUTS)
-#include "generated/effects.glsl"
-#include "hit/images.glsl"
-#include "hit/primary.glsl"
+// The light of every light on a surface that the camera sees.
+#include "effects/sky_shares.glsl"
 #include "hit/shade.glsl"
-#include "hit/stage.glsl"
 #include "light/sized.glsl"
-#include "passes/primary_surface.glsl"
-#if GLINT_SURFACE_LAYERS
-#include "generated/surface_layers.glsl"
-#endif
-
-GLINT_PIXEL_WORKGROUP
 
 #if GLINT_SHARED_LIGHTS
 
@@ -191,78 +177,3 @@ vec3 directLight(Hit hit, Surface surface, Features features) {
 }
 
 #endif
-
-// The light that a lit surface scatters, without its emission. `sky` holds the remaining shares of the sky's light.
-vec3 scatteredBy(Hit hit, Surface surface, Features features, SkyShares sky) {
-#if GLINT_EFFECT_SHADOW
-    ShadowCounts counts = ShadowCounts(0u, 0u, 0u, 0u, 0u);
-    vec3 direct = directLight(hit, surface, features, sky, counts);
-    vec3 ambient = ambientLight(surface, features, hit.view, sky);
-    direct += traceWaiting(hit, counts);
-    reportShadows(counts);
-    return direct + ambient;
-#else
-    return directLight(hit, surface, features) + ambientLight(surface, features, hit.view, sky);
-#endif
-}
-
-void main() {
-    uvec2 pixel = GLINT_PIXEL_OF_THREAD;
-    if (pixel.x >= GLINT_FRAME.width || pixel.y >= GLINT_FRAME.endRow) {
-        return;
-    }
-    ivec2 place = ivec2(pixel);
-#if GLINT_TALLIES
-    beginTallies(pixel);
-#endif
-    GLINT_CLOCK_START
-    uint number = pixel.x + pixel.y * GLINT_FRAME.width;
-    uvec2 surfaceId = imageLoad(surfaceImage, place).xy;
-    CameraRay ray = cameraRay(pixel);
-    vec4 radianceDepth = vec4(hostSky(ray.direction), 0.0);
-    vec4 position = vec4(0.0);
-
-    if (surfaceId.x == kNoSurface) {
-        skipEffects(number, kRayNoSurface);
-#if GLINT_SURFACE_LAYERS
-        storeSkyLayers(place, ray.direction, radianceDepth.rgb);
-#endif
-    } else {
-        HostGeometry geometry = hostGeometry(surfaceId.x);
-        Features features = GLINT_PRIMARY_FEATURES(geometry);
-        Hit hit = primaryHit(geometry, surfaceId.y, ray, number, features);
-        vec3 origin = rayOrigin(hit, hit.geometricNormal);
-        position = vec4(origin, uintBitsToFloat(packSnorm2x16(octahedralEncode(hit.geometricNormal))));
-        radianceDepth.w = dot(hit.position - GLINT_FRAME.cameraPosition, GLINT_FRAME.cameraForward);
-        Surface surface = surfaceOfPrimary(hit, features.lobes, features.inputs);
-#if GLINT_SURFACE_LAYERS
-        vec3 direct = vec3(0.0);
-#endif
-        if (hasLobe(features, GLINT_UNLIT)) {
-            radianceDepth.rgb = surface.emission;
-            skipEffects(number, kRayUnlit);
-        } else {
-            SkyShares sky = wholeSky();
-            sampleEffects(hit, surface, features, sky);
-            vec3 emission = surface.emission;
-            vec3 scattered = scatteredBy(hit, surface, features, sky);
-            radianceDepth.rgb = emission + scattered;
-#if GLINT_SURFACE_LAYERS
-            direct = scattered;
-#endif
-        }
-#if GLINT_SURFACE_LAYERS
-        storeSurfaceLayers(PrimaryPoint(place, geometry, surfaceId.x, surfaceId.y, ray, hit, surface, features,
-                                        !hasLobe(features, GLINT_UNLIT), radianceDepth.w),
-                           direct);
-#endif
-    }
-    radianceDepth.w *= GLINT_FRAME.perLengthUnit;
-    imageStore(radianceImage, place, storable(radianceDepth));
-#if GLINT_STARTS_ON_SCREEN
-    if (GLINT_FRAME.screenSteps != 0u) {
-        imageStore(positionImage, place, position);
-    }
-#endif
-    GLINT_CLOCK_STOP
-}
