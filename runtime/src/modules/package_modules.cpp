@@ -93,8 +93,6 @@ std::vector<RoleInfo> sharedRoles() {
         {ModuleRole::Deform, all, "Deform", "passes/deform.comp", ShaderKind::Compute, Purpose::Motion},
         {ModuleRole::LightingDraft, all, "LightingDraft", "passes/lighting_draft.comp.mustache",
          ShaderKind::Compute, Purpose::Draft},
-        {ModuleRole::LightingEdit, all, "LightingEdit", "passes/lighting_edit.comp.mustache",
-         ShaderKind::Compute, Purpose::Edit},
     };
 }
 
@@ -149,8 +147,6 @@ bool hasPurpose(Purpose purpose, const PackageShape& shape) {
             return hits && shape.fallback;
         case Purpose::Draft:
             return frame && shape.fallback;
-        case Purpose::Edit:
-            return frame && shape.early;
     }
     return false;
 }

@@ -104,19 +104,9 @@ private:
         } else {
             passes_.dispatchPixels({"lighting", Pass::Lighting}, pass(ModuleRole::Lighting));
             passes_.barrier(dependencies().passToPass);
-            recordEdit();
             recordEffects(frame.effects & state_.size.effects.rays, constants);
         }
         passes_.dispatchPixels({"compose", Pass::Compose}, pass(ModuleRole::Compose));
-    }
-
-    // Shades the surfaces with edited features as a draft, in place of the result of the lighting pass.
-    void recordEdit() {
-        const auto edit = state_.pipelines.passes.find(ModuleRole::LightingEdit);
-        if (edit != state_.pipelines.passes.end()) {
-            passes_.dispatchPixels({"lighting edit", Pass::Lighting}, edit->second);
-            passes_.barrier(dependencies().passToPass);
-        }
     }
 
     // Leads the passes to the rows of another band. The band before used the same memory.
