@@ -3,9 +3,8 @@
 
     benchmarks/charts/live_edit_chart.py CHART.png LABEL=FILE.json...      FILE.json: of glint_live_edit --json
 
-Each file gives a bar of medians for the picture of the whole package, and one above it for the draft of the early
-package, if there was one. Numbers also go to standard output, as a table in Markdown. With --processor the parts are the
-processor times of the compiler and of the program that draws, which hardly depend on what else the machine does.
+Each file gives a bar of medians. Numbers also go to standard output, as a table in Markdown. With --processor the parts
+are the processor times of the compiler and of the program that draws, which hardly depend on what else the machine does.
 """
 import json
 import pathlib
@@ -21,7 +20,6 @@ import matplotlib.pyplot as plt  # noqa: E402
 PARTS = {
     "notice the edit": ["notice"],
     "read and plan": ["read", "plan"],
-    "early package": ["early"],
     "compile GLSL": ["compile"],
     "write and load": ["write", "load"],
     "make pipelines": ["replace", "pipelines"],
@@ -31,20 +29,15 @@ PROCESSOR = {"compiler": ["compiler"], "program that draws": ["renderer"]}
 GOAL_MS = 500
 
 
-def median(edits, kind, names):
-    return statistics.median(sum(edit[kind].get(name, 0.0) for name in names) for edit in edits)
+def median(edits, names):
+    return statistics.median(sum(edit["whole"].get(name, 0.0) for name in names) for edit in edits)
 
 
-def bars_of(label, path, parts):
-    """The bars of a file: (label, the median of each part, the median of their sum)."""
+def bar_of(label, path, parts):
+    """The bar of a file: (label, the median of each part, the median of their sum)."""
     edits = json.loads(pathlib.Path(path).read_text(encoding="utf-8"))["edits"]
-    kinds = [("early", "draft of the edit"), ("whole", "whole package")]
     everything = [name for names in parts.values() for name in names]
-    for kind, name in kinds:
-        known = [edit for edit in edits if edit[kind]]
-        if known:
-            values = [median(known, kind, names) for names in parts.values()]
-            yield f"{label}\n{name}", values, median(known, kind, everything)
+    return label, [median(edits, names) for names in parts.values()], median(edits, everything)
 
 
 def print_table(bars, parts):
@@ -52,7 +45,7 @@ def print_table(bars, parts):
     print("|---|" + "--:|" * (len(parts) + 1))
     for label, values, total in bars:
         cells = [f"{value:.0f}" for value in values] + [f"**{total:.0f}**"]
-        print(f"| {label.replace(chr(10), ', ')} | " + " | ".join(cells) + " |")
+        print(f"| {label} | " + " | ".join(cells) + " |")
 
 
 def main():
@@ -63,7 +56,7 @@ def main():
     bars = []
     for argument in arguments[1:]:
         label, path = argument.split("=", 1)
-        bars += bars_of(label, path, parts)
+        bars.append(bar_of(label, path, parts))
     print_table(bars, parts)
     _, axes = plt.subplots(figsize=(9, 0.8 + 0.55 * len(bars)))
     for row, (_, values, total) in enumerate(bars):

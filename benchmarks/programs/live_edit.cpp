@@ -53,7 +53,6 @@ struct Arguments {
     std::uint32_t height = 180;
     int rounds = 5;
     bool noFallback = false;
-    bool noEarly = false;
     std::string json;
 };
 
@@ -75,9 +74,6 @@ public:
             "none",          "--materials",      arguments.pack,  "--watch"};
         if (!arguments.noFallback) {
             words.emplace_back("--fallback");
-        }
-        if (arguments.noEarly) {
-            words.emplace_back("--no-early");
         }
         std::error_code ignored;
         fs::remove(out_, ignored);  // of an earlier program
@@ -102,20 +98,16 @@ public:
         waitpid(child_, nullptr, 0);
     }
 
-    // Waits for the last line of a run, counted from 1, and returns it and the line of its early package,
-    // which is empty if there is none.
-    std::pair<std::string, std::string> lines(std::size_t number) const {
+    // Waits for the line of a run, counted from 1, and returns it.
+    std::string line(std::size_t number) const {
         constexpr int kPatience = 60'000;
         const std::string start = fmt::format("{}. ", number);
         for (int i = 0; i < kPatience; ++i) {
-            std::string early;
             if (const Result<base::Bytes> bytes = base::readFile(out_)) {
                 std::istringstream text{std::string(base::asText(*bytes))};
                 for (std::string line; std::getline(text, line) && !text.eof();) {
-                    if (line.starts_with(start) && line.find(": early package;") != std::string::npos) {
-                        early = line;
-                    } else if (line.starts_with(start)) {
-                        return {line, early};
+                    if (line.starts_with(start)) {
+                        return line;
                     }
                 }
             }
@@ -141,8 +133,8 @@ double numberAfter(const std::string& line, const std::string& word) {
     return place == std::string::npos ? 0.0 : std::strtod(line.c_str() + place + word.size(), nullptr);
 }
 
-constexpr std::array kParts{"notice", "read", "plan", "early", "compile", "write", "load", "replace",
-                            "pipelines", "first frame", "sum",
+constexpr std::array kParts{"notice", "read", "plan", "compile", "write", "load", "replace", "pipelines",
+                            "first frame", "sum",
                             // These two are of the first frame, on the device.
                             "lighting", "cases",
                             // Processor time since the edit: of the compiler, and of this program.
@@ -153,7 +145,6 @@ enum Part : std::uint8_t {
     kNotice,
     kRead,
     kPlan,
-    kEarly,
     kCompile,
     kWrite,
     kLoad,
@@ -167,13 +158,7 @@ enum Part : std::uint8_t {
     kRenderer,
 };
 
-// The pictures that show an edit: the draft of an early package, if there was one, and the whole.
-struct Edit {
-    std::optional<Times> early;
-    Times whole{};
-};
-
-// Follows one edit to its pictures.
+// Follows one edit to its picture.
 class Follower {
 public:
     Follower(const Compiler& compiler, PackageWatch& packages, Renderer& renderer, const FrameOptions& frame)
@@ -181,36 +166,27 @@ public:
         frame_.timing = Timing::Passes;
     }
 
-    // Writes `text` to `file`, and returns once the whole package is in use. `run` is that of the
-    // compiler.
-    Result<Edit> follow(const fs::path& file, const std::string& text, std::size_t run,
-                        Renderer::Replacement& replaced) {
+    // Writes `text` to `file`, and returns once the new package is in use. `run` is that of the compiler.
+    Result<Times> follow(const fs::path& file, const std::string& text, std::size_t run,
+                         Renderer::Replacement& replaced) {
         const fs::path temporary = file.string() + ".edited";
         GLINT_TRY_DO(base::writeFile(temporary, text));
         start_ = base::Clock::now();
         compilerStart_ = compiler_.processorMs();
         rendererStart_ = processorTimeOf(CLOCK_PROCESS_CPUTIME_ID);
         fs::rename(temporary, file);
-        Edit edit;
-        for (bool whole = false; !whole;) {
-            std::shared_ptr<const Package> package;
-            GLINT_TRY(const auto times, showNext(package, replaced));
-            whole = !package->shape().early;
-            (whole ? edit.whole : edit.early.emplace()) = times;
-        }
-        const auto [line, earlyLine] = compiler_.lines(run);
-        if (edit.early) {
-            addLine(earlyLine, *edit.early);
-        }
-        addLine(line, edit.whole);
-        fmt::print("<!-- {}\n     {} -->\n", earlyLine, line);
-        return edit;
+        GLINT_TRY(auto times, showNext(replaced));
+        const std::string line = compiler_.line(run);
+        addLine(line, times);
+        fmt::print("<!-- {} -->\n", line);
+        return times;
     }
 
 private:
     // Waits for the next package and its first picture.
-    Result<Times> showNext(std::shared_ptr<const Package>& package, Renderer::Replacement& replaced) {
+    Result<Times> showNext(Renderer::Replacement& replaced) {
         Times times{};
+        std::shared_ptr<const Package> package;
         base::Clock::time_point begin;
         while (!package) {
             begin = base::Clock::now();
@@ -258,10 +234,9 @@ private:
     static void addLine(const std::string& line, Times& times) {
         times[kRead] = numberAfter(line, "read ");
         times[kPlan] = numberAfter(line, "plan ");
-        times[kEarly] = numberAfter(line, ", early ");
         times[kCompile] = numberAfter(line, "compile ");
         times[kWrite] = numberAfter(line, "write ");
-        const double known = times[kRead] + times[kPlan] + times[kEarly] + times[kCompile] + times[kWrite];
+        const double known = times[kRead] + times[kPlan] + times[kCompile] + times[kWrite];
         times[kNotice] = std::max(times[kNotice] - known, 0.0);
     }
 
@@ -295,25 +270,13 @@ void printTable(const std::vector<Times>& rows) {
     }
 }
 
-// Prints the tables, and writes the JSON that benchmarks/charts/live_edit_chart.py draws.
-Status report(const Arguments& arguments, const std::string& device, const std::vector<Edit>& edits) {
-    std::vector<Times> early;
-    std::vector<Times> whole;
+// Prints the table, and writes the JSON that benchmarks/charts/live_edit_chart.py draws.
+Status report(const Arguments& arguments, const std::string& device, const std::vector<Times>& edits) {
     base::Json list = base::Json::array();
-    for (const Edit& edit : edits) {
-        whole.push_back(edit.whole);
-        if (edit.early) {
-            early.push_back(*edit.early);
-        }
-        list.push_back({{"early", edit.early ? toJson(*edit.early) : base::Json(nullptr)},
-                        {"whole", toJson(edit.whole)}});
+    for (const Times& times : edits) {
+        list.push_back({{"whole", toJson(times)}});
     }
-    if (!early.empty()) {
-        fmt::print("until the draft of the edit, {} edits:\n\n", early.size());
-        printTable(early);
-        fmt::print("\nuntil the whole package:\n\n");
-    }
-    printTable(whole);
+    printTable(edits);
     if (arguments.json.empty()) {
         return okStatus();
     }
@@ -322,7 +285,6 @@ Status report(const Arguments& arguments, const std::string& device, const std::
                             {"height", arguments.height},
                             {"strategy", arguments.strategy},
                             {"fallback", !arguments.noFallback},
-                            {"early", !arguments.noEarly},
                             {"edits", std::move(list)}};
     return base::writeFile(arguments.json, all.dump(1) + "\n");
 }
@@ -343,7 +305,7 @@ Status measure(const Arguments& arguments) {
     options.backgroundPipelines = !arguments.noFallback;
     const bool queries = (context->handles().tracers & package::kTracerRayQuery) != 0;
     const Compiler compiler(arguments, settings.package, queries ? "ray-query" : "ray-pipeline");
-    fmt::print("<!-- {} -->\n", compiler.lines(1).first);
+    fmt::print("<!-- {} -->\n", compiler.line(1));
     PackageWatch packages(settings.package);
     GLINT_TRY(auto first, session::givenPackage(settings));
     GLINT_TRY(const auto uploaded,
@@ -360,7 +322,7 @@ Status measure(const Arguments& arguments) {
     if (place == std::string::npos) {
         return makeError("live-edit", arguments.file, "the file lacks the text of --from");
     }
-    std::vector<Edit> edits;
+    std::vector<Times> edits;
     Renderer::Replacement replaced;
     Follower follower(compiler, packages, *renderer, frame);
     Status result = okStatus();
@@ -370,12 +332,12 @@ Status measure(const Arguments& arguments) {
         const auto now = std::chrono::system_clock::now().time_since_epoch().count();
         text.replace(place, arguments.from.size(),
                      fmt::format("{} * {}.{:09}", arguments.from, 1, now % 1'000'000));
-        Result<Edit> edit =
+        const Result<Times> times =
             follower.follow(arguments.file, text, static_cast<std::size_t>(round) + 2, replaced);
-        if (edit) {
-            edits.push_back(*edit);
+        if (times) {
+            edits.push_back(*times);
         } else {
-            result = edit.error();
+            result = times.error();
         }
     }
     static_cast<void>(base::writeFile(arguments.file, original));
@@ -405,7 +367,6 @@ int main(int count, char** words) {
     app.add_option("--rounds", arguments.rounds, "edits")->capture_default_str();
     app.add_flag("--no-fallback", arguments.noFallback,
                  "compile no fallback, and make pipelines in replacePackage()");
-    app.add_flag("--no-early", arguments.noEarly, "write no early packages");
     app.add_option("--json", arguments.json, "a file for every edit's times");
     CLI11_PARSE(app, count, words);
     try {

@@ -72,22 +72,6 @@ public:
         fs::remove(err_);
     }
 
-    static bool isEarly(const std::string& line) {
-        return has(line, ": early package; ");
-    }
-    // Returns whether the line of a run, counted from 1, came after one about an early package.
-    bool wasEarly(std::size_t number) const {
-        const std::string last = line(number);
-        for (const std::string& one : lines()) {
-            if (one == last) {
-                return false;
-            }
-            if (one.starts_with(std::to_string(number) + ". ") && isEarly(one)) {
-                return true;
-            }
-        }
-        return false;
-    }
     std::vector<std::string> lines() const {
         std::vector<std::string> lines;
         std::istringstream text(readText(out_));
@@ -101,7 +85,7 @@ public:
         constexpr int kPatience = 6000;
         for (int i = 0; i < kPatience; ++i) {
             for (const std::string& one : lines()) {
-                if (one.starts_with(std::to_string(number) + ". ") && !isEarly(one)) {
+                if (one.starts_with(std::to_string(number) + ". ")) {
                     return one;
                 }
             }
@@ -180,18 +164,16 @@ TEST_F(Watching, AnEditMakesANewPackageOfTheCasesItTouches) {
     // evaluates materials is compiled.
     EXPECT_TRUE(has(line, "other modules: 1 compiled, ")) << line;
     EXPECT_TRUE(has(line, "; parts: 1 compiled, 1 kept; ")) << line;
-    EXPECT_TRUE(std::regex_search(
-        line, std::regex(R"(kept; \d+ ms: read \d+, early \d+, plan \d+, compile \d+, write \d+$)")))
+    EXPECT_TRUE(
+        std::regex_search(line, std::regex(R"(kept; \d+ ms: read \d+, plan \d+, compile \d+, write \d+$)")))
         << line;
-    // The early package came before it.
-    EXPECT_TRUE(watch.wasEarly(2));
-    EXPECT_EQ(stamp(), 3U);
+    EXPECT_EQ(watch.lines().size(), 2U);
+    EXPECT_EQ(stamp(), 2U);
     package = packages.poll();
     ASSERT_TRUE(package) << toString(package.error());
     ASSERT_NE(*package, nullptr);
     EXPECT_EQ((*package)->caseCount(), 2U);
-    EXPECT_FALSE((*package)->shape().early);
-    EXPECT_EQ(packages.counter(), 3U);
+    EXPECT_EQ(packages.counter(), 2U);
     EXPECT_EQ(*packages.poll(), nullptr);
     EXPECT_EQ(watch.errors(), "");
 
@@ -204,49 +186,7 @@ TEST_F(Watching, AnEditMakesANewPackageOfTheCasesItTouches) {
     replace("pack/mud.glsl", mud(0.25));
     EXPECT_TRUE(has(watch.line(3), "new package; cases: 0 compiled, 2 kept; other modules: 0 compiled"))
         << watch.line(3);
-    EXPECT_EQ(stamp(), 5U);
-    EXPECT_EQ(watch.interrupt(), 0);
-}
-
-// An error may be in what other modules than that of the early package see. That one includes hit/stage.glsl
-// first.
-TEST_F(Watching, AnEarlyPackageIsTakenBackIfTheWholeOneFails) {
-    Running watch(path("."), words());
-    watch.line(1);
-    const auto before = contentsOf(path("package"));
-    replace("pack/mud.glsl", mud(0.5) + "#ifndef GLINT_PIXEL_OF_THREAD\nthis is no GLSL\n#endif\n");
-    EXPECT_TRUE(has(watch.line(2), "2. pack/mud.glsl: failed, the package is that before the edit again"))
-        << watch.line(2);
-    EXPECT_TRUE(watch.wasEarly(2));
-    EXPECT_EQ(contentsOf(path("package")), before);
     EXPECT_EQ(stamp(), 3U);
-    PackageWatch packages(path("package"));
-    replace("pack/mud.glsl", mud(0.75));
-    EXPECT_TRUE(has(watch.line(3), "3. pack/mud.glsl: new package; cases: 1 compiled")) << watch.line(3);
-    EXPECT_TRUE(watch.wasEarly(3));
-    EXPECT_EQ(stamp(), 5U);
-    EXPECT_EQ(watch.interrupt(), 0);
-}
-
-TEST_F(Watching, EditsOfDeclarationsAndNoEarlyMakeNoEarlyPackage) {
-    {
-        Running watch(path("."), words());
-        watch.line(1);
-        std::string declaration = readText(path("pack/mud.json"));
-        declaration.replace(declaration.find("there is no mud"), 15, "it has no mud..");
-        replace("pack/mud.json", declaration);
-        replace("pack/mud.glsl", mud(0.5));
-        watch.line(2);
-        EXPECT_FALSE(watch.wasEarly(2));
-        EXPECT_EQ(watch.interrupt(), 0);
-    }
-    const std::uint64_t counter = stamp().value_or(0);
-    Running watch(path("."), words({"--no-early"}));
-    watch.line(1);
-    replace("pack/mud.glsl", mud(0.125));
-    EXPECT_TRUE(has(watch.line(2), "new package")) << watch.line(2);
-    EXPECT_FALSE(watch.wasEarly(2));
-    EXPECT_EQ(stamp(), counter + 1);
     EXPECT_EQ(watch.interrupt(), 0);
 }
 
@@ -264,7 +204,7 @@ TEST_F(Watching, AMistakeIsReportedAndThePackageStays) {
     EXPECT_EQ(stamp(), 1U);
     replace("pack/mud.glsl", mud(0.5));
     EXPECT_TRUE(has(watch.line(3), "new package; cases: 1 compiled, 1 kept")) << watch.line(3);
-    EXPECT_EQ(stamp(), 3U);
+    EXPECT_EQ(stamp(), 2U);
     EXPECT_EQ(watch.interrupt(), 0);
 }
 
@@ -279,7 +219,19 @@ TEST_F(Watching, FilesThatAreOnlyTouchedAreNoChangeAndThoseThatStayAwayAreAnErro
     EXPECT_TRUE(has(watch.errors(), "[materials-glsl]")) << watch.errors();
     writeText(path("pack/mud.glsl"), mud(0.75));
     EXPECT_TRUE(has(watch.line(4), "same package")) << watch.line(4);
-    EXPECT_EQ(stamp(), 3U);
+    EXPECT_EQ(stamp(), 2U);
+    EXPECT_EQ(watch.interrupt(), 0);
+}
+
+TEST_F(Watching, DeclarationsOfPacksAreInputs) {
+    Running watch(path("."), words());
+    watch.line(1);
+    std::string declaration = readText(path("pack/mud.json"));
+    declaration.replace(declaration.find("there is no mud"), 15, "it has no mud..");
+    replace("pack/mud.json", declaration);
+    const std::string line = watch.line(2);
+    EXPECT_TRUE(has(line, "2. pack/mud.json: ")) << line;
+    EXPECT_FALSE(has(line, "failed")) << line << watch.errors();
     EXPECT_EQ(watch.interrupt(), 0);
 }
 

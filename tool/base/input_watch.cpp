@@ -103,13 +103,6 @@ std::vector<std::string> InputWatch::suspects() const {
     return paths;
 }
 
-bool InputWatch::looksChanged() const {
-    return std::ranges::any_of(files_, [](const auto& entry) {
-        const bool isFolder = entry.second.look && entry.second.look->isFolder;
-        return !isFolder && lookAt(entry.first) != entry.second.look;
-    });
-}
-
 std::vector<std::string> InputWatch::changed() {
     const Clock::time_point start = Clock::now();
     std::vector<std::string> paths = suspects();

@@ -35,10 +35,6 @@ public:
     // kRestMs, as programs write large files piece by piece, but at most kPatienceMs.
     std::vector<std::string> changed();
 
-    // Returns whether a file looks other than known. Folders do not count: the program's own files may change
-    // them. Any thread may ask while no other member runs.
-    bool looksChanged() const;
-
     // Takes the present contents of a file as known: the program itself has written it.
     void accept(const std::string& path);
 

@@ -4,16 +4,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
-#include <exception>
-#include <optional>
 #include <system_error>
 #include <thread>
-#include <utility>
 #include <vector>
-
-#ifdef __linux__
-#include <sys/resource.h>
-#endif
 
 namespace glint::base {
 
@@ -42,37 +35,6 @@ void runParallel(std::size_t count, int jobs, const Work& work) {
         // No more threads can be created, so the existing ones do the work.
     }
     loop();
-}
-
-// Runs `work` on a thread that others interrupt more often, as do the threads that it starts (on Linux;
-// elsewhere it runs as usual). Returns its result, or throws its exception. For work that is less urgent than
-// other work at the same time.
-template <typename Work>
-auto runBehind(const Work& work) {
-    std::optional<decltype(work())> result;
-    std::exception_ptr thrown;
-    const auto run = [&] {
-#ifdef __linux__
-        // On Linux a nice value belongs to a thread, and the threads that it starts inherit it. A thread may
-        // not take it back, so this needs one of its own.
-        constexpr int kNice = 5;
-        setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + kNice);
-#endif
-        try {
-            result = work();
-        } catch (...) {
-            thrown = std::current_exception();
-        }
-    };
-    try {
-        std::jthread(run).join();
-    } catch (const std::system_error&) {
-        result = work();  // no more threads can be created
-    }
-    if (thrown) {
-        std::rethrow_exception(thrown);
-    }
-    return std::move(*result);
 }
 
 }  // namespace glint::base

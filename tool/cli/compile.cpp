@@ -422,9 +422,8 @@ Result<int> compileOnce(const Console& console, const CompileArguments& argument
         watched->readMs = base::millisecondsSince(start) - build.milliseconds;
     }
     console.progress("compiling " + base::join(arguments.scenes));
-    GLINT_TRY(auto package,
-              compilePackage(build, cache.modules(), watched != nullptr ? &watched->warm : nullptr,
-                             watched != nullptr && watched->showing ? &*watched->showing : nullptr));
+    GLINT_TRY(const auto package,
+              compilePackage(build, cache.modules(), watched != nullptr ? &watched->warm : nullptr));
     console.progress("writing " + outputsOf(arguments));
     const base::Clock::time_point compiled = base::Clock::now();
     GLINT_TRY_DO(
@@ -432,7 +431,6 @@ Result<int> compileOnce(const Console& console, const CompileArguments& argument
     if (watched != nullptr) {
         describeRun(package, *watched);
         watched->writeMs = package.tablesMs + base::millisecondsSince(compiled);
-        watched->made = std::move(package);
         return kExitDone;
     }
     CompileSummary summary = summaryOf(Outcome{.arguments = arguments, .build = build, .package = &package});

@@ -152,13 +152,11 @@ private:
 class TextCompiler {
 public:
     TextCompiler(const std::vector<DistinctTexts::Text>& texts, bool debugInfo, ModuleCache* cache,
-                 WarmModules* warm, const std::function<bool()>& isOutdated,
-                 const std::function<void(std::size_t, std::size_t)>& progress)
+                 WarmModules* warm, const std::function<void(std::size_t, std::size_t)>& progress)
         : texts_(texts),
           options_{debugInfo},
           cache_(cache),
           warm_(warm),
-          isOutdated_(isOutdated),
           progress_(progress),
           results_(texts.size()),
           done_(texts.size()) {}
@@ -238,10 +236,6 @@ private:
         if (std::optional<CachedModule> found = findCompiled(*text.text, cache_, warm_)) {
             return CompiledText{std::move(*found), false};
         }
-        if (isOutdated_ && isOutdated_()) {
-            return makeError("outdated", text.source->name,
-                             "an input changed while the package was compiled");
-        }
         return keep(text, compileMeasured(shaderOf(*text.source), options_, text.source->link));
     }
 
@@ -274,7 +268,6 @@ private:
     ShaderCompileOptions options_;
     ModuleCache* cache_;
     WarmModules* warm_;
-    const std::function<bool()>& isOutdated_;
     const std::function<void(std::size_t, std::size_t)>& progress_;
     std::mutex telling_;
     std::size_t told_ = 0;
@@ -316,10 +309,9 @@ std::vector<CompiledModule> makeModules(std::vector<ModuleSource>& sources, cons
 
 Result<std::vector<CompiledModule>> compileModules(
     std::vector<ModuleSource> sources, int jobs, bool debugInfo, ModuleCache* cache, WarmModules* warm,
-    const std::function<bool()>& isOutdated, const std::function<void(std::size_t, std::size_t)>& progress) {
+    const std::function<void(std::size_t, std::size_t)>& progress) {
     const DistinctTexts distinct(sources, debugInfo);
-    GLINT_TRY(auto compiled,
-              TextCompiler(distinct.texts(), debugInfo, cache, warm, isOutdated, progress).run(jobs));
+    GLINT_TRY(auto compiled, TextCompiler(distinct.texts(), debugInfo, cache, warm, progress).run(jobs));
     return makeModules(sources, distinct, compiled);
 }
 

@@ -276,32 +276,6 @@ materials::FeatureMask emitterMask(const Plan& plan, const CompileSettings& sett
 
 }  // namespace
 
-Result<ModuleSource> makeEditSource(const gltf::SceneList& scenes, const Plan& plan, const SourceSet& sources,
-                                    const CompileSettings& settings, materials::FeatureMask edited,
-                                    WarmModules* warm) {
-    const package::ModuleKey key{ModuleRole::LightingEdit};
-    const package::RoleInfo& info = *package::findRole(key.role);
-    kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
-    const Case shaderCase = editCase(plan, edited, settings.plan.fallback);
-    addCase(context, scenes, *plan.model, shaderCase);
-    context.set("editedLobes", fmt::format("{:#x}u", edited & materials::kLobeMask));
-    context.set("editedInputs", fmt::format("{:#x}u", edited >> 32U));
-    SourceSet own;
-    const materials::FeatureMask evaluated =
-        shaderCase.always | shaderCase.sometimes | emitterMask(plan, settings);
-    GLINT_TRY_DO(addMaterialCode(sources, *plan.model, evaluated, own));
-    GLINT_TRY(auto text,
-              makeText(info.source, moduleDefines(info, key, settings.precision), sources, context));
-    const auto module = std::make_shared<ModuleSource>();
-    module->key = key;
-    module->stage = stageOf(info, key.tracer);
-    module->name = moduleName(info.source, info, key, "", *plan.model);
-    ModuleDrafts drafts(sources, warm);
-    drafts.add(module, module->name, std::move(text), own);
-    GLINT_TRY_DO(drafts.finish(settings.jobs));
-    return std::move(*module);
-}
-
 Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scenes, const Plan& plan,
                                                     const SourceSet& sources, const CompileSettings& settings,
                                                     WarmModules* warm) {

@@ -24,11 +24,6 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
                                                     const SourceSet& sources, const CompileSettings& settings,
                                                     WarmModules* warm = nullptr);
 
-// Returns the module of an early package that shows `edited` features. Has the errors of makeModuleSources().
-Result<ModuleSource> makeEditSource(const gltf::SceneList& scenes, const Plan& plan, const SourceSet& sources,
-                                    const CompileSettings& settings, materials::FeatureMask edited,
-                                    WarmModules* warm = nullptr);
-
 // --- SPIR-V ---
 
 class ModuleCache;
@@ -37,12 +32,10 @@ class WarmModules;
 // Compiles on `jobs` threads (0: one for each core). Equal texts are compiled once, those of parts too, and
 // texts that `cache` or `warm` has are not compiled; both may be null. Neither the result nor the reported
 // error depends on `jobs`: if there are several errors, it is that of the first module. Modules with equal
-// SPIR-V get the same `file`, that of the first of them. If `isOutdated` is given and returns true before a
-// text is compiled, on any thread, the error is "outdated". `progress` is CompileSettings::progress.
+// SPIR-V get the same `file`, that of the first of them. `progress` is CompileSettings::progress.
 Result<std::vector<CompiledModule>> compileModules(
     std::vector<ModuleSource> sources, int jobs, bool debugInfo, ModuleCache* cache = nullptr,
-    WarmModules* warm = nullptr, const std::function<bool()>& isOutdated = {},
-    const std::function<void(std::size_t, std::size_t)>& progress = {});
+    WarmModules* warm = nullptr, const std::function<void(std::size_t, std::size_t)>& progress = {});
 
 // Takes every module from `folder`, where `glint compile-module` left them. Errors are those of
 // readCompiledModule(); if there are several, that of the first module is reported.

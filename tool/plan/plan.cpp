@@ -6,7 +6,6 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <set>
 
@@ -268,28 +267,6 @@ Case draftCase(const Plan& plan) {
         shaderCase.sometimes |= feature.isInDraft ? feature.mask() : 0;
     }
     shaderCase.sometimes &= plan.primaryAlways | plan.primarySometimes;
-    return shaderCase;
-}
-
-Case editCase(const Plan& plan, materials::FeatureMask edited, bool fallback) {
-    Case shaderCase = draftCase(plan);
-    shaderCase.name = "Edit";
-    for (const materials::Feature& feature : plan.model->features) {
-        const bool ofEdited =
-            feature.lobe >= 0 &&
-            (plan.model->features[static_cast<std::size_t>(feature.lobe)].mask() & edited) != 0;
-        shaderCase.sometimes |= ofEdited ? feature.mask() : 0;
-    }
-    shaderCase.sometimes |= edited;
-    shaderCase.sometimes &= plan.primaryAlways | plan.primarySometimes;
-    if (!fallback) {
-        std::vector<materials::FeatureMask> masks;
-        std::ranges::copy_if(plan.primaryMaskOfPrimitive, std::back_inserter(masks),
-                             [&](materials::FeatureMask mask) { return (mask & edited) != 0; });
-        const FeatureSpread spread = spreadOf(masks);
-        shaderCase.always = shaderCase.sometimes & spread.always;
-        shaderCase.sometimes &= spread.sometimes;
-    }
     return shaderCase;
 }
 

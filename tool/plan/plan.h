@@ -123,9 +123,6 @@ Case firstCase(const Plan& plan, const Case& shaderCase);
 
 // Returns the case of the draft of first hits: the features of primary surfaces that it shows.
 Case draftCase(const Plan& plan);
-// Returns the case of a draft of the primitives that have an `edited` feature. It shows those features beside
-// those of draftCase(), and their textures. With `fallback`, materials that come later may have any features.
-Case editCase(const Plan& plan, materials::FeatureMask edited, bool fallback);
 
 // Returns the largest number of cases that a plan may have; 0 means no limit.
 int budgetOf(const PlanOptions& options);

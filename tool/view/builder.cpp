@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/files.h"
 #include "cache/store.h"
+#include "emit/compile.h"
 #include "gltf/import.h"
 #include "gltf/scene_list.h"
 #include "materials/declarations.h"
@@ -67,10 +68,9 @@ void Builder::start(BuildOrder order) {
         const std::lock_guard lock(mutex_);
         Slot& slot = slots_[order.picture];
         if (slot.order) {
-            order.changed.merge(slot.order->changed);
+            order.rereads = order.rereads || slot.order->rereads;
         }
         slot.order = std::move(order);
-        slot.early.reset();
         slot.done.reset();
         slot.busy = true;
         slot.canceled = false;
@@ -81,14 +81,8 @@ void Builder::start(BuildOrder order) {
 void Builder::cancel(std::size_t picture) {
     const std::lock_guard lock(mutex_);
     slots_[picture].order.reset();
-    slots_[picture].early.reset();
     slots_[picture].done.reset();
     slots_[picture].canceled = true;
-}
-
-std::optional<Build> Builder::pollEarly(std::size_t picture) {
-    const std::lock_guard lock(mutex_);
-    return std::exchange(slots_[picture].early, std::nullopt);
 }
 
 std::optional<Result<Build>> Builder::poll(std::size_t picture) {
@@ -136,7 +130,6 @@ void Builder::work() {
             continue;  // the order has changed meanwhile
         }
         slot.busy = false;
-        slot.early.reset();
         if (!slot.canceled) {
             slot.done = std::move(made);
         }
@@ -150,19 +143,11 @@ Result<Build> Builder::build(const BuildOrder& asked) {
         // Other primitives than those of the file may show a texture.
         order.settings.compile.trustTextures = false;
     }
-    changed_[order.picture].insert(order.changed.begin(), order.changed.end());
-    made_.reset();
     GLINT_TRY(auto given, session::givenPackage(order.settings));
     GLINT_TRY_DO(readScene(order, given.get(), build));
     GLINT_TRY_DO(readEdits(order, given.get(), build));
-    GLINT_TRY_DO(makePackage(order, std::move(given), build));
+    GLINT_TRY_DO(makePackage(order.settings, std::move(given), build));
     GLINT_TRY_DO(readTextures(build));
-    wholes_[order.picture].reset();
-    if (made_) {
-        wholes_[order.picture] = Whole{std::move(*made_), build, strategies_};
-        made_.reset();
-    }
-    changed_[order.picture].clear();
     return build;
 }
 
@@ -174,7 +159,7 @@ Status Builder::readScene(const BuildOrder& order, const Package* package, Build
     const std::string key =
         fmt::format("{}|{}|{}|{}|{}|{}", order.scene, settings.sceneInFile, settings.variant,
                     settings.strictPaths, import.trustTextures, fmt::join(settings.materials, "|"));
-    if (!order.changed.empty() || key != sceneKey_) {
+    if (order.rereads || key != sceneKey_) {
         files_.clear();
         fileTextures_.clear();
         say("reading " + order.scene);
@@ -237,47 +222,8 @@ Status Builder::readEdits(const BuildOrder& order, const Package* package, Build
     return okStatus();
 }
 
-// Returns how an edit of packs' GLSL alone is shown early. Everything else has to be unchanged since the last
-// whole package.
-std::optional<compiler::EarlyShowing> Builder::earlyShowing(std::size_t picture, const Build& build) {
-    const std::optional<Whole>& whole = wholes_[picture];
-    const std::set<std::string>& changed = changed_[picture];
-    const auto isGlsl = [](const std::string& file) {
-        return std::filesystem::path(file).extension() == ".glsl";
-    };
-    if (!whole || changed.empty() || !std::ranges::all_of(changed, isGlsl) ||
-        whole->strategies != strategies_ || !haveSameFiles(*whole->build.scene, *build.scene) ||
-        changeBetween(whole->build.settings(), build.settings()) >= compiler::kChangesUpload) {
-        return std::nullopt;
-    }
-    return compiler::EarlyShowing{
-        &whole->package,
-        [this, picture](const compiler::CompiledPackage& early) { return publishEarly(picture, early); },
-        [this, picture] {
-            const std::lock_guard lock(mutex_);
-            return ends_ || slots_[picture].order || slots_[picture].canceled;
-        }};
-}
-
-bool Builder::publishEarly(std::size_t picture, const compiler::CompiledPackage& early) {
-    const Result<std::shared_ptr<const Package>> loaded = session::loadPackage(early);
-    if (!loaded) {
-        return false;
-    }
-    Build shown = wholes_[picture]->build;
-    shown.package = *loaded;
-    const std::lock_guard lock(mutex_);
-    Slot& slot = slots_[picture];
-    if (ends_ || slot.order || slot.canceled) {
-        return false;  // the order has changed meanwhile
-    }
-    slot.early = std::move(shown);
-    return true;
-}
-
-Status Builder::makePackage(const BuildOrder& order, std::shared_ptr<const Package> given, Build& build) {
+Status Builder::makePackage(compiler::Settings asked, std::shared_ptr<const Package> given, Build& build) {
     const base::Clock::time_point start = base::Clock::now();
-    compiler::Settings asked = order.settings;
     // The package also has the strategies that were asked for before, so that a renderer of one of them can
     // switch to it.
     asked.furtherStrategies = sceneKey_ == strategiesKey_ ? strategies_ : 0;
@@ -299,9 +245,7 @@ Status Builder::makePackage(const BuildOrder& order, std::shared_ptr<const Packa
         say("compiling " + build.scene->path);
         strategies_ = resolved.settings.compile.strategies;
         strategiesKey_ = sceneKey_;
-        const std::optional<compiler::EarlyShowing> showing = earlyShowing(order.picture, build);
-        Result<compiler::CompiledPackage> compiled =
-            compilePackage(resolved, request_.modules, &warm_, showing ? &*showing : nullptr);
+        const Result<compiler::CompiledPackage> compiled = compilePackage(resolved, request_.modules, &warm_);
         warm_.endRun();
         if (!compiled) {
             return compiled.error();
@@ -316,7 +260,6 @@ Status Builder::makePackage(const BuildOrder& order, std::shared_ptr<const Packa
             }
         }
         build.layers = possibleLayers(resolved.plan, resolved.settings.compile);
-        made_ = std::move(*compiled);
     }
     build.compileMs = base::millisecondsSince(start);
     build.facts = measure::factsOf(resolved);

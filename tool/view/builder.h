@@ -2,7 +2,6 @@
 #pragma once
 
 #include "base/input_watch.h"
-#include "emit/compile.h"
 #include "emit/warm_modules.h"
 #include "gltf/scene.h"
 #include "resolve/resolve.h"
@@ -20,7 +19,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -69,7 +67,7 @@ struct BuildOrder {
     compiler::Settings settings;
     std::string scene;
     std::vector<session::Edit> edits{};  // all that were made, and those that wait for the build
-    std::set<std::string> changed{};     // files of the scene, its packs and host, since the order before
+    bool rereads = false;                // files of the scene, its packs or host have changed
 };
 
 class Builder {
@@ -86,9 +84,6 @@ public:
     void start(BuildOrder order);
     // Forgets the order for a picture.
     void cancel(std::size_t picture);
-    // Returns the last build of a picture with an early package (emit/compile.h) in the place of its
-    // own, once, while another build for edited GLSL of packs is being made.
-    std::optional<Build> pollEarly(std::size_t picture);
     // Returns the finished build of a picture, once.
     std::optional<Result<Build>> poll(std::size_t picture);
     bool isBusy(std::size_t picture) const;
@@ -101,11 +96,9 @@ private:
     void work();
     Result<Build> build(const BuildOrder& asked);
     Status readScene(const BuildOrder& order, const Package* package, Build& build);
-    Status makePackage(const BuildOrder& order, std::shared_ptr<const Package> given, Build& build);
+    Status makePackage(compiler::Settings asked, std::shared_ptr<const Package> given, Build& build);
     Status readTextures(Build& build);
     Status readEdits(const BuildOrder& order, const Package* package, Build& build);
-    std::optional<compiler::EarlyShowing> earlyShowing(std::size_t picture, const Build& build);
-    bool publishEarly(std::size_t picture, const compiler::CompiledPackage& early);
     void say(std::string text);
 
     const Request& request_;
@@ -122,21 +115,11 @@ private:
     std::map<std::string, std::shared_ptr<const session::TextureSet>, std::less<>> fileTextures_;
     std::uint32_t strategies_ = 0;  // bits
     std::string strategiesKey_;
-    // The inputs of a picture's last whole build, for an early package of the next edit.
-    struct Whole {
-        compiler::CompiledPackage package;
-        Build build;
-        std::uint32_t strategies = 0;
-    };
-    std::array<std::optional<Whole>, kPictures> wholes_;
-    std::array<std::set<std::string>, kPictures> changed_;  // files, since then
-    std::optional<compiler::CompiledPackage> made_;         // by the build that runs
 
     mutable std::mutex mutex_;  // guards all below
     std::condition_variable wake_;
     struct Slot {
         std::optional<BuildOrder> order;
-        std::optional<Build> early;
         std::optional<Result<Build>> done;
         bool busy = false;
         bool canceled = false;

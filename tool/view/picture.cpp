@@ -176,7 +176,6 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, 
         addedAnimations_.clear();
     }
     build_ = std::move(build);
-    beforeEarly_.reset();
     settings_ = build_.settings();
     options_ = options;
     Status edited = okStatus();
@@ -189,26 +188,6 @@ Status Picture::install(Build build, std::uint32_t width, std::uint32_t height, 
     if (!edited) {
         notes.push_back(edited.error());
     }
-    return okStatus();
-}
-
-bool Picture::showEarly(const Build& early) {
-    if (loading_.valid() || !isSameScene(early) || !device_.renderer->replacePackage(early.package)) {
-        return false;
-    }
-    beforeEarly_ = beforeEarly_ ? beforeEarly_ : build_.package;
-    device_.scene.package = build_.package = early.package;
-    restart();
-    return true;
-}
-
-Status Picture::takeBackEarly() {
-    if (!beforeEarly_) {
-        return okStatus();
-    }
-    GLINT_TRY([[maybe_unused]] const auto replaced, device_.renderer->replacePackage(beforeEarly_));
-    device_.scene.package = build_.package = std::exchange(beforeEarly_, nullptr);
-    restart();
     return okStatus();
 }
 

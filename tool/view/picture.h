@@ -40,10 +40,6 @@ public:
     // and "half-precision" and "position-fetch" if the device lacks a feature that the build needs.
     Status install(Build build, std::uint32_t width, std::uint32_t height, std::uint64_t frame,
                    std::vector<Diagnostic>& notes);
-    // Shows an early package, until install() takes the whole one or takeBackEarly() the one before the edit.
-    // Returns false if it can't be shown.
-    bool showEarly(const Build& early);
-    Status takeBackEarly();
     // Takes settings of stages after the package, or another size. The device must be idle unless
     // changeBetween() is compiler::kChangesFrame.
     Status change(const compiler::Settings& settings, std::uint32_t width, std::uint32_t height);
@@ -153,8 +149,7 @@ private:
     Context& context_;
     compiler::Settings settings_;
     Build build_;
-    std::shared_ptr<const Package> beforeEarly_;  // null: no early package is shown
-    std::unique_ptr<gltf::Scene> posed_;          // null until the scene moves or is edited
+    std::unique_ptr<gltf::Scene> posed_;  // null until the scene moves or is edited
     std::vector<session::Edit> edits_;
     std::size_t edited_ = 0;  // edits that were made, or passed over
     std::vector<std::size_t> addedAnimations_;

@@ -166,9 +166,6 @@ public:
     // Its commands must be submitted, because those of later recordings rely on them. If it has a sampleIndex
     // above 0, its picture averages samples of both packages; see ReplacementProgress::ready.
     //
-    // An early package (PackageShape::early) is taken over in the same way. It needs one small pipeline, and
-    // shows the edit as a draft until the whole package, which is given as soon as it is there, is ready.
-    //
     // The options stay those of create(). A package that waits gives way to one that is given later.
     // Renderers that share a GpuScene switch together: this makes what each of them needs, and the first
     // recording of any of them after that switches all. Its commands must come before those of their later

@@ -71,8 +71,7 @@ struct RendererOptions {
     // and the last pass are made. A draft shows the base of materials under the sky and the lights, without
     // shadows, and no ray is traced. The first recording with all fixed passes starts the picture anew.
     // PipelineProgress and FrameCounters say whether a frame is a draft. Without it, Renderer::create() waits
-    // for the fixed passes and the fallback, and no frame is a draft. Whatever backgroundPipelines is, this
-    // also lets recordings show the edit of an early package (PackageShape::early) as a draft.
+    // for the fixed passes and the fallback, and no frame is a draft.
     bool draft = true;
     // Makes the driver keep the statistics that pipelineStatistics() returns. Error "pipeline-statistics"
     // without DeviceHandles::pipelineStatistics.

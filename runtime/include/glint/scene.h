@@ -118,9 +118,6 @@ struct PackageProgress {
     bool pending = false;       // a package waits; recordings use the old one
     bool ready = false;         // the next recording uses the package that waits
     std::uint32_t missing = 0;  // pipelines that it still waits for
-    // Recordings use an early package (PackageShape::early): they show the surfaces with edited features
-    // as drafts, and all else as before the edit. The whole package follows.
-    bool early = false;
     // Why the last replacement was given up; recordings continue with the old package. The next
     // replacePackage() clears it.
     std::optional<Diagnostic> error{};

@@ -102,8 +102,6 @@ std::vector<RoleInfo> sharedRoles() {
         {ModuleRole::Deform, all, "Deform", "passes/deform.comp", ShaderKind::Compute, Purpose::Motion},
         {ModuleRole::FirstDraft, all, "FirstDraft", "passes/first_draft.comp.mustache", ShaderKind::Compute,
          Purpose::Draft},
-        {ModuleRole::LightingEdit, all, "LightingEdit", "passes/lighting_edit.comp.mustache",
-         ShaderKind::Compute, Purpose::Edit},
         {.role = ModuleRole::FirstBuckets,
          .strategies = all,
          .name = "FirstBuckets",
@@ -183,8 +181,6 @@ bool isNeeded(const RoleInfo& info, const PackageShape& shape) {
             return shape.fallback && (info.shadesFirst() ? frame : hits);
         case Purpose::Draft:
             return frame && shape.fallback;
-        case Purpose::Edit:
-            return frame && shape.early;
     }
     return false;
 }

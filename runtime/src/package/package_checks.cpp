@@ -104,7 +104,6 @@ Status checkHeader(const Package::State& state, const std::string& where) {
         {"the answer to a ray", number(header.answer), 0, number(package::HitAnswer::Surface)},
         {"the number of bounces", header.maxBounces, 1, package::kMaxBounces},
         {"the kind of fallback", header.fallback, 0, 1},
-        {"the kind of package", header.early, 0, 1},
         {"the kind of notes about textures", header.textureLevels, 0, 1},
         {"the trust in textures", header.trustTextures, 0, 1},
         {"the kind of movement", header.deforms, 0, 1},
@@ -412,7 +411,6 @@ package::PackageShape shapeOf(const Package::State& state) {
     shape.passes = header.passes;
     shape.maxBounces = header.maxBounces;
     shape.fallback = header.fallback != 0;
-    shape.early = header.early != 0;
     shape.shadowsApart = header.shadowThrough != package::ShadowThrough::Alpha;
     return shape;
 }

@@ -343,9 +343,6 @@ bool runs(const PipelineChoice& choice, const package::RoleInfo& info, const pac
     if (!runsFallback(choice, key.role) || (info.purpose == package::Purpose::Draft && !choice.draft)) {
         return false;
     }
-    if (info.purpose == package::Purpose::Edit && !choice.showsEdit) {
-        return false;
-    }
     return key.role != ModuleRole::OrderCheck || choice.checksOrder;
 }
 

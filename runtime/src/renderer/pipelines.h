@@ -32,8 +32,6 @@ struct PipelineChoice {
     bool background = false;
     // Frames begin with a draft. Requires `background`.
     bool draft = false;
-    // The edit of an early package is shown.
-    bool showsEdit = false;
     bool halfPicture = false;  // as FrameSize::halfPicture
     bool countsLight = false;  // as RendererOptions::countsLight
 };

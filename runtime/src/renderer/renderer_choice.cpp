@@ -140,7 +140,6 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
     PipelineChoice choice;
     choice.background = options.backgroundPipelines;
     choice.draft = options.backgroundPipelines && options.draft && package.passes() == package::Passes::Frame;
-    choice.showsEdit = options.draft && package.shape().early;
     choice.bounces = options.bounces;
     choice.strategy = options.strategy;
     choice.tracer = tracer;

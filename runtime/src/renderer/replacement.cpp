@@ -344,7 +344,6 @@ PackageProgress progressOf(const PackageUser& state) {
     PackageProgress progress;
     progress.inUse = state.replacementsInUse;
     progress.error = state.replacementError;
-    progress.early = state.pipelines.passes.contains(package::ModuleRole::LightingEdit);
     if (state.next) {
         const auto& background = state.next->pipelines.background;
         progress.pending = true;

@@ -63,7 +63,6 @@ TEST_F(InputWatching, AFileThatChangedSinceItWasReadHasChanged) {
     const std::optional<std::uint64_t> hash = hashBytes("as it was read");
     write(file, "as it is now");
     watch_.watch(std::vector<InputFile>{{file, hash}});
-    EXPECT_TRUE(watch_.looksChanged());
     EXPECT_EQ(waitForChange(), std::vector<std::string>{file});
 }
 
@@ -75,7 +74,6 @@ TEST_F(InputWatching, AFolderChangesWithItsFiles) {
     EXPECT_TRUE(watch_.changed().empty());
     write(file, "another size");
     fs::rename(file, path("b.glsl"));
-    EXPECT_FALSE(watch_.looksChanged());
     EXPECT_EQ(waitForChange(), std::vector<std::string>{folder});
 }
 

@@ -89,13 +89,10 @@ void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
                "functions as SPIR-V, for linkers");
     CLI::Option& dry = addFlag(command, "--dry-run", arguments.dryRun,
                                "read, check and plan everything as usual; compile nothing and write nothing");
-    CLI::Option& watch = addFlag(command, kWatch, arguments.watch,
-                                 "compile again whenever an input changes, until Ctrl-C; increments the "
-                                 "counter in DIR.stamp after each new package");
-    watch.excludes(&dry);
-    addFlag(command, "--early", arguments.early,
-            "with --watch: also write an early package that shows an edit of a pack as a draft")
-        .needs(&watch);
+    addFlag(command, kWatch, arguments.watch,
+            "compile again whenever an input changes, until Ctrl-C; increments the counter in DIR.stamp "
+            "after each new package")
+        .excludes(&dry);
     addJobs(command, arguments.settings.compile.jobs);
     addCacheOptions(command, arguments.cache);
     CLI::Option& depfile = addOutputFile(command, "--depfile", arguments.depfile.file, "FILE", {},

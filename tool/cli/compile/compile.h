@@ -42,7 +42,6 @@ struct CompileArguments {
     std::string modules;                   // folder of compiled modules; empty: they are compiled
     bool dryRun = false;
     bool watch = false;
-    bool early = true;              // early packages of a watch
     std::vector<std::string> line;  // the command line, without the program; for --watch
 };
 
@@ -99,17 +98,11 @@ struct WatchedRun {
     explicit WatchedRun(compiler::WarmModules& memory) : warm(memory) {}
 
     compiler::WarmModules& warm;
-    // How the run may show an edit before the whole package is compiled.
-    std::optional<compiler::EarlyShowing> showing;
-    // The whole package that the run has written.
-    std::optional<compiler::CompiledPackage> made;
-    bool outdated = false;  // the run ended early, because an input changed
     // The files that were read; empty if the run failed before it knew them.
     std::vector<base::InputFile> inputs;
     // Wall clock: reading and checking, planning and making GLSL, making SPIR-V, and making and writing
     // files.
     double readMs = 0.0;
-    double earlyMs = 0.0;  // of the early package, without reading and planning; 0: there is none
     double planMs = 0.0;
     double compileMs = 0.0;
     double writeMs = 0.0;

@@ -119,8 +119,6 @@ public:
                 changed = newOrGone();
             }
             if (!changed.empty() && interrupted == 0) {
-                // Folders are watched after a failure, and change with any file in them.
-                std::ranges::copy_if(changed, std::inserter(changed_, changed_.end()), isFile);
                 takeSettings(changed);
                 compile(base::firstOf(withoutFolders(std::move(changed)), kNamed));
             }
@@ -179,19 +177,13 @@ private:
         // Warnings that count as errors are those of this run.
         const Console own(console_.options());
         WatchedRun run(warm_);
-        if (arguments_.early && whole_ && std::ranges::all_of(changed_, isGlsl)) {
-            run.showing = compiler::EarlyShowing{
-                &*whole_, [&](const auto& early) { return writeEarly(early, own, why, start, run.readMs); },
-                [this] { return watch_.looksChanged(); }};
-        }
         bool done = false;
         if (settingsError_) {
             own.report(*settingsError_);
         } else {
             const Result<int> code = compileOnce_(own, arguments_, run);
-            run.outdated = !code && code.error().id == "outdated";
             done = code && *code == kExitDone;
-            if (!code && !run.outdated) {
+            if (!code) {
                 own.report(code.error());
             }
         }
@@ -205,93 +197,34 @@ private:
         }
         bool fresh = false;
         if (done) {
-            fresh = countUp(own, run.tables);
-            whole_ = std::move(run.made);
-            changed_.clear();
-            isEarly_ = false;
+            const Result<bool> counted = countUp(run.tables);
+            if (!counted) {
+                own.report(counted.error());
+            }
+            fresh = counted && *counted;
         }
-        const bool takesBack = !done && !run.outdated && isEarly_;
-        if (takesBack) {
-            takeBackEarly(own);
-        }
-        const double milliseconds = base::millisecondsSince(start);
-        const char* const failure = run.outdated ? "ended, because an input changed again"
-                                    : takesBack  ? "failed, the package is that before the edit again"
-                                                 : "failed, the package stays as it was";
-        print(why, done ? describe(run, fresh, milliseconds)
-                        : fmt::format("{}; {:.0f} ms", failure, milliseconds));
         ++runs_;
-    }
-
-    // Writes the early package of a run, which shows the edit, and prints a line about it.
-    bool writeEarly(const compiler::CompiledPackage& early, const Console& own, const std::string& why,
-                    base::Clock::time_point start, double readMs) {
-        const base::Clock::time_point begin = base::Clock::now();
-        if (!write(early, own)) {
-            return false;
-        }
-        isEarly_ = true;
-        print(why,
-              fmt::format("early package; {:.0f} ms: read {:.0f}, plan {:.0f}, compile {:.0f}, write {:.0f}",
-                          base::millisecondsSince(start), readMs, early.planMs, early.compileMs,
-                          early.tablesMs + base::millisecondsSince(begin)));
-        return true;
-    }
-
-    // Writes the last whole package once more, in the place of an early one whose edit does not compile.
-    void takeBackEarly(const Console& own) {
-        isEarly_ = !write(*whole_, own);
-    }
-
-    bool write(const compiler::CompiledPackage& package, const Console& own) {
-        const HeldSignals held;
-        if (Status written = writePackage(package, arguments_.output); !written) {
-            own.report(written.error());
-            return false;
-        }
-        countUp(own, hashOfTables(package));
-        return true;
-    }
-
-    // Prints the line about a run.
-    void print(const std::string& why, const std::string& text) const {
-        console_.print(fmt::format("{}. {}: {}\n", runs_ + 1, why, text));
+        const double milliseconds = base::millisecondsSince(start);
+        console_.print(
+            fmt::format("{}. {}: {}\n", runs_, why,
+                        done ? describe(run, fresh, milliseconds)
+                             : fmt::format("failed, the package stays as it was; {:.0f} ms", milliseconds)));
         std::fflush(stdout);
-    }
-
-    static bool isFile(const std::string& path) {
-        std::error_code error;
-        return !fs::is_directory(path, error);
-    }
-
-    static bool isGlsl(const std::string& path) {
-        return fs::path(path).extension() == ".glsl";
     }
 
     static std::string describe(const WatchedRun& run, bool fresh, double milliseconds) {
         return fmt::format(
             "{}; cases: {} compiled, {} kept; other modules: {} compiled, {} kept{}; {:.0f} ms: "
-            "read {:.0f}, {}plan {:.0f}, compile {:.0f}, write {:.0f}",
+            "read {:.0f}, plan {:.0f}, compile {:.0f}, write {:.0f}",
             fresh ? "new package" : "same package", run.casesCompiled, run.cases - run.casesCompiled,
             run.modulesCompiled, run.modules - run.modulesCompiled,
             run.parts == 0 ? std::string()
                            : fmt::format("; parts: {} compiled, {} kept", run.partsCompiled,
                                          run.parts - run.partsCompiled),
-            milliseconds, run.readMs,
-            run.earlyMs > 0.0 ? fmt::format("early {:.0f}, ", run.earlyMs) : std::string(), run.planMs,
-            run.compileMs, run.writeMs);
+            milliseconds, run.readMs, run.planMs, run.compileMs, run.writeMs);
     }
 
-    // Counts the stamp up if the package is not the one that it is about. Returns whether it did, and reports
-    // an error.
-    bool countUp(const Console& own, std::uint64_t tables) const {
-        const Result<bool> counted = countUp(tables);
-        if (!counted) {
-            own.report(counted.error());
-        }
-        return counted && *counted;
-    }
-
+    // Counts the stamp up if the package is not the one that it is about. Returns whether it did.
     Result<bool> countUp(std::uint64_t tables) const {
         const fs::path file = package::stampFile(arguments_.output);
         const std::string hash = base::hexHash(tables);
@@ -313,9 +246,6 @@ private:
     std::vector<std::string> listed_;                 // knownInputs() at the last run
     std::optional<base::Clock::time_point> differs_;  // since when others are there
     std::optional<Diagnostic> settingsError_;
-    std::optional<compiler::CompiledPackage> whole_;  // the last one
-    std::set<std::string> changed_;                   // inputs that changed since then
-    bool isEarly_ = false;                            // the folder holds an early package
     int runs_ = 0;
 };
 
@@ -341,7 +271,6 @@ void describeRun(const compiler::CompiledPackage& package, WatchedRun& run) {
     run.cases = static_cast<int>(cases.size());
     run.casesCompiled = static_cast<int>(compiled.size());
     run.planMs = package.planMs;
-    run.earlyMs = package.earlyMs;
     run.compileMs = package.compileMs;
 }
 

@@ -35,7 +35,7 @@ constexpr DiagnosticList kLists[] = {
      " memory-count memory-host memory-size memory-type meshopt-decode meshopt-layout meshopt-size "
      "module-features"
      " module-format module-missing module-stale module-unknown morph-limit ninja-name node-cycle"
-     " node-parents node-transform order-check out-of-memory outdated output output-busy output-folder"
+     " node-parents node-transform order-check out-of-memory output output-busy output-folder"
      " output-not-a-folder output-not-a-package output-not-a-plan output-write package-altered"
      " package-bounces package-fallback package-file-name package-foreign package-frame package-mismatch"
      " package-missing package-module-altered package-module-missing package-passes package-read"

@@ -45,7 +45,6 @@ struct CompiledPackage {
     std::uint64_t spirvBytes = 0;  // sum over the distinct modules
     // Wall clock: planning and making GLSL, making SPIR-V of it, and all else.
     double planMs = 0.0;
-    double earlyMs = 0.0;  // that its early package took, between planning and making GLSL
     double compileMs = 0.0;
     double tablesMs = 0.0;
 };

@@ -294,8 +294,7 @@ Status checkScene(const gltf::Scene& scene) {
 namespace {
 
 PackageHeader makeTablesHeader(const gltf::SceneList& scenes, const Plan& plan,
-                               std::span<const CompiledModule> modules, const CompileSettings& settings,
-                               const MaterialLayout& layout) {
+                               const CompileSettings& settings, const MaterialLayout& layout) {
     PackageHeader header{};
     std::memcpy(header.magic, kMagic, sizeof header.magic);
     header.version = kVersion;
@@ -321,8 +320,6 @@ PackageHeader makeTablesHeader(const gltf::SceneList& scenes, const Plan& plan,
     header.deforms = std::ranges::any_of(scenes.scenes(), hasDeformedMesh) ? 1 : 0;
     header.alpha = settings.plan.keys.alpha;
     header.shadowThrough = settings.shadowThrough;
-    header.early = std::ranges::any_of(
-        modules, [](const CompiledModule& module) { return module.key.role == ModuleRole::LightingEdit; });
     header.materialTextureOffset = layout.textureOffset;
     header.materialTextureCount = static_cast<std::uint32_t>(layout.textures.size());
     header.caseCount = static_cast<std::uint32_t>(plan.cases.size());
@@ -391,7 +388,7 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
         writer.add(SectionKind::Opacity, std::vector{*opacity});
     }
 
-    return writer.finish(makeTablesHeader(scenes, plan, modules, settings, layout));
+    return writer.finish(makeTablesHeader(scenes, plan, settings, layout));
 }
 
 using package::TextureEntry;

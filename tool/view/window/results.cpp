@@ -22,10 +22,10 @@ namespace glint::view {
 
 // --- Builds ---
 
-void Window::order(std::size_t index, std::span<const std::string> changed) {
+void Window::order(std::size_t index, bool rereads) {
     Side& one = *sides_[index];
     one.ordered = one.wanted;
-    builder_->start({index, one.wanted, scene_, edits_, {changed.begin(), changed.end()}});
+    builder_->start({index, one.wanted, scene_, edits_, rereads});
 }
 
 void Window::pollFiles() {
@@ -47,7 +47,7 @@ void Window::pollFiles() {
         say(changed.front() + " has changed");
         for (std::size_t i = 0; i < kPictures; ++i) {
             if (sides_[i]) {
-                order(i, changed);
+                order(i, true);
             }
         }
     }
@@ -65,13 +65,6 @@ Status Window::takeBuilds() {
         if (sides_[i] && sides_[i]->loading != nullptr) {
             done = std::move(*std::exchange(sides_[i]->loading, nullptr));
         } else {
-            if (const std::optional<Build> early = builder_->pollEarly(i); early && sides_[i]) {
-                finishSamples();
-                if (sides_[i]->picture.showEarly(*early)) {
-                    ++earlyPackages_;
-                    say("the edit is shown as a draft");
-                }
-            }
             done = builder_->poll(i);
             if (!done || !sides_[i]) {
                 continue;
@@ -91,9 +84,6 @@ Status Window::takeBuilds() {
         if (!sides_[0]->picture.isReady() && !script_) {
             // Nothing is shown yet, and nobody can correct it here.
             return installed;
-        }
-        if (const Status taken = sides_[i]->picture.takeBackEarly(); !taken) {
-            report(taken.error());
         }
         keepScene();
         fail(installed.error());
@@ -364,7 +354,6 @@ Status Window::writeReport(const std::string& file) {
         {"missingLevels", one.picture.missingLevels()},
         {"strategy", isReady ? std::string(package::nameOf(*one.picture.settings().strategy)) : ""},
         {"lastChange", one.picture.lastChange()},
-        {"earlyPackages", earlyPackages_},
         {"time", poses_ ? base::Json(time_) : base::Json(nullptr)},
         {"plays", plays_},
         {"flies", flies_},

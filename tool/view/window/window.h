@@ -19,7 +19,6 @@
 #include <deque>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -79,8 +78,8 @@ private:
     }
 
     // --- results.cpp: builds ---
-    // `changed`: files.
-    void order(std::size_t side, std::span<const std::string> changed = {});
+    // `rereads`: files have changed.
+    void order(std::size_t side, bool rereads = false);
     void pollFiles();
     Status takeBuilds();
     Status install(std::size_t side, Build build);
@@ -230,7 +229,6 @@ private:
 
     base::InputWatch watch_;
     std::optional<PackageWatch> packageWatch_;
-    std::uint64_t earlyPackages_ = 0;  // early packages shown so far
     base::Clock::time_point polled_{};
 
     std::vector<KeyPress> keys_;

@@ -80,7 +80,7 @@ constexpr void forEachEffect(std::uint32_t effects, const Visit& visit) {
 // --- The file ---
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 21;
+inline constexpr std::uint32_t kVersion = 22;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -119,7 +119,7 @@ struct PackageHeader {
     std::uint32_t textureLevels;  // 1: shaders record the finest level that they read of each texture
     std::uint32_t trustTextures;  // 1: shaders rely on the contents of the scenes' textures
     std::uint32_t skyLight;       // 1: surfaces sample the sky as a light
-    std::uint32_t early;          // 1: shows an edit; its other modules are those before it
+    std::uint32_t reserved;       // 0
     SampleRecordFormat sampleRecord;
     std::uint32_t sizedLights;  // 1: rays of lobes find punctual lights that have a size, too
 };
@@ -173,10 +173,9 @@ enum class ModuleRole : std::uint32_t {
     PathRays = 18,       // puts the next rays of paths on the list, in packages with several bounces
     Deform = 19,         // applies skins and morph targets to vertices; used by GpuScene, not by Renderer
     FirstDraft = 20,     // shades all pixels until the other modules are made
-    FirstBuckets = 22,   // stores the bucket of each pixel
-    FirstMiss = 23,      // shades pixels without a surface
-    FirstFallback = 24,  // shades pixels whose shader ID no case has
-    LightingEdit = 21,   // shades surfaces with edited features, after Lighting
+    FirstBuckets = 21,   // stores the bucket of each pixel
+    FirstMiss = 22,      // shades pixels without a surface
+    FirstFallback = 23,  // shades pixels whose shader ID no case has
 };
 
 struct ModuleEntry {

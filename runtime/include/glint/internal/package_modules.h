@@ -109,9 +109,6 @@ struct PackageShape {
     std::uint32_t maxBounces = 1;
     bool fallback = false;      // it has shaders for every material beside those of its cases
     bool shadowsApart = false;  // candidates of shadow rays are not treated as those of other rays
-    // It shows an edit of a pack as a draft, by one module; its other modules and all tables are those of
-    // the package before the edit. `glint compile --watch` writes it before the whole package.
-    bool early = false;
 };
 
 // One module of a package. The fields are those of ModuleEntry.
@@ -139,7 +136,6 @@ enum class Purpose : std::uint8_t {
     Motion,    // packages with meshes that follow skins or morph targets
     Fallback,  // packages that shade such hits, with shaders for every material
     Draft,     // packages that draw a frame and may do so before all pipelines are made
-    Edit,      // early packages, which show an edit
 };
 
 struct RoleInfo {
