@@ -136,7 +136,7 @@ double numberAfter(const std::string& line, const std::string& word) {
 constexpr std::array kParts{"notice", "read", "plan", "compile", "write", "load", "replace", "pipelines",
                             "first frame", "sum",
                             // These two are of the first frame, on the device.
-                            "lighting", "cases",
+                            "first cases", "cases",
                             // Processor time since the edit: of the compiler, and of this program.
                             "compiler", "renderer"};
 // The parts of the way from the edit to a picture, in the order of kParts, milliseconds.
@@ -152,7 +152,7 @@ enum Part : std::uint8_t {
     kPipelines,
     kFrame,
     kSum,
-    kLighting,
+    kFirst,
     kCases,
     kCompiler,
     kRenderer,
@@ -224,7 +224,7 @@ private:
         }
         GLINT_TRY(const auto passes, renderer_.timings());
         for (const PassTiming& pass : passes) {
-            times[kLighting] += pass.pass == Pass::Lighting ? pass.milliseconds : 0.0;
+            times[kFirst] += pass.pass == Pass::FirstCase ? pass.milliseconds : 0.0;
             times[kCases] += pass.pass == Pass::ShadeCase ? pass.milliseconds : 0.0;
         }
         return times;

@@ -6,6 +6,13 @@ uint firstTilesX() {
     return (GLINT_FRAME.width + (kPixelGroupSize - 1u)) / kPixelGroupSize;
 }
 
+// Returns the length of the list.
+uint firstElements() {
+    uint rows = GLINT_FRAME.endRow - GLINT_FRAME.firstRow;
+    uint tilesY = (rows + (kPixelGroupSize - 1u)) / kPixelGroupSize;
+    return kPixelGroupSize * kPixelGroupSize * firstTilesX() * tilesY;
+}
+
 // Returns the pixel of the element `index` of the list.
 uvec2 listedPixel(uint index) {
     const uint kTilePixels = kPixelGroupSize * kPixelGroupSize;

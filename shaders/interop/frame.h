@@ -9,6 +9,9 @@ GLINT_INTEROP_BEGIN
 // Threads of a workgroup in one-dimensional passes over rays, and the side of the 8 x 8 tiles of passes over pixels.
 GLINT_CONSTANT(kRayGroupSize, 64u);
 GLINT_CONSTANT(kPixelGroupSize, 8u);
+// The order of first hits: the threads of a workgroup, and the pixels of each.
+GLINT_CONSTANT(kFirstGroupSize, 256u);
+GLINT_CONSTANT(kFirstPixelsOfThread, 4u);
 // The most workgroups of a dispatch over rays in x before it grows in y: half of the least limit that Vulkan allows.
 GLINT_CONSTANT(kMaxRayGroupsX, 32768u);
 // Threads of the single workgroup that scans the buckets.

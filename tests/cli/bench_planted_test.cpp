@@ -99,12 +99,12 @@ TEST_F(PlantedFaults, ShowAsErrorsOrAsTime) {
     }
     // The faults are textures six levels too coarse, no clearcoat, and reflections that keep to the middle of
     // their lobe.
-    plant(path("level"), "lighting.comp", "textureLod(GLINT_SAMPLER(record), uv, 0.0)",
-          "textureLod(GLINT_SAMPLER(record), uv, 6.0)");
-    plant(path("lobe"), "lighting.comp", "factor = GLINT_MATERIAL_CLEARCOAT_FACTOR(hit)",
-          "factor = 0.0 * GLINT_MATERIAL_CLEARCOAT_FACTOR(hit)");
-    plant(path("sampling"), "lighting.comp", "vec3 sampleVisibleNormal(vec3 v, vec2 alpha, vec2 u) {",
-          "vec3 sampleVisibleNormal(vec3 v, vec2 alpha, vec2 u) {\n    u.y *= 0.25;");
+    plantInFirstHits(path("level"), "textureLod(GLINT_SAMPLER(record), uv, 0.0)",
+                     "textureLod(GLINT_SAMPLER(record), uv, 6.0)");
+    plantInFirstHits(path("lobe"), "factor = GLINT_MATERIAL_CLEARCOAT_FACTOR(hit)",
+                     "factor = 0.0 * GLINT_MATERIAL_CLEARCOAT_FACTOR(hit)");
+    plantInFirstHits(path("sampling"), "vec3 sampleVisibleNormal(vec3 v, vec2 alpha, vec2 u) {",
+                     "vec3 sampleVisibleNormal(vec3 v, vec2 alpha, vec2 u) {\n    u.y *= 0.25;");
     // This work changes no picture, but no compiler can leave it out.
     plant(path("slow"), "compose.comp", "    RunningMean mean = RunningMean(radiance, vec3(0.0));",
           "    float work = radiance.x;\n"

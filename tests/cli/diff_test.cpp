@@ -184,7 +184,7 @@ TEST_F(Diff, PacksChangeTheirShadersAndNoOther) {
     writeMudPack(path("pack"), 0.25);
     const int all = compile("a", {"--materials", "pack", "--merge", "none"});
     writeMudPack(path("pack"), 0.5);
-    // The case of the floor, and the shader that lights every primary surface.
+    // The case of the floor, for first hits and for hits of rays.
     EXPECT_EQ(compile("b", {"--materials", "pack", "--merge", "none"}), 2);
     EXPECT_GT(all, 2);
     const Json changed = diff();
@@ -195,7 +195,7 @@ TEST_F(Diff, PacksChangeTheirShadersAndNoOther) {
         roles.push_back(module.at("role"));
     }
     std::ranges::sort(roles);
-    EXPECT_EQ(roles, (std::vector<std::string>{"Lighting", "ShadeCase"})) << changed.at("modules");
+    EXPECT_EQ(roles, (std::vector<std::string>{"FirstHit", "ShadeCase"})) << changed.at("modules");
     EXPECT_EQ(changed.at("modules").size(), 2U);
     EXPECT_TRUE(changed.at("settings").empty()) << changed.at("settings");
     const Json added = run({"diff", "plain", "a", "--json"}).json().at("settings");

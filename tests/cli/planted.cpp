@@ -77,4 +77,16 @@ void plant(const fs::path& package, const std::string& source, const std::string
     writeText(package / "tables.bin", withModule(readText(package / "tables.bin"), file, bytes));
 }
 
+void plantInFirstHits(const fs::path& package, const std::string& from, const std::string& to) {
+    int planted = 0;
+    for (const fs::directory_entry& entry : fs::directory_iterator(package / "glsl")) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with("first_") && readText(entry.path()).find(from) != std::string::npos) {
+            plant(package, name, from, to);
+            ++planted;
+        }
+    }
+    ASSERT_GT(planted, 0) << from;
+}
+
 }  // namespace glint::testing

@@ -11,5 +11,7 @@ namespace glint::testing {
 // Fails the test if the source lacks `from` or does not compile.
 void plant(const std::filesystem::path& package, const std::string& source, const std::string& from,
            const std::string& to);
+// Does so in every module of first hits that has the text; one must.
+void plantInFirstHits(const std::filesystem::path& package, const std::string& from, const std::string& to);
 
 }  // namespace glint::testing

@@ -38,7 +38,7 @@ TEST_F(PrecisionOption, IsInTheModulesThatShade) {
         const bool half = computesHalf(readText(path("half") / file));
         halves += half ? 1 : 0;
         const bool shades =
-            file.starts_with("lighting") || file.starts_with("uber") || file.starts_with("sorted_shade");
+            file.starts_with("first_0") || file.starts_with("uber") || file.starts_with("sorted_shade");
         const bool never = file.starts_with("gbuffer") || file.starts_with("trace") ||
                            file.starts_with("bucket") || file.starts_with("compose");
         EXPECT_TRUE(half || !shades) << file;

@@ -57,9 +57,10 @@ std::string describe(const Properties& has) {
            (has.smooth ? ", smooth" : "") + (has.glass ? ", glass" : "");
 }
 
-// The names of the modules, without those of cases, and the number of cases' modules.
+// The names of the modules, without those of cases, and the numbers of cases' modules.
 struct Modules {
     std::multiset<std::string> roles;
+    std::size_t firstCases = 0;
     std::size_t cases = 0;
 };
 
@@ -68,6 +69,8 @@ Modules modulesOf(const compiler::CompiledPackage& package) {
     for (const compiler::CompiledModule& module : package.modules) {
         if (module.key.role == package::roleNamed("ShadeCase")) {
             ++modules.cases;
+        } else if (module.key.role == package::ModuleRole::FirstHit) {
+            ++modules.firstCases;
         } else {
             modules.roles.insert(module.name);
         }
@@ -81,7 +84,9 @@ std::vector<std::string> passesOf(Renderer& renderer) {
     std::vector<std::string> names;
     for (const PassTiming& timing : timings ? *timings : std::vector<PassTiming>{}) {
         // Counts one for each case, without the name of the case.
-        names.push_back(timing.pass == Pass::ShadeCase ? "shade" : timing.name);
+        names.push_back(timing.pass == Pass::ShadeCase   ? "shade"
+                        : timing.pass == Pass::FirstCase ? "first"
+                                                         : timing.name);
     }
     return names;
 }
@@ -107,10 +112,11 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     const bool reflection = has.lit && has.smooth;
     const bool refraction = has.lit && has.glass;
     const bool rays = reflection || refraction;
-    std::multiset<std::string> expected{"gbuffer.vert", "gbuffer.frag", "lighting.comp", "compose.comp"};
+    std::multiset<std::string> expected{"gbuffer.vert",    "gbuffer.frag",       "first_count.comp",
+                                        "first_copy.comp", "bucket_offset.comp", "first_miss.comp",
+                                        "compose.comp"};
     if (rays) {
-        expected.insert(
-            {"ray_dispatch.comp", "trace.comp", "bucket_offset.comp", "shade_miss.comp", "order_check.comp"});
+        expected.insert({"ray_dispatch.comp", "trace.comp", "shade_miss.comp", "order_check.comp"});
         for (const char* const ordering : {"global_atomics", "wave_loop", "wave_aggregated", "wave_ballot",
                                            "local_histogram", "tile_sort"}) {
             expected.insert({std::string("bucket_count_") + ordering + ".comp",
@@ -126,13 +132,14 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     const Modules modules = modulesOf(loaded.compiled());
     EXPECT_EQ(modules.roles, expected);
     const std::size_t keys = loaded.compiled().plan.keys.size();
+    EXPECT_EQ(modules.firstCases, keys);
     EXPECT_EQ(modules.cases, rays ? keys : 0);
     // Without shadows, only the list's own passes trace.
     for (const compiler::CompiledModule& module : loaded.compiled().modules) {
         const bool traces = module.statistics.rayQueries > 0;
         const bool mayTrace =
             module.name == "trace.comp" || module.name == "refraction_walk.comp" ||
-            (shadow && (module.name == "lighting.comp" || module.name.starts_with("shade_")));
+            (shadow && (module.name.starts_with("first_") || module.name.starts_with("shade_")));
         EXPECT_TRUE(!traces || mayTrace) << module.name;
     }
 
@@ -145,26 +152,26 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     const auto renderer = loaded.makeRenderer(options);
     ASSERT_NE(renderer, nullptr);
     const Renderer::Footprint footprint = renderer->footprint();
-    // G-buffer, lighting, compose; and the list's passes: dispatch, trace, count, offset, copy, misses,
-    // cases.
-    const std::uint32_t cases =
-        static_cast<std::uint32_t>(loaded.compiled().uniqueSpirv > 0 && rays ? keys : 0);
-    std::uint32_t pipelines = 3;
-    pipelines += rays ? 6 + cases : 0;
+    // G-buffer, compose; of first hits: buckets, count, offset, copy, misses, cases; and of the list:
+    // dispatch, trace, misses, cases.
+    const auto cases = static_cast<std::uint32_t>(keys);
+    std::uint32_t pipelines = 7 + cases;
+    pipelines += rays ? 3 + cases : 0;
     pipelines += reflection ? 1 : 0;
     pipelines += refraction ? 2 : 0;
     EXPECT_EQ(footprint.pipelines, pipelines);
     // The images are surface, radiance, mean, residual and depth; the march over the screen also needs
     // positions.
     EXPECT_EQ(footprint.images, 5U + (reflection ? 1U : 0U));
-    // The buffers are constants, counters, read-back; samples in three parts, rays, hits, order, buckets and
-    // two dispatches.
-    EXPECT_EQ(footprint.buffers, 3U + (rays ? 12U : 0U));
+    // The buffers are constants, counters, read-back; order, keys, buckets and two dispatches; samples in
+    // three parts, rays and hits.
+    EXPECT_EQ(footprint.buffers, 10U + (rays ? 5U : 0U));
 
     FrameOptions frame = defaultSetup(scene, 16, 9).frame;
     frame.timing = Timing::Passes;
     ASSERT_TRUE(renderer->render(frame));
-    std::vector<std::string> passes{"gbuffer", "lighting"};
+    std::vector<std::string> passes{"gbuffer", "first count", "first offset", "first copy", "first miss"};
+    passes.insert(passes.end(), keys, "first");
     for (const char* const effect : {"reflection", "refraction"}) {
         const bool walks = effect == std::string("refraction");
         if (walks ? refraction : reflection) {

@@ -184,7 +184,7 @@ TEST(HalfPicture, IsWithinItsBitsOfTheFullOne) {
     const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
     const RenderSetup setup = narrowSetup(scene, 1);
-    // The lighting pass is a compute shader or a ray generation shader.
+    // First hits are shaded by compute shaders or by ray generation shaders.
     for (const Way& way : waysOf(package::kStrategyUber, package::kAllTracers)) {
         RendererOptions options = optionsOf(way);
         const LinearImage exact = loaded.render(options, setup);

@@ -262,7 +262,7 @@ std::map<std::string, std::string> moduleTexts(const std::string& folder) {
     return texts;
 }
 
-TEST(Packs, AChangeOfGlslChangesItsCaseAndTheLightingAlone) {
+TEST(Packs, AChangeOfGlslChangesItsCaseAlone) {
     const test::TemporaryFolder folder;
     fs::copy(kPacks, folder.path(), fs::copy_options::recursive);
     const std::map<std::string, std::string> before = moduleTexts(folder.path().string());
@@ -283,8 +283,10 @@ TEST(Packs, AChangeOfGlslChangesItsCaseAndTheLightingAlone) {
         }
     }
     ASSERT_EQ(changed.size(), 2U);
-    EXPECT_EQ(changed[0], "lighting.comp");
-    EXPECT_NE(changed[1].find("Fibre"), std::string::npos) << changed[1];
+    for (const std::string& name : changed) {
+        EXPECT_NE(name.find("Fibre"), std::string::npos) << name;
+    }
+    EXPECT_TRUE(changed[0].starts_with("first_") && changed[1].starts_with("shade_")) << changed[0];
 }
 
 }  // namespace

@@ -345,7 +345,7 @@ TEST_F(WindowTest, PanelsKeysAndTheWindowItself) {
     EXPECT_TRUE(pick.contains("why") && pick.contains("key") && pick.contains("cost by the model")) << pick;
     EXPECT_TRUE(pick.contains("rays of reflection")) << pick;
     const Json passes = report("passes.json").at("passes");
-    for (const char* const pass : {"gbuffer", "lighting", "compose"}) {
+    for (const char* const pass : {"gbuffer", "first count", "compose"}) {
         EXPECT_TRUE(passes.contains(pass)) << passes;
     }
     EXPECT_TRUE(report("help.json").at("help"));

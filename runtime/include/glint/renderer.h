@@ -69,6 +69,8 @@ struct FrameCounters {
     std::uint32_t nonFinite = 0;      // samples since sample 0 that were not finite; they count as black
     // Rays by bounce, from the first: those of the effects, then those that hits sent. They add up to `rays`.
     std::vector<std::uint32_t> raysOfBounces;
+    // Pixels that see no surface, then pixels by the shader ID of what they see. Empty for a draft.
+    std::vector<std::uint32_t> pixelCounts;
     // Misses, then hits by shader ID, of all effects and bounces. Filled if hits are ordered.
     std::vector<std::uint32_t> bucketCounts;
     // The finest level that surfaces and hits have read of each texture, by PackageScene::textures, or by

@@ -182,11 +182,13 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
     // There is one bit for each hit, in whole words.
     const VkDeviceSize visitedWords = size.checksOrder ? (hits + 31) / 32 : 0;
     const VkDeviceSize shadows = size.deferredShadows ? rays : 0;
-    // The keys end at the end of the last tile that may be read.
+    // The keys end at the end of the last tile that may be read, or block that may be written.
     const VkDeviceSize keys =
         ordered > 0 ? ordered + VkDeviceSize{gpu::kLargeTileThreads} * gpu::kTileHitsOfThread : 0;
+    static_assert(gpu::kFirstGroupSize * gpu::kFirstPixelsOfThread <=
+                  gpu::kLargeTileThreads * gpu::kTileHitsOfThread);
     const VkDeviceSize buckets = ordered > 0 ? bucketBytes(size) : 0;
-    const VkDeviceSize lists = rays > 0 || ordered > 0 ? 1 : 0;
+    const VkDeviceSize lists = rays > 0 ? 1 : 0;
     const VkDeviceSize orderings = ordered > 0 ? size.bucketCount + 1 : 0;
     const VkDeviceSize shadowLists = shadows > 0 ? 1 : 0;
     using Frame = FrameResources;

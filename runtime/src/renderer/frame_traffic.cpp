@@ -198,8 +198,7 @@ std::vector<TrafficRow> trafficRows(const TrafficShape& shape) {
     rows.push_back({"gbuffer", Unit::Pixel, 0, kIdentity + kWord});  // and the depth
     const std::uint32_t picture = shape.halfPicture ? kPixel / 2 : kPixel;
     const std::uint32_t key = keyBytesOf(shape.bucketCount);
-    rows.push_back({"first buckets", Unit::Pixel, kWord, key});
-    rows.push_back({"first count", Unit::Pixel, key, 0});
+    rows.push_back({"first count", Unit::Pixel, kWord, key});
     rows.push_back({"first copy", Unit::Pixel, key, kWord});
     rows.push_back(
         {"first hits", Unit::Pixel, kWord + kIdentity, picture + (shape.marchesScreen ? kPixel : 0)});

@@ -223,27 +223,15 @@ void HitPasses::trace() {
     }
 }
 
-void HitPasses::orderList(const PassLabel& count, const PassLabel& offset, const PassLabel& copy,
-                          VkDeviceSize hits) {
-    if (state_.choice.ordering == package::Ordering::TileSort) {
-        const TileSortGroups groups = tileSortGroups(state_.context.limits, state_.size.bucketCount, hits);
-        passes_.dispatchGroups(count, pass(ModuleRole::BucketCount), groups.count);
-        passes_.barrier(dependencies().passToPass);
-        passes_.dispatchGroups(copy, pass(ModuleRole::BucketCopy), groups.copy);
-        passes_.barrier(dependencies().passToDispatch);
-    } else {
-        dispatchRays(count, ModuleRole::BucketCount);
-        passes_.dispatchGroups(offset, pass(ModuleRole::BucketOffset), 1);
-        passes_.barrier(dependencies().passToDispatch);
-        dispatchRays(copy, ModuleRole::BucketCopy);
-    }
-}
-
 void HitPasses::orderFirst() {
-    passes_.dispatchPixels({"first buckets", Pass::FirstOrder}, pass(ModuleRole::FirstBuckets));
+    constexpr VkDeviceSize kBlock = gpu::kFirstGroupSize * gpu::kFirstPixelsOfThread;
+    const auto blocks = static_cast<std::uint32_t>((state_.size.firstHits() + kBlock - 1) / kBlock);
+    passes_.dispatchGroups({"first count", Pass::FirstOrder}, pass(ModuleRole::FirstCount), blocks);
+    passes_.barrier(dependencies().passToPass);
+    passes_.dispatchGroups({"first offset", Pass::FirstOrder}, pass(ModuleRole::BucketOffset), 1);
     passes_.barrier(dependencies().passToDispatch);
-    orderList({"first count", Pass::FirstOrder}, {"first offset", Pass::FirstOrder},
-              {"first copy", Pass::FirstOrder}, state_.size.firstHits());
+    passes_.dispatchGroups({"first copy", Pass::FirstOrder}, pass(ModuleRole::FirstCopy), blocks);
+    passes_.barrier(dependencies().passToDispatch);
 }
 
 void HitPasses::shadeFirst() {
@@ -255,7 +243,19 @@ void HitPasses::order() {
     if (!ordersHits()) {
         return;
     }
-    orderList({"count", Pass::Count}, {"offset", Pass::Offset}, {"copy", Pass::Copy}, listRays(state_.size));
+    if (state_.choice.ordering == package::Ordering::TileSort) {
+        const TileSortGroups groups =
+            tileSortGroups(state_.context.limits, state_.size.bucketCount, listRays(state_.size));
+        passes_.dispatchGroups({"count", Pass::Count}, pass(ModuleRole::BucketCount), groups.count);
+        passes_.barrier(dependencies().passToPass);
+        passes_.dispatchGroups({"copy", Pass::Copy}, pass(ModuleRole::BucketCopy), groups.copy);
+        passes_.barrier(dependencies().passToDispatch);
+    } else {
+        dispatchRays({"count", Pass::Count}, ModuleRole::BucketCount);
+        passes_.dispatchGroups({"offset", Pass::Offset}, pass(ModuleRole::BucketOffset), 1);
+        passes_.barrier(dependencies().passToDispatch);
+        dispatchRays({"copy", Pass::Copy}, ModuleRole::BucketCopy);
+    }
     if (state_.choice.checksOrder) {
         // This does not dispatch by the number of rays: if there are none, it must check that buckets are
         // empty.

@@ -167,8 +167,6 @@ private:
         return (state_.choice.strategy & package::orderedStrategies()) != 0;
     }
     void dispatchRays(const PassLabel& label, package::ModuleRole role);
-    // Orders a list of at most `hits` hits, whose keys are stored.
-    void orderList(const PassLabel& count, const PassLabel& offset, const PassLabel& copy, VkDeviceSize hits);
     // Dispatches the pass of a role that shades hits, if it has one.
     void dispatch(const package::RoleInfo& info);
     void shadeCases(const package::RoleInfo& info);

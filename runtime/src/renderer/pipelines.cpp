@@ -333,12 +333,13 @@ bool isGraphics(const package::RoleInfo& info) {
 }
 
 // Returns whether the choice runs a module of its shape.
-bool runs(const PipelineChoice& choice, const package::RoleInfo& info, const package::ModuleKey& key) {
+bool runs(const Package& package, const PipelineChoice& choice, const package::RoleInfo& info,
+          const package::ModuleKey& key) {
     if (info.repeated == package::Repeated::ByOrdering) {
         return key.index == static_cast<std::uint32_t>(choice.ordering);
     }
     if (key.role == ModuleRole::BucketOffset) {
-        return choice.ordering != package::Ordering::TileSort;
+        return package.passes() == package::Passes::Frame || choice.ordering != package::Ordering::TileSort;
     }
     if (!runsFallback(choice, key.role) || (info.purpose == package::Purpose::Draft && !choice.draft)) {
         return false;
@@ -353,7 +354,8 @@ void planComputePasses(Context::State& context, const Package& package, const Pi
     std::map<const std::uint32_t*, std::size_t> byWords;
     for (const package::ModuleKey& key : package::requiredModules(chosenShape(package, choice))) {
         const package::RoleInfo& info = *package::findRole(key.role);
-        if (isGraphics(info) || key.tracer == package::kTracerRayPipeline || !runs(choice, info, key)) {
+        if (isGraphics(info) || key.tracer == package::kTracerRayPipeline ||
+            !runs(package, choice, info, key)) {
             continue;
         }
         const std::span<const std::uint32_t> words = package.spirv(key);
@@ -384,7 +386,7 @@ Status checkFeatures(const Context::State& context, const Package& package, cons
     for (const package::ModuleKey& key : package::requiredModules(chosenShape(package, choice))) {
         const package::RoleInfo& info = *package::findRole(key.role);
         const bool compute = !isGraphics(info) && key.tracer != package::kTracerRayPipeline;
-        if (compute && !runs(choice, info, key)) {
+        if (compute && !runs(package, choice, info, key)) {
             continue;
         }
         for (const std::string& feature : package::featuresOf(package.spirv(key))) {

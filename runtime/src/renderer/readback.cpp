@@ -8,6 +8,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstring>
+#include <numeric>
 #include <span>
 #include <string>
 
@@ -345,12 +346,17 @@ EffectCounters FrameCounters::of(package::Effect effect) const {
     return found == effects.end() ? none : *found;
 }
 
-// Those of the pixels and of all rounds.
-std::vector<std::uint32_t> Renderer::State::hits() const {
+std::vector<std::uint32_t> Renderer::State::firstHits() const {
     std::vector<std::uint32_t> sums(size.bucketCount);
     for (std::uint32_t band = 0; band < orderedBands; ++band) {
         addTo(sums, bucketsOf(frame.readback.mapped + readbackFirst(size, band), size));
     }
+    return sums;
+}
+
+// Those of the pixels and of all rounds.
+std::vector<std::uint32_t> Renderer::State::hits() const {
+    std::vector<std::uint32_t> sums = firstHits();
     for (std::uint32_t round = 0; size.ordered && round < rounds.size(); ++round) {
         addTo(sums, bucketsOf(frame.readback.mapped + readbackRound(size, round) + kRoundCounterBytes, size));
     }
@@ -378,6 +384,13 @@ Result<FrameCounters> Renderer::counters() try {
     }
     counters.nonFinite = values[gpu::kCounterNonFinite];
     counters.alphaTests = values[gpu::kCounterAlphaTests];
+    if (state_->orderedBands > 0) {
+        counters.pixelCounts = state_->firstHits();
+        // Tiles that reach beyond the picture count as pixels without a surface.
+        const std::uint32_t all =
+            std::accumulate(counters.pixelCounts.begin(), counters.pixelCounts.end(), 0U);
+        counters.pixelCounts.front() -= all - state_->size.width * state_->size.height;
+    }
     for (std::uint32_t round = 0; round < state_->rounds.size(); ++round) {
         addRound(bytes + readbackRound(state_->size, round), state_->size, state_->rounds[round], counters);
     }

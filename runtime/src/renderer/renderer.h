@@ -45,6 +45,8 @@ struct Renderer::State final : PackageUser {
     }
     Status choose(const Package& other, NextPackage& made) const override;
     std::vector<std::uint32_t> hits() const override;
+    // The pixels by what they see, in the form of hits().
+    std::vector<std::uint32_t> firstHits() const;
     void took(const Package& taken) override;
 
     GpuScene::State& scene;

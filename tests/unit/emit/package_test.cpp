@@ -65,10 +65,10 @@ TEST(CompilePackage, WithAFallbackHasASmallDraft) {
         return *std::ranges::find(package.modules, role,
                                   [](const compiler::CompiledModule& module) { return module.key.role; });
     };
-    ASSERT_EQ(countRoles(package)[ModuleRole::LightingDraft], 1);
-    const compiler::CompiledModule draft = find(ModuleRole::LightingDraft);
+    ASSERT_EQ(countRoles(package)[ModuleRole::FirstDraft], 1);
+    const compiler::CompiledModule draft = find(ModuleRole::FirstDraft);
     EXPECT_EQ(draft.statistics.rayQueries, 0U);
-    EXPECT_LT(2 * draft.statistics.instructions, find(ModuleRole::Lighting).statistics.instructions);
+    EXPECT_LT(2 * draft.statistics.instructions, find(ModuleRole::FirstFallback).statistics.instructions);
     const compiler::Case shown = compiler::draftCase(package.plan);
     EXPECT_EQ(shown.always, 0U);
     EXPECT_NE(shown.sometimes, 0U);
@@ -85,7 +85,7 @@ TEST(CompilePackage, DraftsLeaveOutLightsThatRaysFind) {
     settings.emissiveLights = compiler::EmissiveLights::On;
     settings.skyLight = compiler::SkyLight::On;
     settings.sizedLights = compiler::SizedLights::On;
-    EXPECT_EQ(countRoles(compileSample(settings))[ModuleRole::LightingDraft], 1);
+    EXPECT_EQ(countRoles(compileSample(settings))[ModuleRole::FirstDraft], 1);
 }
 
 // The texts of all modules that a package would have, with every strategy and tracer.
@@ -234,18 +234,18 @@ TEST(CompilePackage, CountersThatAreOffLeaveNoCode) {
     settings.strategies = package::kStrategyUber;
     settings.effects = {false, compiler::builtinEffects({"shadow", "ambient-occlusion"})};
     const compiler::CompiledPackage package = compileSample(settings);
-    const auto lighting = std::ranges::find_if(package.modules, [](const compiler::CompiledModule& module) {
-        return module.key.role == ModuleRole::Lighting;
+    const auto first = std::ranges::find_if(package.modules, [](const compiler::CompiledModule& module) {
+        return module.key.role == ModuleRole::FirstHit;
     });
-    ASSERT_NE(lighting, package.modules.end());
-    EXPECT_GT(countAtomicAdds(lighting->spirv), 2U);
+    ASSERT_NE(first, package.modules.end());
+    EXPECT_GT(countAtomicAdds(first->spirv), 2U);
     spvtools::Optimizer driver(SPV_ENV_VULKAN_1_2);
     driver.RegisterPass(spvtools::CreateFreezeSpecConstantValuePass())
         .RegisterPass(spvtools::CreateFoldSpecConstantOpAndCompositePass())
         .RegisterPass(spvtools::CreateCCPPass())
         .RegisterPass(spvtools::CreateDeadBranchElimPass());
     std::vector<std::uint32_t> left;
-    ASSERT_TRUE(driver.Run(lighting->spirv.data(), lighting->spirv.size(), &left));
+    ASSERT_TRUE(driver.Run(first->spirv.data(), first->spirv.size(), &left));
     EXPECT_EQ(countAtomicAdds(left), 0U);
 }
 
@@ -331,7 +331,7 @@ TEST(CompilePackage, EmitsTheGlslThatItCompiled) {
         }
         const auto again = compileShader(source, {});
         ASSERT_TRUE(again) << toString(again.error());
-        if (hasSwitch || module.key.role == ModuleRole::Lighting) {
+        if (hasSwitch) {
             // Parts know more about themselves than the whole, so the words differ, but not what they do.
             const auto counts = compiler::measureSpirv(*again);
             ASSERT_TRUE(counts);

@@ -11,14 +11,22 @@ namespace {
 TEST(HitTimes, CountsWhatStrategiesDifferIn) {
     // Names are for people, so they decide nothing.
     const std::vector<PassTiming> passes{
-        {"shade", 100.0, Pass::Lighting},  {"a", 1.0, Pass::RayDispatch},
-        {"trace", 2.0, Pass::Trace},       {"b", 1.0, Pass::Count},
-        {"c", 2.0, Pass::Offset},          {"d", 4.0, Pass::Copy},
-        {"e", 5.0, Pass::Shade},           {"f", 6.0, Pass::Shadow},
-        {"copy", 200.0, Pass::Compose},    {"uber", 20.0, Pass::Trace},
-        {"g", 25.0, Pass::ShadeCase, 3},   {"h", 10.0, Pass::Shade},
-        {"i", 10.0, Pass::Shade},          {"j", 5.0, Pass::Shade},
-        {"k", 60.0, Pass::ShadowDispatch}, {"trace", 400.0, Pass::CheckOrder},
+        {"shade", 100.0, Pass::FirstShade},
+        {"a", 1.0, Pass::RayDispatch},
+        {"trace", 2.0, Pass::Trace},
+        {"b", 1.0, Pass::Count},
+        {"c", 2.0, Pass::Offset},
+        {"d", 4.0, Pass::Copy},
+        {"e", 5.0, Pass::Shade},
+        {"f", 6.0, Pass::Shadow},
+        {"copy", 200.0, Pass::Compose},
+        {"uber", 20.0, Pass::Trace},
+        {"g", 25.0, Pass::ShadeCase, 3},
+        {"h", 10.0, Pass::Shade},
+        {"i", 10.0, Pass::Shade},
+        {"j", 5.0, Pass::Shade},
+        {"k", 60.0, Pass::ShadowDispatch},
+        {"trace", 400.0, Pass::CheckOrder},
     };
     const measure::HitTimes times = hitTimesOf(passes);
     EXPECT_EQ(times.dispatch, 1.0);

@@ -319,6 +319,13 @@ TEST(Plan, KeysOfHitsArePartOfPrimaryMasks) {
                                                  {package::AlphaPolicy::Tested}));
             EXPECT_EQ(primary & ~whole, 0U);
             every &= primary;
+            // First hits are shaded by the case of the hits, which must promise nothing wrong about this
+            // mask.
+            const int shaderId = plan.keys[plan.keyOfPrimitive[p]].shaderId;
+            const compiler::Case first = compiler::firstCase(plan, plan.cases[shaderId]);
+            EXPECT_EQ(first.always & ~primary, 0U);
+            EXPECT_EQ(primary & ~(first.always | first.sometimes), 0U);
+            EXPECT_EQ(first.always & first.sometimes, 0U);
         }
         EXPECT_EQ(plan.primaryAlways, every);
         EXPECT_EQ(plan.primaryAlways & plan.primarySometimes, 0U);
@@ -339,6 +346,11 @@ TEST(Plan, HitsThatKeepFewerLobesShareMoreCases) {
     EXPECT_NE(few.primarySometimes & bit("clearcoat"), 0U);
     EXPECT_EQ(all.primarySometimes, few.primarySometimes);
     EXPECT_EQ(all.sometimes, all.primarySometimes);
+    for (const compiler::Case& shaderCase : all.cases) {
+        const compiler::Case first = compiler::firstCase(all, shaderCase);
+        EXPECT_EQ(first.always, shaderCase.always);
+        EXPECT_EQ(first.sometimes, shaderCase.sometimes);
+    }
     const auto coat = std::ranges::find(few.dropped, "clearcoat", &compiler::DroppedFeature::feature);
     ASSERT_NE(coat, few.dropped.end());
     EXPECT_NE(coat->reason.find("--hit-lobes"), std::string::npos);

@@ -26,7 +26,7 @@ struct NamedRole {
 const NamedRole kRoles[] = {
     {ModuleRole::GBufferVertex, "gbuffer.vert"},
     {ModuleRole::GBufferFragment, "gbuffer.frag"},
-    {ModuleRole::Lighting, "lighting.comp"},
+    {ModuleRole::FirstHit, "first_hit.comp"},
     {ModuleRole::EffectRays, "effect_rays.comp"},
     {ModuleRole::RayDispatch, "ray_dispatch.comp"},
     {package::roleNamed("UberShade"), "uber.comp"},
@@ -39,6 +39,9 @@ const NamedRole kRoles[] = {
     {ModuleRole::Compose, "compose.comp"},
     // This module never runs here.
     {ModuleRole::OrderCheck, "compose.comp"},
+    {ModuleRole::FirstCount, "first_count.comp"},
+    {ModuleRole::FirstCopy, "first_copy.comp"},
+    {ModuleRole::FirstMiss, "first_miss.comp"},
 };
 
 const package::EffectInfo kEffects[] = {

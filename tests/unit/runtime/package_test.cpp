@@ -363,7 +363,7 @@ TEST_F(PackageTest, BrokenPromisesAreErrors) {
         {"strategy without modules", [](PackageSpec& s) { removeRole(s, package::roleNamed("UberShade")); }},
         {"modules without strategy", [](PackageSpec& s) { s.strategies = package::kStrategyUber; }},
         {"case without module", [](PackageSpec& s) { removeRole(s, package::roleNamed("ShadeCase")); }},
-        {"pass without module", [](PackageSpec& s) { removeRole(s, ModuleRole::Lighting); }},
+        {"pass without module", [](PackageSpec& s) { removeRole(s, ModuleRole::FirstMiss); }},
         {"module twice", [](PackageSpec& s) { s.modules.push_back(s.modules[0]); }},
         {"unknown role", [](PackageSpec& s) { s.modules[12].key.role = ModuleRole{99}; }},
         {"module's shader ID", [](PackageSpec& s) { s.modules.back().key.index = 1; }},

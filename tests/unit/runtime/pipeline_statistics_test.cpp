@@ -152,7 +152,7 @@ TEST_F(StatisticsOfARenderer, NameEveryPipeline) {
         names.push_back(pipeline.name);
     }
     EXPECT_EQ(names.front(), "GBuffer");
-    for (const char* name : {"Lighting", "Trace", "Compose"}) {
+    for (const char* name : {"FirstCount", "Trace", "Compose"}) {
         EXPECT_EQ(std::ranges::count(names, name), 1) << name;
     }
     std::ranges::sort(names);

@@ -297,6 +297,8 @@ std::vector<base::Field> counters() {
             output<kAt, &C::unknownShader>("unknownShader", "Number of hits whose shader no case has."),
             output<kAt, &C::alphaTests>("alphaTests", "Candidates of rays whose alpha was tested."),
             output<kAt, &C::nonFinite>("nonFinite", "Samples that were NaN or infinite."),
+            output<kAt, &C::pixelCounts>(
+                "pixels", "Pixels without a surface, then pixels by the shader ID of what they see."),
             output<kAt, &C::bucketCounts>("buckets", "Misses, then hits by shader ID.")};
 }
 

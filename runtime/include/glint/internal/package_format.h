@@ -173,9 +173,10 @@ enum class ModuleRole : std::uint32_t {
     PathRays = 18,       // puts the next rays of paths on the list, in packages with several bounces
     Deform = 19,         // applies skins and morph targets to vertices; used by GpuScene, not by Renderer
     FirstDraft = 20,     // shades all pixels until the other modules are made
-    FirstBuckets = 21,   // stores the bucket of each pixel
-    FirstMiss = 22,      // shades pixels without a surface
-    FirstFallback = 23,  // shades pixels whose shader ID no case has
+    FirstCount = 21,     // finds the bucket of each pixel
+    FirstCopy = 22,      // orders pixels by bucket
+    FirstMiss = 23,      // shades pixels without a surface
+    FirstFallback = 24,  // shades pixels whose shader ID no case has
 };
 
 struct ModuleEntry {

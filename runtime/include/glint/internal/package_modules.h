@@ -127,7 +127,7 @@ enum class Repeated : std::uint8_t { Once, ByCase, ByOrdering, ByEffect, ByWalk 
 // The packages that have a role.
 enum class Purpose : std::uint8_t {
     Picture,   // packages that draw a frame
-    Order,     // packages that order hits: those that draw a frame order its first hits
+    Order,     // packages that order hits of rays or, as those that draw a frame do, first hits
     Hits,      // packages that shade hits: for a host, or with an effect that sends rays
     Shadows,   // those among them that defer shadow rays
     Walks,     // packages with effects that follow their rays in a pass of their own

@@ -1,0 +1,45 @@
+#version 460
+// Writes the numbers of pixels in the order of their buckets.
+#include "order/first_order.glsl"
+
+#if GLINT_FIRST_LOCAL
+shared uint blockBegins[kBuckets];
+#endif
+
+void main() {
+    uint elements = firstElements();
+    CounterArray cursors = GLINT_FRAME.bucketCursors;
+    OrderedArray slots = GLINT_FRAME.orderedHits;
+    uint buckets[kFirstPixelsOfThread];
+    for (uint k = 0u; k < kFirstPixelsOfThread; ++k) {
+        uint element = firstElement(k);
+        buckets[k] = element < elements ? storedKey(element) : kNoBucket;
+    }
+    uint numbers[kFirstPixelsOfThread];
+#if GLINT_FIRST_LOCAL
+    clearBlock();
+#endif
+    for (uint k = 0u; k < kFirstPixelsOfThread; ++k) {
+        numbers[k] = addToBuckets(cursors, buckets[k]);
+    }
+#if GLINT_FIRST_LOCAL
+    barrier();
+    for (uint bucket = gl_LocalInvocationIndex; bucket < kBuckets; bucket += kFirstGroupSize) {
+        uint count = blockCounts[bucket];
+        if (count > 0u) {
+            blockBegins[bucket] = GLINT_FRAME.bucketBegins.data[bucket] + atomicAdd(cursors.data[bucket], count);
+        }
+    }
+    barrier();
+#endif
+    for (uint k = 0u; k < kFirstPixelsOfThread; ++k) {
+        if (buckets[k] != kNoBucket) {
+#if GLINT_FIRST_LOCAL
+            uint begin = blockBegins[buckets[k]];
+#else
+            uint begin = GLINT_FRAME.bucketBegins.data[buckets[k]];
+#endif
+            slots.data[begin + numbers[k]] = firstElement(k);
+        }
+    }
+}
