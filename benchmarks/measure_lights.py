@@ -14,7 +14,7 @@ choice once, one after the other, so that what else the machine does slows all a
 another program, too: its choices have the word "before". The error is the relMse of `glint compare` against `all`,
 which falls as 1 / samples: it is given for one sample. With --reference-spp, JSON also has the error against so many
 samples of 64 lights, or of all up to 64: that of a pixel's edges and textures is part of it. The time is the median
-over the rounds of the device time of the lighting pass, for a sample. JSON also has that of all passes. `--lights all`
+over the rounds of the device time of first hits, for a sample. JSON also has that of all passes. `--lights all`
 has no error after one sample. K needs error / TARGET samples, and at least one. Prints a Markdown table, and writes
 JSON.
 """
@@ -169,9 +169,9 @@ def add_lights(source, path, count):
 
 
 def times_of(stats):
-    """The device time of the lighting pass of a sample, and that of all passes."""
+    """The device time of the first hits of a sample, and that of all passes."""
     passes = json.loads(stats.read_text())["passes"]
-    return (sum(entry["milliseconds"] for entry in passes if entry["name"] == "lighting"),
+    return (sum(entry["milliseconds"] for entry in passes if entry["name"].startswith("first ")),
             sum(entry["milliseconds"] for entry in passes))
 
 
@@ -262,11 +262,11 @@ class Measurement:
                 self.render(count, self.reference_choice(count), self.options.glint, self.options.reference_spp,
                             reference)
             for choice, _ in self.choices(count):
-                lighting, frames = zip(*self.times[count, choice])
-                ratios = [own / whole for own, (whole, _) in zip(lighting, self.times[count, "all"])]
+                first, frames = zip(*self.times[count, choice])
+                ratios = [own / whole for own, (whole, _) in zip(first, self.times[count, "all"])]
                 inspected = json.loads(run(self.options.glint, "inspect", self.package(count, choice), "--json"))
                 row = {"lights": count, "choice": choice, "taken": inspected["settings"]["lights"],
-                       "milliseconds": lighting, "frameMilliseconds": frames, "ratioToAll": ratios,
+                       "milliseconds": first, "frameMilliseconds": frames, "ratioToAll": ratios,
                        "relMseOfSample": self.error(self.picture(count, choice), self.picture(count, "all"))}
                 if reference:
                     row["errorOfSample"] = self.error(self.picture(count, choice), reference)

@@ -8,7 +8,7 @@
 
 A floor with columns stands under lamps, with panes between them: of coloured glass, of BLEND with an alpha of 0.4, or
 of MASK with a texture of holes. The scene is rendered with each setting in turn, in an order that changes from round to
-round. Prints Markdown, a row as soon as it is measured: the device time of the passes that send shadow rays (lighting
+round. Prints Markdown, a row as soon as it is measured: the device time of the passes that send shadow rays (first hits
 and the shading of hits), and the ratio to the default in the same round. With --processor it is the processor time of
 all passes, for devices on the processor while other programs run: that of many samples, less that of two.
 
@@ -280,7 +280,7 @@ def render(arguments, scene, folder, setting, samples):
 def device_time(arguments, scene, folder, setting):
     """Returns the milliseconds of the passes that send shadow rays."""
     passes = json.loads(render(arguments, scene, folder, setting, 2).read_text())["passes"]
-    return sum(entry["milliseconds"] for entry in passes if entry["name"] in ("lighting", "uber"))
+    return sum(entry["milliseconds"] for entry in passes if entry["name"] == "uber" or entry["name"].startswith("first "))
 
 
 def processor_time(arguments, scene, folder, setting):

@@ -42,7 +42,7 @@ render() {
         awk -v stem="$stem" '/^pass of the last sample/ { on = 1; next }
             on && NF > 1 { ms = $NF; $NF = ""; sub(/ +$/, ""); all += ms
                 group = "shade"
-                if (/^(gbuffer|lighting|compose)$/) group = "primary"
+                if (/^(gbuffer|first .*|compose)$/) group = "primary"
                 else if (/^reflection rays/ || /^ray dispatch/) group = "list"
                 else if (/^(count|offset|copy)$/) group = "order"
                 else if (/^trace/) group = "trace"

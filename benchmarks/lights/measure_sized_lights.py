@@ -9,7 +9,7 @@ A metal floor is lit by a spherical lamp of radius 0.25 m alone, or by --lamps N
 0.25 m over the cube root of N, and together they are as bright. The truth is that of glint_oracle, which also lets the
 rays of lobes find the lamps. Prints Markdown: the RMSE of glint render with light samples alone and with rays of lobes
 (--sized-lights), and what the RMSE of the oracle would be with the same number of samples. With --rounds it prints the
-device time of the lighting pass instead, in ms a sample: the median of so many rounds, and the least. DIR holds both
+device time of first hits instead, in ms a sample: the median of so many rounds, and the least. DIR holds both
 programs (build/release/bin).
 """
 import argparse
@@ -61,14 +61,14 @@ class Floor:
         write_floor(self.scene, float(roughness), arguments.lamps)
 
     def render(self, sized, points):
-        """Returns the device time of the lighting pass, ms a sample."""
+        """Returns the device time of first hits, ms a sample."""
         stats = self.folder / "stats.json"
         subprocess.run([self.arguments.bin / "glint", "render", self.scene, *self.options, "--sky", "0", "--spp",
                         str(self.arguments.spp), "--shadow-spp", points, "--strategy", "uber", "--merge", "all",
                         "--effects", "shadow,reflection", "--max-roughness", "1", f"--sized-lights={sized}", "--lights",
                         self.arguments.lights, "--stats", stats, "--quiet", "-o", self.picture], check=True)
         passes = json.loads(stats.read_text())["passes"]
-        return sum(entry["milliseconds"] for entry in passes if entry["name"] == "lighting")
+        return sum(entry["milliseconds"] for entry in passes if entry["name"].startswith("first "))
 
     def truth(self):
         """What glint_oracle says of the last picture."""

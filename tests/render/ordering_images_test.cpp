@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -85,5 +86,50 @@ INSTANTIATE_TEST_SUITE_P(Strategies, OrderingImages,
                              return strategy.param == package::kStrategyVisibility ? "Visibility"
                                                                                    : "SortedUber";
                          });
+
+// Pixels are ordered by what they see, with keys of one or two bytes, and with more buckets than shared
+// memory holds.
+TEST(FirstHits, AreOrderedWhateverTheNumberOfBuckets) {
+    const gltf::Scene scene = roomOfMaterials();
+    compiler::CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.effects = {false, 0};
+    settings.plan.merge = compiler::MergePolicy::None;
+    // 77 x 45 pixels are not a whole number of tiles.
+    const RenderSetup setup = defaultSetup(scene, 77, 45);
+    LinearImage reference;
+    std::vector<std::uint32_t> expected;
+    compiler::LockedIds ids;
+    for (const int from : {0, 300, 1100}) {
+        SCOPED_TRACE(from);
+        settings.plan.lockedIds = ids;
+        for (auto& [mask, id] : settings.plan.lockedIds) {
+            id += from;
+        }
+        const LoadedScene loaded(scene, settings);
+        ASSERT_TRUE(loaded.ok());
+        FrameCounters counters;
+        const LinearImage image =
+            loaded.render(RendererOptions{.strategy = package::kStrategyUber}, setup, &counters);
+        ASSERT_FALSE(image.pixels.empty());
+        const std::vector<std::uint32_t>& counts = counters.pixelCounts;
+        EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), 0U), 77U * 45U);
+        EXPECT_EQ(counters.unknownShader, 0U);
+        if (from == 0) {
+            reference = image;
+            expected = counts;
+            EXPECT_GE(std::ranges::count_if(counts, [](std::uint32_t count) { return count > 0; }), 5);
+            for (const compiler::Key& key : loaded.compiled().plan.keys) {
+                ids[key.mask] = key.shaderId;
+            }
+            continue;
+        }
+        ASSERT_EQ(counts.size(), expected.size() + from);
+        EXPECT_EQ(counts[0], expected[0]);
+        EXPECT_TRUE(std::equal(expected.begin() + 1, expected.end(), counts.begin() + 1 + from));
+        expectSameImage(image, reference, "the picture with other shader IDs");
+    }
+    expectNoValidationMessages();
+}
 
 }  // namespace
