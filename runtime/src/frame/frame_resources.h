@@ -153,7 +153,7 @@ struct FrameSize {
         return VkDeviceSize{width} * rowsOfBand();
     }
 
-    // The length of a band's list of first hits: its pixels, in whole tiles (hit/first_list.glsl). A host
+    // The length of a band's list of first hits: its pixels, in whole tiles (first/first_list.glsl). A host
     // sees its first hits itself.
     VkDeviceSize firstHits() const {
         const auto tiles = [](std::uint32_t pixels) {

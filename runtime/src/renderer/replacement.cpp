@@ -114,7 +114,10 @@ Status makePipelinesOf(PackageUser& state, NextPackage& next) {
         made.name = planned.job.name;
         next.ready.push_back({std::move(planned), std::move(made)});
     }
+    // A case has shaders for first hits and for hits of rays.
     std::ranges::sort(result.casesMade);
+    result.casesMade.erase(std::unique(result.casesMade.begin(), result.casesMade.end()),
+                           result.casesMade.end());
     result.pipelinesKept = static_cast<std::uint32_t>(next.ready.size());
     result.pipelinesMade = static_cast<std::uint32_t>(missing.size());
     if (!next.choice.background) {

@@ -62,13 +62,13 @@ TEST(FrameMemory, IsAtMost97BytesAPixelForThree) {
         EXPECT_LE(bytesOfPixel(realTimeFrame(strategy, 3, 1)), 97.5) << package::infoOf(strategy).name;
         EXPECT_LE(bytesOfPixel(fullFrame(strategy, 3, 0)), 96.0) << package::infoOf(strategy).name;
     }
-    EXPECT_LE(bytesOfPixel(realTimeFrame(package::kStrategyUber, 3, 1)), 93.0);
 }
 
 TEST(FrameMemory, OfTheDepthIsThatOfBuffers) {
     const FrameSize size = realTimeFrame(package::kStrategyUber, 1, 1);
-    // The surface and the picture, a sample, and its place in the list, which lies where the depth was.
-    EXPECT_NEAR(bytesOfPixel(size), 8.0 + 8.0 + 24.0 + 4.0, 0.1);
+    // The surface and the picture, a sample, its place in the list, which lies where the depth was, and the
+    // order of the pixels with their keys.
+    EXPECT_NEAR(bytesOfPixel(size), 8.0 + 8.0 + 24.0 + 4.0 + 4.0 + 1.0, 0.1);
 }
 
 TEST(FrameBands, CoverTheFrameInWholeTiles) {
@@ -111,21 +111,22 @@ double bytesMoved(TrafficShape shape) {
 TEST(FrameTraffic, IsWithinItsBounds) {
     TrafficShape shape;
     shape.effects = 1;
-    EXPECT_LE(bytesMoved(shape), 272.0);
+    EXPECT_LE(bytesMoved(shape), 285.0);
     shape.strategy = package::kStrategyUber;
-    EXPECT_LE(bytesMoved(shape), 210.0);
+    EXPECT_LE(bytesMoved(shape), 218.0);
     shape.strategy = package::kStrategyVisibility;
     shape.hitRecord = package::HitRecordFormat::Packed;
-    EXPECT_LE(bytesMoved(shape), 256.0);
+    EXPECT_LE(bytesMoved(shape), 269.0);
     shape.hitRecord = package::HitRecordFormat::Full;
     shape.sampleRecord = package::SampleRecordFormat::Packed;
-    EXPECT_LE(bytesMoved(shape), 240.0);
+    EXPECT_LE(bytesMoved(shape), 249.0);
     shape.hitsInSamples = true;
     shape.halfPicture = true;
     EXPECT_LE(bytesMoved(shape), 220.0);
     shape.halfPicture = false;
     shape.effects = 0;
-    EXPECT_EQ(bytesMoved(shape), 12.0 + 24.0 + 32.0) << "visibility and depth, light, and the picture";
+    EXPECT_EQ(bytesMoved(shape), 12.0 + 5.0 + 5.0 + 28.0 + 32.0)
+        << "visibility and depth, the order of the pixels, light, and the picture";
 }
 
 TEST(FrameTraffic, GrowsWithWhatAFrameDoes) {

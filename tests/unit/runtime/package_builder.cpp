@@ -159,11 +159,13 @@ PackageSpec makeOtherSpec() {
     PackageSpec spec = makeDeviceSpec();
     spec.caseCount = 2;
     spec.cases.push_back({0, 0, "Other"});
-    const auto first = std::ranges::find(spec.modules, package::roleNamed("ShadeCase"),
-                                         [](const ModuleSpec& module) { return module.key.role; });
-    ModuleSpec second = *first;
-    second.key.index = 1;
-    spec.modules.insert(first + 1, std::move(second));
+    for (const ModuleRole role : {ModuleRole::FirstHit, package::roleNamed("ShadeCase")}) {
+        const auto first =
+            std::ranges::find(spec.modules, role, [](const ModuleSpec& module) { return module.key.role; });
+        ModuleSpec second = *first;
+        second.key.index = 1;
+        spec.modules.insert(first + 1, std::move(second));
+    }
     spec.primitives[0].shaderId = 1;
     return spec;
 }

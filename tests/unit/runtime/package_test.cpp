@@ -65,6 +65,11 @@ TEST_F(PackageTest, LoadsAValidPackage) {
     spec.modules.push_back({{package::roleNamed("ShadeCase"), 1, package::kTracerRayQuery},
                             "shade_case.comp.spv",
                             spec.modules[0].words});
+    test::ModuleSpec first =
+        *std::ranges::find(spec.modules, package::ModuleRole::FirstHit,
+                           [](const test::ModuleSpec& module) { return module.key.role; });
+    first.key.index = 1;
+    spec.modules.push_back(first);
     spec.primitives[1].shaderId = 1;
     spec.primitives[1].featureLobes = 0b11;
     write(spec);

@@ -137,9 +137,10 @@ double roundedShare(double share) {
 }
 
 std::string stageName(const package::ModuleKey& key) {
-    const auto strategy = static_cast<package::Strategy>(package::findRole(key.role)->strategies);
-    const bool alone = (strategy & package::pipelineStrategies()) != 0;
-    const std::string name(package::nameOf(strategy));
+    const package::RoleInfo& info = *package::findRole(key.role);
+    const bool alone = info.kind == package::ShaderKind::ClosestHit;
+    const std::string name(
+        info.shadesFirst() ? "first hits" : package::nameOf(static_cast<package::Strategy>(info.strategies)));
     return alone || key.tracer != package::kTracerRayPipeline ? name : name + ", ray-pipeline";
 }
 

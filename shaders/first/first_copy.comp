@@ -1,6 +1,6 @@
 #version 460
 // Writes the numbers of pixels in the order of their buckets.
-#include "order/first_order.glsl"
+#include "first/first_order.glsl"
 
 #if GLINT_FIRST_LOCAL
 shared uint blockBegins[kBuckets];

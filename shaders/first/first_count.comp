@@ -1,7 +1,7 @@
 #version 460
 // Finds the bucket of each pixel of a band, by the surface that it sees, and counts the pixels of each. Pixels without a
 // surface, and those beyond the picture in its last tiles, are in bucket 0.
-#include "order/first_order.glsl"
+#include "first/first_order.glsl"
 #include "hit/images.glsl"
 #include "hit/record.glsl"
 

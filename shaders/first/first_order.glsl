@@ -6,7 +6,7 @@
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 
-#include "hit/first_list.glsl"
+#include "first/first_list.glsl"
 #include "order/bucket_key.glsl"
 
 layout(local_size_x = kFirstGroupSize) in;

@@ -3,7 +3,7 @@
 // the package has a fallback, which shades them in a pass of its own.
 #include "generated/skip_effects.glsl"
 #include "hit/camera.glsl"
-#include "hit/first_list.glsl"
+#include "first/first_list.glsl"
 #include "hit/images.glsl"
 #include "hit/answer_radiance.glsl"
 #if GLINT_SURFACE_LAYERS
