@@ -157,12 +157,12 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
 
 namespace {
 
-// The most dispatches of cases that bands may bring to a round of rays.
+// The most dispatches of cases that bands may bring to first hits.
 constexpr std::uint32_t kCasesOfBands = 256;
 
 }  // namespace
 
-std::uint32_t chooseBandRows(const FrameSize& size, package::Strategy strategy, std::uint32_t wanted) {
+std::uint32_t chooseBandRows(const FrameSize& size, std::uint32_t wanted) {
     const bool isEmpty = size.width == 0 || size.height == 0;  // an error that checkFrameSize() reports
     if (isEmpty || size.hostRays || size.sampleCount == 0 || size.marchesScreen) {
         return 0;
@@ -170,9 +170,7 @@ std::uint32_t chooseBandRows(const FrameSize& size, package::Strategy strategy, 
     std::uint64_t bands = wanted;
     if (wanted == 0) {
         bands = (std::uint64_t{size.width} * size.height + kPixelsOfBand - 1) / kPixelsOfBand;
-        if (package::infoOf(strategy).dispatchesCases) {
-            bands = std::min<std::uint64_t>(bands, std::max(kCasesOfBands / size.bucketCount, 1U));
-        }
+        bands = std::min<std::uint64_t>(bands, std::max(kCasesOfBands / size.bucketCount, 1U));
     }
     constexpr std::uint32_t kTile = gpu::kPixelGroupSize;
     const std::uint64_t rows = (size.height + bands - 1) / bands;
@@ -228,7 +226,7 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.accumulates = options.accumulate;
     size.marchesScreen = options.screenMarch && size.effects.screenStarts != 0;
     size.halfPicture = choice.halfPicture;
-    size.bandRows = chooseBandRows(size, choice.strategy, choice.bands);
+    size.bandRows = chooseBandRows(size, choice.bands);
     return size;
 }
 

@@ -19,7 +19,7 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
 
 // Returns the rows of a band, or 0 for a frame that is lit as a whole. `wanted` is RendererOptions::bands.
 // Pure.
-std::uint32_t chooseBandRows(const FrameSize& size, package::Strategy strategy, std::uint32_t wanted);
+std::uint32_t chooseBandRows(const FrameSize& size, std::uint32_t wanted);
 
 // Returns whether frames have a picture of 16-bit floats: the options request it, and nothing needs 32 bits.
 // The march in screen space reads depths from it, and shaders have one format for the picture and for layers
