@@ -152,20 +152,20 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     const auto renderer = loaded.makeRenderer(options);
     ASSERT_NE(renderer, nullptr);
     const Renderer::Footprint footprint = renderer->footprint();
-    // G-buffer, compose; of first hits: buckets, count, offset, copy, misses, cases; and of the list:
-    // dispatch, trace, misses, cases.
+    // G-buffer, compose; of first hits: count, offset, copy, misses, cases; and of the list: dispatch, trace,
+    // count, copy, misses, cases.
     const auto cases = static_cast<std::uint32_t>(keys);
-    std::uint32_t pipelines = 7 + cases;
-    pipelines += rays ? 3 + cases : 0;
+    std::uint32_t pipelines = 6 + cases;
+    pipelines += rays ? 5 + cases : 0;
     pipelines += reflection ? 1 : 0;
     pipelines += refraction ? 2 : 0;
     EXPECT_EQ(footprint.pipelines, pipelines);
     // The images are surface, radiance, mean, residual and depth; the march over the screen also needs
     // positions.
     EXPECT_EQ(footprint.images, 5U + (reflection ? 1U : 0U));
-    // The buffers are constants, counters, read-back; order, keys, buckets and two dispatches; samples in
-    // three parts, rays and hits.
-    EXPECT_EQ(footprint.buffers, 10U + (rays ? 5U : 0U));
+    // The buffers are constants, counters, read-back; order, keys, buckets and their dispatch; samples in
+    // three parts, rays, hits and their dispatch.
+    EXPECT_EQ(footprint.buffers, 9U + (rays ? 6U : 0U));
 
     FrameOptions frame = defaultSetup(scene, 16, 9).frame;
     frame.timing = Timing::Passes;

@@ -46,6 +46,7 @@ void main() {
 Result<std::vector<compiler::CompiledModule>> compileOrdering(std::uint32_t caseCount,
                                                               package::HitRecordFormat hitRecord) {
     compiler::Plan plan;
+    plan.keys.resize(1);
     for (std::uint32_t i = 0; i < caseCount; ++i) {
         compiler::Case shaderCase;
         shaderCase.shaderId = static_cast<int>(i);
