@@ -35,6 +35,7 @@ GROUPS = [
     ("sorted uber", r"SortedShade"),
     ("hit shaders", r"HitTrace"),
     ("trace", r"Trace$"),
+    ("lighting", r"Lighting$"),  # of measurements before first hits were shaded by case
     ("first hits", r"FirstHit |first \S"),
     ("walk", r"EffectWalk"),
     ("all others", r""),
