@@ -90,13 +90,14 @@ const uint kMostWaiting = 16u;
 SurfaceShadow waitingShadows[kMostWaiting];
 uint waitingCount = 0u;
 
-// Returns the light of the rays that wait.
+// Returns the light of the rays that wait. The last is traced first: a driver unrolls a loop that counts up to an
+// array's length, and a copy of the traversal for each ray took Mesa's lavapipe 97 s to compile, where this takes 4 s.
 vec3 traceWaiting(Hit hit, inout ShadowCounts counts) {
     vec3 sum = vec3(0.0);
-    for (uint i = 0u; i < waitingCount; ++i) {
-        sum += traceShadow(hit, waitingShadows[i], counts);
+    while (waitingCount > 0u) {
+        waitingCount -= 1u;
+        sum += traceShadow(hit, waitingShadows[waitingCount], counts);
     }
-    waitingCount = 0u;
     return sum;
 }
 
