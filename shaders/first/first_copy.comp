@@ -1,5 +1,6 @@
 #version 460
 // Writes the numbers of pixels in the order of their buckets.
+#define GLINT_FIRST_COUNTERS GLINT_FRAME.bucketCursors
 #include "first/first_order.glsl"
 
 #if GLINT_FIRST_LOCAL
@@ -8,32 +9,31 @@ shared uint blockBegins[kBuckets];
 
 void main() {
     uint elements = firstElements();
-    CounterArray cursors = GLINT_FRAME.bucketCursors;
     OrderedArray slots = GLINT_FRAME.orderedHits;
     uint buckets[kFirstPixelsOfThread];
     for (uint k = 0u; k < kFirstPixelsOfThread; ++k) {
         uint element = firstElement(k);
-        buckets[k] = element < elements ? storedKey(element) : kNoBucket;
+        buckets[k] = element < elements ? storedKey(element) : kNoGroup;
     }
     uint numbers[kFirstPixelsOfThread];
 #if GLINT_FIRST_LOCAL
     clearBlock();
 #endif
     for (uint k = 0u; k < kFirstPixelsOfThread; ++k) {
-        numbers[k] = addToBuckets(cursors, buckets[k]);
+        numbers[k] = numberInGroup(buckets[k]);
     }
 #if GLINT_FIRST_LOCAL
     barrier();
     for (uint bucket = gl_LocalInvocationIndex; bucket < kBuckets; bucket += kFirstGroupSize) {
         uint count = blockCounts[bucket];
         if (count > 0u) {
-            blockBegins[bucket] = GLINT_FRAME.bucketBegins.data[bucket] + atomicAdd(cursors.data[bucket], count);
+            blockBegins[bucket] = GLINT_FRAME.bucketBegins.data[bucket] + atomicAdd(GLINT_FIRST_COUNTERS.data[bucket], count);
         }
     }
     barrier();
 #endif
     for (uint k = 0u; k < kFirstPixelsOfThread; ++k) {
-        if (buckets[k] != kNoBucket) {
+        if (buckets[k] != kNoGroup) {
 #if GLINT_FIRST_LOCAL
             uint begin = blockBegins[buckets[k]];
 #else

@@ -1,6 +1,7 @@
 #version 460
 // Finds the bucket of each pixel of a band, by the surface that it sees, and counts the pixels of each. Pixels without a
 // surface, and those beyond the picture in its last tiles, are in bucket 0.
+#define GLINT_FIRST_COUNTERS GLINT_FRAME.bucketCounts
 #include "first/first_order.glsl"
 #include "hit/images.glsl"
 #include "hit/record.glsl"
@@ -9,7 +10,7 @@ shared uint blockKeys[kBlock];
 
 uint bucketOfElement(uint element, uint elements) {
     if (element >= elements) {
-        return kNoBucket;
+        return kNoGroup;
     }
     uvec2 pixel = listedPixel(element);
     return bucketOfGeometry(isInPicture(pixel) ? imageLoad(surfaceImage, ivec2(pixel)).x : kNoSurface);
@@ -30,7 +31,6 @@ void storeKeys() {
 
 void main() {
     uint elements = firstElements();
-    CounterArray counts = GLINT_FRAME.bucketCounts;
     uint buckets[kFirstPixelsOfThread];
     for (uint k = 0u; k < kFirstPixelsOfThread; ++k) {
         buckets[k] = bucketOfElement(firstElement(k), elements);
@@ -42,14 +42,14 @@ void main() {
     barrier();
 #endif
     for (uint k = 0u; k < kFirstPixelsOfThread; ++k) {
-        addToBuckets(counts, buckets[k]);
+        numberInGroup(buckets[k]);
     }
     storeKeys();
 #if GLINT_FIRST_LOCAL
     barrier();
     for (uint bucket = gl_LocalInvocationIndex; bucket < kBuckets; bucket += kFirstGroupSize) {
         if (blockCounts[bucket] > 0u) {
-            atomicAdd(counts.data[bucket], blockCounts[bucket]);
+            atomicAdd(GLINT_FIRST_COUNTERS.data[bucket], blockCounts[bucket]);
         }
     }
 #endif

@@ -1,6 +1,6 @@
 // shadeFirst(): the light of a surface that the camera sees, and the samples that effects take there.
+#include "first/first_store.glsl"
 #include "generated/effects.glsl"
-#include "hit/images.glsl"
 #include "hit/primary.glsl"
 #include "hit/shade.glsl"
 #include "light/direct.glsl"
@@ -19,17 +19,6 @@ vec3 scatteredBy(Hit hit, Surface surface, Features features, SkyShares sky) {
     return direct + ambient;
 #else
     return directLight(hit, surface, features) + ambientLight(surface, features, hit.view, sky);
-#endif
-}
-
-// Stores the light that leaves the surface of a pixel, without that of rays, and its distance. `origin` is where rays
-// leave the surface.
-void storeFirst(ivec2 place, vec3 radiance, float depth, vec4 origin) {
-    imageStore(radianceImage, place, storable(vec4(radiance, depth * GLINT_FRAME.perLengthUnit)));
-#if GLINT_STARTS_ON_SCREEN
-    if (GLINT_FRAME.screenSteps != 0u) {
-        imageStore(positionImage, place, origin);
-    }
 #endif
 }
 

@@ -4,7 +4,7 @@
 #include "generated/skip_effects.glsl"
 #include "hit/camera.glsl"
 #include "first/first_list.glsl"
-#include "hit/images.glsl"
+#include "first/first_store.glsl"
 #include "hit/answer_radiance.glsl"
 #if GLINT_SURFACE_LAYERS
 #include "generated/surface_layers.glsl"
@@ -41,10 +41,5 @@ void main() {
 #if GLINT_SURFACE_LAYERS
     storeSkyLayers(place, ray.direction, radiance);
 #endif
-    imageStore(radianceImage, place, storable(vec4(radiance, 0.0)));
-#if GLINT_STARTS_ON_SCREEN
-    if (GLINT_FRAME.screenSteps != 0u) {
-        imageStore(positionImage, place, vec4(0.0));
-    }
-#endif
+    storeFirst(place, radiance, 0.0, vec4(0.0));
 }

@@ -1,10 +1,6 @@
 // Sorts the rays of a workgroup by direction before they join the list, so that neighbours in the list walk through the
 // same parts of the acceleration structure. The workgroup must have at least kMaxDirectionBins threads, and all of them
 // must call.
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_ballot : require
-#extension GL_KHR_shader_subgroup_arithmetic : require
-
 #include "hit/bindings.glsl"
 #include "order/direction_bin.glsl"
 
@@ -12,28 +8,8 @@ shared uint binCounts[kMaxDirectionBins];
 shared uint binBegins[kMaxDirectionBins];  // begin of a bin's rays among those of the workgroup
 shared uint groupBegin;                    // begin of the workgroup's rays in the list
 
-// The bin of a thread without a ray. It is above every other bin.
-const uint kNoBin = 0xFFFFFFFFu;
-
-// Returns the number of this thread's ray among those of its bin. Conditions are equal in all threads of a subgroup; it
-// takes one atomic for each bin that a subgroup has.
-uint numberInBin(uint bin) {
-    uint number = 0u;
-    uint next = subgroupMin(bin);
-    while (next != kNoBin) {
-        bool counted = bin == next;
-        uvec4 lanes = subgroupBallot(counted);
-        uint first = 0u;
-        if (subgroupElect()) {
-            first = atomicAdd(binCounts[next], subgroupBallotBitCount(lanes));
-        }
-        first = subgroupBroadcastFirst(first) + subgroupBallotExclusiveBitCount(lanes);
-        number = counted ? first : number;
-        bin = counted ? kNoBin : bin;
-        next = subgroupMin(bin);
-    }
-    return number;
-}
+#define GLINT_COUNT_OF(bin) binCounts[bin]
+#include "order/numbering.glsl"
 
 // Returns the slot in the list of a thread's ray, and counts the rays in kCounterRays with one atomic for each
 // workgroup. The slot is undefined for a thread without a ray.
@@ -43,8 +19,8 @@ uint binnedSlot(bool hasRay, vec3 direction) {
         binCounts[thread] = 0u;
     }
     barrier();
-    uint bin = hasRay ? directionBin(direction, GLINT_FRAME.binning) : kNoBin;
-    uint number = numberInBin(bin);
+    uint bin = hasRay ? directionBin(direction, GLINT_FRAME.binning) : kNoGroup;
+    uint number = numberInGroup(bin);
     barrier();
     if (thread < kMaxDirectionBins) {
         uint begin = 0u;
