@@ -174,7 +174,8 @@ TEST_F(Background, AHostMayAskForNoDraft) {
     const PipelineProgress progress = renderer->pipelineProgress();
     EXPECT_FALSE(progress.draft);
     EXPECT_EQ(progress.drafts, 0U);
-    EXPECT_EQ(progress.wanted, loaded_->package().caseCount());
+    // Each case has a pipeline for first hits and one for hits of rays.
+    EXPECT_EQ(progress.wanted, 2 * loaded_->package().caseCount());
     expectNoValidationMessages();
 }
 
