@@ -35,8 +35,7 @@ GROUPS = [
     ("sorted uber", r"SortedShade"),
     ("hit shaders", r"HitTrace"),
     ("trace", r"Trace$"),
-    ("lighting", r"Lighting$"),  # of measurements before first hits were shaded by case
-    ("first hits", r"FirstHit |first \S"),
+    ("first hits", r"Lighting$|FirstHit |first \S"),  # `Lighting` shaded those of all cases
     ("walk", r"EffectWalk"),
     ("all others", r""),
 ]
