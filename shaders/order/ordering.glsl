@@ -3,20 +3,16 @@
 // GLINT_HITS_NUMBERED, which says whether it needs each hit's number in its bucket. The ordering tile-sort is separate:
 // order/tile_sort.glsl.
 //
-// Threads beyond the list take part with kNoBucket, so no thread may have returned before. Subgroups may have 1 to 128
+// Threads beyond the list take part with kNoGroup, so no thread may have returned before. Subgroups may have 1 to 128
 // threads. Conditions of loops are equal in all threads of a subgroup, and no subgroup operation stands in a branch
 // that divides one. Only basic, ballot and arithmetic operations are used, because not every device has shuffles.
-#extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_ballot : require
-#extension GL_KHR_shader_subgroup_arithmetic : require
-
 #include "hit/bindings.glsl"
 
-// The bucket of a thread without a hit. It is above every other bucket.
-const uint kNoBucket = 0xFFFFFFFFu;
+#define GLINT_COUNT_OF(bucket) GLINT_FRAME.GLINT_BUCKET_WORDS.data[bucket]
+#include "order/numbering.glsl"
 
 uint addToBucket(uint bucket, uint hits) {
-    return atomicAdd(GLINT_FRAME.GLINT_BUCKET_WORDS.data[bucket], hits);
+    return atomicAdd(GLINT_COUNT_OF(bucket), hits);
 }
 
 // Adds to a bucket that is the same in the whole subgroup, and gives each thread the number of the first hit. The first
@@ -35,24 +31,14 @@ uint addForSubgroup(uint bucket, uint hits) {
 #if GLINT_ORDERING == 0  // global-atomics
 
 uint addHit(uint bucket) {
-    return bucket != kNoBucket ? addToBucket(bucket, 1u) : 0u;
+    return bucket != kNoGroup ? addToBucket(bucket, 1u) : 0u;
 }
 
 #elif GLINT_ORDERING == 1  // wave-loop
 
 // Loops over the buckets in the subgroup, in ascending order.
 uint addHit(uint bucket) {
-    uint number = 0u;
-    uint next = subgroupMin(bucket);
-    while (next != kNoBucket) {
-        bool added = bucket == next;
-        uvec4 lanes = subgroupBallot(added);
-        uint first = addForSubgroup(next, subgroupBallotBitCount(lanes)) + subgroupBallotExclusiveBitCount(lanes);
-        number = added ? first : number;
-        bucket = added ? kNoBucket : bucket;
-        next = subgroupMin(bucket);
-    }
-    return number;
+    return numberInGroup(bucket);
 }
 
 #elif GLINT_ORDERING == 2  // wave-aggregated
@@ -81,7 +67,7 @@ shared uint firstNumbers[kRayGroupSize];  // by leader; there are at most as man
 
 // The lanes whose hits go to this lane's bucket: those that agree in each bit of the bucket's number.
 uvec4 lanesOfBucket(uint bucket) {
-    uvec4 lanes = subgroupBallot(bucket != kNoBucket);
+    uvec4 lanes = subgroupBallot(bucket != kNoGroup);
     for (uint bit = 1u; bit <= GLINT_CASE_COUNT; bit <<= 1u) {
         bool isSet = (bucket & bit) != 0u;
         uvec4 set = subgroupBallot(isSet);
@@ -100,7 +86,7 @@ uvec4 lanesBelow(uint lane) {
 // on through shared memory: lanes of different buckets read from different leaders, which would otherwise take a
 // shuffle.
 uint addHit(uint bucket) {
-    bool hasHit = bucket != kNoBucket;
+    bool hasHit = bucket != kNoGroup;
     uvec4 lanes = lanesOfBucket(bucket);
     uint rank = subgroupBallotExclusiveBitCount(lanes);
     bool leads = hasHit && rank == 0u;
@@ -138,7 +124,7 @@ shared uint localCounts[min(GLINT_CASE_COUNT + 1u, kMaxLocalBuckets)];
 
 // Only the counts of buckets that the workgroup has are touched, so the work does not grow with the number of buckets.
 uint addHit(uint bucket) {
-    bool hasHit = bucket != kNoBucket;
+    bool hasHit = bucket != kNoGroup;
     if (hasHit) {
         atomicExchange(localCounts[bucket], 0u);
     }

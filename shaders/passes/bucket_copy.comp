@@ -11,7 +11,7 @@ layout(local_size_x = kRayGroupSize) in;
 void main() {
     uint index = listIndex();
     bool hasHit = index < GLINT_FRAME.rayDispatch.data[0].elementCount;
-    uint bucket = hasHit ? storedKey(index) : kNoBucket;
+    uint bucket = hasHit ? storedKey(index) : kNoGroup;
     uint number = addHit(bucket);
     if (hasHit) {
         GLINT_FRAME.orderedHits.data[GLINT_FRAME.bucketBegins.data[bucket] + number] = index;

@@ -10,5 +10,5 @@ layout(local_size_x = kRayGroupSize) in;
 
 void main() {
     uint index = listIndex();
-    addHit(index < GLINT_FRAME.rayDispatch.data[0].elementCount ? storedKey(index) : kNoBucket);
+    addHit(index < GLINT_FRAME.rayDispatch.data[0].elementCount ? storedKey(index) : kNoGroup);
 }
