@@ -27,7 +27,8 @@ void main() {
     for (uint bucket = gl_LocalInvocationIndex; bucket < kBuckets; bucket += kFirstGroupSize) {
         uint count = blockCounts[bucket];
         if (count > 0u) {
-            blockBegins[bucket] = GLINT_FRAME.bucketBegins.data[bucket] + atomicAdd(GLINT_FIRST_COUNTERS.data[bucket], count);
+            uint before = atomicAdd(GLINT_FIRST_COUNTERS.data[bucket], count);
+            blockBegins[bucket] = GLINT_FRAME.bucketBegins.data[bucket] + before;
         }
     }
     barrier();
