@@ -1,5 +1,5 @@
-// Numbers elements in groups, with one atomic for each group that a subgroup has. Before it includes this file, a module
-// defines GLINT_COUNT_OF(group), the counter of a group.
+// Numbers elements in groups, with one atomic for each group that a subgroup has. Before it includes this file, a
+// module defines GLINT_COUNT_OF(group), the counter of a group.
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
