@@ -54,11 +54,33 @@ void ModelBuilder::readNeeds(const Members& members, Feature& feature) {
         if (need == "tangents") {
             feature.needsTangents = true;
         } else if (need == "texCoord0" || need == "texCoord1") {
-            feature.needsTexCoord = need == "texCoord1" ? 1 : 0;
+            const int set = need == "texCoord1" ? 1 : 0;
+            if (feature.needsTexCoord >= 0 && feature.needsTexCoord != set) {
+                failAt(members.at("needs"), "a feature can read one UV set beyond those of its textures");
+            }
+            feature.needsTexCoord = set;
         } else {
             failAt(members.at("needs"),
                    fmt::format("\"{}\" is none of \"tangents\", \"texCoord0\" and \"texCoord1\"", need));
         }
+    }
+}
+
+void ModelBuilder::checkOwn(const Members& members, bool hasOwn) {
+    for (const char* const member :
+         {"lit", "given", "needs", "draft", "ofBase", "cost", "order", "gltf", "excludes"}) {
+        if (!hasOwn && members.has(member)) {
+            failAt(members.at(member), "is of a feature of the declaration's own, and it has none",
+                   "give the declaration \"extension\" or \"neutral\"");
+        }
+    }
+    if (hasOwn && !members.has("extension") && members.list("neutral").empty()) {
+        failAt(members.where(), "every material would have its feature, as no reason leaves it out",
+               "give the declaration \"extension\", or a reason in \"neutral\"");
+    }
+    if (members.has("replaces") && !members.has("extension") && !members.has("object")) {
+        failAt(members.at("replaces"), "every material would lose what it replaces",
+               "give the declaration \"extension\" or \"object\"");
     }
 }
 
@@ -75,6 +97,7 @@ void ModelBuilder::collect(File& file) {
                   : members.has("object")  ? addObject(members.text("object"), false)
                                            : 0;
     const bool hasOwn = members.has("short") || members.has("neutral") || members.has("extension");
+    checkOwn(members, hasOwn);
     if (hasOwn) {
         Feature feature;
         feature.name = name;
@@ -302,6 +325,13 @@ void ModelBuilder::collectAliases(const File& file) {
         const Members alias(*json, where, kParameterMembers);
         if (!alias.has("is")) {
             continue;
+        }
+        for (const char* const member : {"range", "also", "type", "unit", "record"}) {
+            if (alias.has(member)) {
+                failAt(alias.at(member),
+                       fmt::format("is that of \"{}\", whose value this is", alias.text("is")),
+                       "leave it out");
+            }
         }
         const std::string name = newName(alias);
         const int target = model_.findParameter(alias.text("is"));

@@ -384,6 +384,10 @@ void ModelBuilder::linkBase(const File& file, const Members& members) {
         if (object < 0) {
             failAt(replaces.at("object"), "no declaration has this object");
         }
+        const auto other = std::ranges::find(model_.objects, object, &MaterialObject::replaces);
+        if (other != model_.objects.end()) {
+            failAt(members.at("replaces"), fmt::format("{} replaces it, too", other->name));
+        }
         MaterialObject& owner = model_.objects[static_cast<std::size_t>(file.object)];
         owner.replaces = object;
         if (replaces.has("sets")) {

@@ -103,6 +103,9 @@ private:
 
     int addFeature(const Members& members, Feature feature, bool isLit);
     static void readNeeds(const Members& members, Feature& feature);
+    // Refuses members that would have no effect, or one on every material. `hasOwn`: the declaration has a
+    // feature of its own.
+    static void checkOwn(const Members& members, bool hasOwn);
     void collect(File& file);
     Parameter makeParameter(const File& file, const Members& members, const std::string& name, int channels);
     static void readDefault(const Members& members, Parameter& parameter);

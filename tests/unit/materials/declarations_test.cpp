@@ -159,6 +159,62 @@ TEST(Declarations, SayWhatIsWrongAndWhere) {
     EXPECT_NE(refusal(std::string(2000, '[')).find("nests too deep"), std::string::npos);
 }
 
+// Each member that says something of the declaration's own feature, where there is none. "excludes" read out
+// of bounds once.
+TEST(Declarations, MembersOfAFeatureNeedOne) {
+    for (const std::string member :
+         {R"("lit": false)", R"("given": "doubleSided")", R"("needs": "tangents")", R"("draft": true)",
+          R"("ofBase": true)", R"("cost": {"instructions": 1, "fetches": 0})", R"("order": 3)",
+          R"("gltf": "somewhere")", R"("excludes": {"stage": "layer", "because": "it is wet"})"}) {
+        const std::string name = member.substr(1, member.find('"', 1) - 1);
+        const std::string without = R"({"name": "wet", "stage": "layer", "parameters": [
+            {"name": "wetness", "type": "float", "default": 0, "range": [0, 1]}], )" +
+                                    member;
+        EXPECT_EQ(refusal(without + "}"), "materials/wet/wet.json#/" + name +
+                                              ": is of a feature of the declaration's own, and it has none");
+        const Result<materials::MaterialModel> model =
+            modelWith(without + R"(, "neutral": [{"when": "wetness == 0", "because": "wetness is 0"}]})");
+        EXPECT_TRUE(model.ok()) << member;
+    }
+}
+
+TEST(Declarations, NoMaterialGetsAFeatureUnasked) {
+    for (const std::string member : {R"("short": "Wet")", R"("neutral": [])"}) {
+        EXPECT_NE(refusal(R"({"name": "wet", "stage": "layer", )" + member + "}")
+                      .find("every material would have its feature"),
+                  std::string::npos)
+            << member;
+    }
+    const auto replacing = [](const std::string& name, const std::string& owner) {
+        return R"({"name": ")" + name + R"(", "stage": "base", )" + owner +
+               R"("replaces": {"object": "pbrMetallicRoughness"}})";
+    };
+    EXPECT_NE(refusal(replacing("wet", "")).find("#/replaces: every material would lose"), std::string::npos);
+    EXPECT_NE(refusal(replacing("wet", R"("extension": "EXT_wet", )")).find("replaces it, too"),
+              std::string::npos);
+}
+
+TEST(Declarations, AliasesHaveNoRangeOfTheirOwn) {
+    const auto alias = [](const std::string& members) {
+        return R"({"name": "wet", "stage": "layer", "object": "wetness", "parameters": [
+            {"name": "dampness", "is": "metallicFactor", "default": 0)" +
+               members + "}]}";
+    };
+    EXPECT_TRUE(modelWith(alias("")).ok());
+    for (const std::string member : {R"("range": [0, 2])", R"("also": [3])", R"("type": "vec2")",
+                                     R"("unit": "radians")", R"("record": false)"}) {
+        EXPECT_NE(refusal(alias(", " + member)).find("is that of \"metallicFactor\""), std::string::npos)
+            << member;
+    }
+}
+
+TEST(Declarations, AFeatureReadsOneUvSetOfItsOwn) {
+    EXPECT_NE(refusal(R"({"name": "wet", "stage": "layer", "extension": "EXT_wet",
+                          "needs": ["texCoord0", "texCoord1"]})")
+                  .find("#/needs: a feature can read one UV set"),
+              std::string::npos);
+}
+
 constexpr std::string_view kGlow = R"({
     "name": "glow",
     "about": "It glows.",
