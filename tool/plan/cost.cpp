@@ -164,4 +164,25 @@ CodeEstimate estimateCode(materials::FeatureMask always, materials::FeatureMask 
     return estimate;
 }
 
+CaseCode codeOf(const KeySet& keys) {
+    const materials::FeatureMask sometimes = keys.any & ~keys.always;
+    const double factor = sometimes != 0 ? keys.branchFactor : 1.0;
+    const auto shareOf = [&](const materials::Feature& feature) {
+        return keys.share > 0.0 ? keys.shareWith[static_cast<std::size_t>(feature.bit)] / keys.share : 1.0;
+    };
+    CaseCode code{estimateCode(keys.always, sometimes, *keys.model), {}};
+    forEachFeature(*keys.model, sometimes, [&](const materials::Feature& feature) {
+        code.always.instructions -= feature.cost.instructions;
+        code.always.fetches -= feature.cost.fetches;
+        code.parts.push_back({shareOf(feature), factor * feature.cost.instructions, feature.cost.fetches});
+        if ((feature.mask() & keys.model->unlit) != 0) {
+            code.always.instructions -= fitted::kLitInstructions;
+            const double lit = keys.share > 0.0 ? 1.0 - shareOf(feature) : 1.0;
+            code.parts.push_back({lit, factor * fitted::kLitInstructions, 0.0});
+        }
+    });
+    code.always.instructions *= factor;
+    return code;
+}
+
 }  // namespace glint::compiler

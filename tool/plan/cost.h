@@ -25,6 +25,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 namespace glint::compiler {
 
@@ -85,5 +86,20 @@ struct CodeEstimate {
 };
 CodeEstimate estimateCode(materials::FeatureMask always, materials::FeatureMask sometimes,
                           const materials::MaterialModel& model = materials::builtinMaterialModel());
+
+// Code that some hits of a case run, and others don't.
+struct PartialCode {
+    double share = 0.0;  // of the case's hits
+    double instructions = 0.0;
+    double fetches = 0.0;
+};
+
+// The estimated code of a case, by the hits that run it.
+struct CaseCode {
+    CodeEstimate always;  // which all of its hits run, tests of branches included
+    std::vector<PartialCode> parts;
+};
+// If nothing hits the case, all of its hits are expected to run everything.
+CaseCode codeOf(const KeySet& keys);
 
 }  // namespace glint::compiler

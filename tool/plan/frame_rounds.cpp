@@ -44,6 +44,9 @@ void join(Round& all, const Round& round) {
 std::vector<RoundCase> casesOfPaths(std::vector<RoundCase> cases) {
     for (RoundCase& one : cases) {
         one.instructions *= kPathCode;
+        for (PartialCode& part : one.parts) {
+            part.instructions *= kPathCode;
+        }
     }
     return cases;
 }
@@ -68,51 +71,68 @@ void addBounces(std::vector<Round>& rounds, Round round, std::uint32_t bounces) 
 
 }  // namespace
 
-std::vector<CaseFeatures> caseFeatures(const Plan& plan) {
-    std::vector<CaseFeatures> cases;
+std::vector<WeightedKey> keysOfScene(const Plan& plan, const PlanOptions& options,
+                                     std::span<const materials::PrimitiveInputs> primitives,
+                                     std::size_t first) {
+    std::vector<WeightedKey> keys = weightedKeys(plan, options);
+    for (WeightedKey& key : keys) {
+        key.share = 0.0;
+    }
+    const bool counted = countsHits(options);
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+        const auto index = static_cast<std::size_t>(plan.keyOfPrimitive[first + i]);
+        const Key& key = plan.keys[index];
+        // A count belongs to a key, so the primitives of the key share it.
+        const double share = key.share / static_cast<double>(key.primitives.size());
+        keys[index].share += counted ? share : std::max(0.0, primitives[i].expectedHits);
+    }
+    return keys;
+}
+
+std::vector<KeySet> caseKeys(const Plan& plan, std::span<const WeightedKey> keys) {
+    std::vector<KeySet> cases;
     for (const Case& shaderCase : plan.cases) {
-        cases.push_back({shaderCase.always, shaderCase.sometimes, shaderCase.isRetired()});
+        if (!shaderCase.isRetired()) {
+            cases.push_back(toSet(shaderCase.keys, keys));
+        }
     }
     return cases;
 }
 
-std::vector<CaseHits> caseHits(const Plan& plan, const PlanOptions& options,
-                               std::span<const materials::PrimitiveInputs> primitives, std::size_t first) {
-    const bool counted = countsHits(options);
-    std::vector<CaseHits> hits;
-    for (std::size_t i = 0; i < primitives.size(); ++i) {
-        const Key& key = plan.keys[static_cast<std::size_t>(plan.keyOfPrimitive[first + i])];
-        // A count belongs to a key, so the primitives of the key share it.
-        const double share = key.share / static_cast<double>(key.primitives.size());
-        hits.push_back({key.shaderId, counted ? share : std::max(0.0, primitives[i].expectedHits)});
-    }
-    return hits;
-}
-
-std::vector<RoundCase> roundCases(std::span<const CaseFeatures> cases, std::span<const CaseHits> hits,
-                                  const materials::MaterialModel& model) {
+std::vector<KeySet> caseKeys(std::span<const CaseFeatures> cases, std::span<const CaseHits> hits,
+                             const materials::MaterialModel& model) {
     std::vector<double> byCase(cases.size());
-    double all = 0.0;
     for (const CaseHits& entry : hits) {
         byCase[static_cast<std::size_t>(entry.shaderId)] += entry.hits;
-        all += entry.hits;
     }
-    std::vector<RoundCase> result;
+    std::vector<KeySet> sets;
     for (std::size_t i = 0; i < cases.size(); ++i) {
         if (!cases[i].retired) {
-            const CodeEstimate code = estimateCode(cases[i].always, cases[i].sometimes, model);
-            result.push_back({all > 0.0 ? byCase[i] / all : 0.0, code.instructions, code.fetches});
+            KeySet& set = sets.emplace_back(
+                toSet(WeightedKey{cases[i].always | cases[i].sometimes, byCase[i], &model}));
+            set.always = cases[i].always;
         }
     }
-    for (RoundCase& entry : result) {
-        entry.share = all > 0.0 ? entry.share : 1.0 / static_cast<double>(result.size());
+    return sets;
+}
+
+std::vector<RoundCase> roundCases(std::span<const KeySet> cases) {
+    double all = 0.0;
+    for (const KeySet& keys : cases) {
+        all += keys.share;
+    }
+    std::vector<RoundCase> result;
+    for (const KeySet& keys : cases) {
+        CaseCode code = codeOf(keys);
+        result.push_back({all > 0.0 ? keys.share / all : 1.0 / static_cast<double>(cases.size()),
+                          code.always.instructions, code.always.fetches, std::move(code.parts)});
     }
     return result;
 }
 
 std::vector<Round> frameRounds(std::span<const materials::Material> materials,
                                std::span<const materials::PrimitiveInputs> primitives,
-                               const std::vector<RoundCase>& cases, const FrameShape& shape) {
+                               const FrameShape& shape) {
     const std::vector<double> shares = surfaceShares(primitives);
     std::vector<Round> rounds;
     const materials::MaterialModel& model =
@@ -123,7 +143,7 @@ std::vector<Round> frameRounds(std::span<const materials::Material> materials,
             effect.kind != package::EffectKind::Rays) {
             continue;
         }
-        Round round{0.0, kRayHitShare, 0.0, 0.0, shape.bounces > 1 ? casesOfPaths(cases) : cases};
+        Round round{0.0, kRayHitShare, 0.0, 0.0, {}};
         double senders = 0.0;  // share of the surfaces in the picture that send rays
         for (std::size_t i = 0; i < primitives.size(); ++i) {
             const materials::Material& material = materials[static_cast<std::size_t>(primitives[i].material)];
@@ -150,6 +170,12 @@ std::vector<Round> frameRounds(std::span<const materials::Material> materials,
         addBounces(rounds, rounds[i], shape.bounces);
     }
     return rounds;
+}
+
+void setCases(std::vector<Round>& rounds, const std::vector<RoundCase>& cases, const FrameShape& shape) {
+    for (Round& round : rounds) {
+        round.cases = shape.bounces > 1 ? casesOfPaths(cases) : cases;
+    }
 }
 
 }  // namespace glint::compiler

@@ -38,6 +38,9 @@ inline constexpr double kPathCoherence = 0.1;
 // The shaders of packages with paths also choose and weigh the next ray over all lobes of a hit. Instructions
 // of a case's SPIR-V over those in a package for one bounce (docs/performance.md says how it was measured).
 inline constexpr double kPathCode = 1.9;
+// The similarity of the hits of neighbouring pixels: a surface ends at its silhouette alone.
+inline constexpr double kScreenCoherence = 0.9;
+
 // The share of light that remains after a bounce. Russian roulette keeps a path with the probability of its
 // throughput: once after three bounces, for all three, and then after each further bounce for that one
 // (docs/paths.md).
@@ -51,34 +54,42 @@ struct FrameShape {
     std::uint32_t bounces = 1;  // the most of a path
 };
 
-// The features of a case's shader. A retired case has none, and no code.
+// Returns the plan's keys with their hits in one scene: those of the plan's primitives from index `first` on,
+// as many as `primitives` has. They are counted by the profile if options has hits; otherwise they are those
+// that the primitives expect.
+std::vector<WeightedKey> keysOfScene(const Plan& plan, const PlanOptions& options,
+                                     std::span<const materials::PrimitiveInputs> primitives,
+                                     std::size_t first);
+// Returns the keys of each case that is not retired, with their hits.
+std::vector<KeySet> caseKeys(const Plan& plan, std::span<const WeightedKey> keys);
+
+// The features of a case of a finished package, whose keys are not known. A retired case has no code.
 struct CaseFeatures {
     materials::FeatureMask always = 0;
     materials::FeatureMask sometimes = 0;
     bool retired = false;
 };
-std::vector<CaseFeatures> caseFeatures(const Plan& plan);
-
 // The hits of a case, in proportion to those of others.
 struct CaseHits {
     int shaderId = 0;  // the ID of a case that is not retired
     double hits = 0.0;
 };
-// Returns the hits of the plan's primitives from index `first` on, as many as `primitives` has. They are
-// counted by the profile if options has hits; otherwise they are those that the primitives expect.
-std::vector<CaseHits> caseHits(const Plan& plan, const PlanOptions& options,
-                               std::span<const materials::PrimitiveInputs> primitives, std::size_t first);
+// Returns each case that is not retired. All of its hits have all of its features, as nothing else is known.
+// `cases` is indexed by shader ID.
+std::vector<KeySet> caseKeys(std::span<const CaseFeatures> cases, std::span<const CaseHits> hits,
+                             const materials::MaterialModel& model);
 
-// Returns every case that is not retired, with its share of the hits and its estimated code. Shares are equal
-// if nothing is known. `cases` is indexed by shader ID.
-std::vector<RoundCase> roundCases(std::span<const CaseFeatures> cases, std::span<const CaseHits> hits,
-                                  const materials::MaterialModel& model = materials::builtinMaterialModel());
+// Returns the cases with their shares of the hits and their estimated code. Shares are equal if nothing is
+// known.
+std::vector<RoundCase> roundCases(std::span<const KeySet> cases);
 
 // Returns one round for each effect that sends rays, in the order of the effects, or one round for all
-// effects; then one round for each further bounce of these rounds. `primitives` are those of one scene; their
-// materials index `materials`.
+// effects; then one round for each further bounce of these rounds. They have no cases yet. `primitives` are
+// those of one scene; their materials index `materials`.
 std::vector<Round> frameRounds(std::span<const materials::Material> materials,
                                std::span<const materials::PrimitiveInputs> primitives,
-                               const std::vector<RoundCase>& cases, const FrameShape& shape);
+                               const FrameShape& shape);
+// Gives rounds of a frame of that shape their cases.
+void setCases(std::vector<Round>& rounds, const std::vector<RoundCase>& cases, const FrameShape& shape);
 
 }  // namespace glint::compiler

@@ -1,5 +1,7 @@
 #include "plan/merge.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cassert>
@@ -11,6 +13,7 @@ namespace glint::compiler {
 
 namespace {
 
+constexpr std::string_view kLeastInVain = "least in vain";
 constexpr std::size_t kNobody = std::numeric_limits<std::size_t>::max();
 
 struct Group {
@@ -405,6 +408,17 @@ std::vector<CaseKeys> mergeBy(Keys keys, MergePolicy merge, int maxCases) {
     return mergeByHits(keys, maxCases);
 }
 
+std::vector<CaseKeys> inOrder(std::vector<CaseKeys> cases, bool namesSingles) {
+    for (CaseKeys& shaderCase : cases) {
+        std::ranges::sort(shaderCase.keys);
+        if (shaderCase.keys.size() == 1 && namesSingles) {
+            shaderCase.reason = CaseReason::Own;
+        }
+    }
+    std::ranges::sort(cases, {}, [](const CaseKeys& shaderCase) { return shaderCase.keys.front(); });
+    return cases;
+}
+
 }  // namespace
 
 std::vector<CaseKeys> mergeKeys(std::span<const WeightedKey> keys, MergePolicy merge, int maxCases) {
@@ -412,15 +426,32 @@ std::vector<CaseKeys> mergeKeys(std::span<const WeightedKey> keys, MergePolicy m
     if (keys.empty()) {
         return {};
     }
-    std::vector<CaseKeys> cases = mergeBy(keys, merge, maxCases);
-    for (CaseKeys& shaderCase : cases) {
-        std::ranges::sort(shaderCase.keys);
-        if (shaderCase.keys.size() == 1 && merge != MergePolicy::Profile) {
-            shaderCase.reason = CaseReason::Own;
+    return inOrder(mergeBy(keys, merge, maxCases), merge != MergePolicy::Profile);
+}
+
+std::vector<MergeCandidate> mergeCandidates(std::span<const WeightedKey> keys, int maxCases) {
+    assert(maxCases >= 1);
+    const auto most = static_cast<std::size_t>(maxCases);
+    std::vector<MergeCandidate> candidates{
+        {std::string(kLeastInVain), mergeKeys(keys, MergePolicy::Auto, maxCases)}};
+    for (const MergePolicy merge : {MergePolicy::None, MergePolicy::Family, MergePolicy::All}) {
+        std::vector<CaseKeys> cases = mergeKeys(keys, merge, maxCases);
+        const auto same = std::ranges::find_if(candidates, [&](const MergeCandidate& other) {
+            return std::ranges::equal(other.cases, cases, {}, &CaseKeys::keys, &CaseKeys::keys);
+        });
+        if (same != candidates.end()) {
+            same->name = same->name == kLeastInVain ? std::string(nameOf(merge)) : same->name;
+        } else if (cases.size() <= most) {
+            candidates.push_back({std::string(nameOf(merge)), std::move(cases)});
         }
     }
-    std::ranges::sort(cases, {}, [](const CaseKeys& shaderCase) { return shaderCase.keys.front(); });
-    return cases;
+    const std::vector<Cluster> families = groupBy(keys, byShare(keys), materials::kLobeMask);
+    for (std::size_t count = 2; count < families.size() && count <= most; count *= 2) {
+        std::vector<CaseKeys> cases;
+        append(cases, agglomerate(families, keys, static_cast<int>(count)), CaseReason::Cost);
+        candidates.push_back({fmt::format("families in {}", cases.size()), inOrder(std::move(cases), true)});
+    }
+    return candidates;
 }
 
 std::string_view toString(CaseReason reason) {

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -40,14 +41,14 @@ enum class MergePolicy : std::uint8_t {
     None,     // each key has its own case
     Family,   // keys with the same lobes share a case
     All,      // all keys share one case
-    Auto,     // by hits and the cost model of plan/cost.h, within a budget of cases
+    Auto,     // by the time that frames are expected to take, within a budget of cases
     Profile,  // by counted hits: frequent keys have their own case, the others are merged
 };
 inline constexpr Named<MergePolicy> kMergeNames[] = {
     {MergePolicy::None, "none", "every permutation has its own"},
     {MergePolicy::Family, "family", "those with the same lobes share one, which branches on their inputs"},
     {MergePolicy::All, "all", "one shader"},
-    {MergePolicy::Auto, "auto", "decided by a cost model, within --max-shaders"},
+    {MergePolicy::Auto, "auto", "decided for the strategies by a cost model, within --max-shaders"},
     {MergePolicy::Profile, "profile", "those with many counted hits have their own, the others are merged"},
 };
 constexpr std::span<const Named<MergePolicy>> namesOf(MergePolicy /*type*/) {
@@ -58,13 +59,13 @@ constexpr std::span<const Named<MergePolicy>> namesOf(MergePolicy /*type*/) {
 // scenes, and few enough for an uber shader to compile in seconds.
 inline constexpr int kDefaultMaxCases = 32;
 
-// With Auto, keys that can't pay for a case share one. The rarest keys are taken first, as long as together
-// they have at most kRestShare of the hits. Each of them has less than kRareShare: it could then save less
-// than kCaseCost even at 5000 instructions a hit, which is twice as many as the largest shader of one key
-// has.
+// Where cases are chosen by instructions in vain, keys that can't pay for a case share one. The rarest keys
+// are taken first, as long as together they have at most kRestShare of the hits. Each of them has less than
+// kRareShare: it could then save less than kCaseCost even at 5000 instructions a hit, which is twice as many
+// as the largest shader of one key has.
 inline constexpr double kRareShare = kCaseCost / 5000.0;
 inline constexpr double kRestShare = 0.05;
-// The most clusters that Auto starts with, as its time grows with their square. The rarest keys beyond are
+// The most clusters that it starts with, as its time grows with their square. The rarest keys beyond are
 // merged first.
 inline constexpr std::size_t kMaxStart = 512;
 
@@ -90,8 +91,19 @@ struct CaseKeys {
 };
 
 // Returns the cases in ascending order of their smallest keys; every key is in exactly one. `keys` must be
-// ascending by mask. `maxCases` is at least 1; only Auto and Profile read it.
+// ascending by mask. `maxCases` is at least 1; only Auto and Profile read it. Auto makes those with which an
+// average hit runs fewest instructions in vain.
 std::vector<CaseKeys> mergeKeys(std::span<const WeightedKey> keys, MergePolicy merge, int maxCases);
+
+// Cases among which the expected time of a frame decides (plan/frame_time.h).
+struct MergeCandidate {
+    std::string name;  // for people: "family", "families in 4"
+    std::vector<CaseKeys> cases;
+};
+// Returns cases as those of mergeKeys(), each within `maxCases`, which is at least 1: those of None, Family
+// and All, families merged to 2, 4, 8… cases, and those of Auto ("least in vain"), which have the name of
+// another policy if its cases are the same.
+std::vector<MergeCandidate> mergeCandidates(std::span<const WeightedKey> keys, int maxCases);
 
 std::string_view toString(CaseReason reason);  // one word: "cold"
 std::string_view explain(CaseReason reason);   // a sentence without a full stop

@@ -166,12 +166,11 @@ void nameCases(Plan& plan) {
     }
 }
 
-void makeCases(const PlanOptions& options, Plan& plan) {
-    std::vector<WeightedKey> weighted;
-    for (const Key& key : plan.keys) {
-        weighted.push_back({key.mask, key.share, plan.model, options.branchFactor});
-    }
-    std::vector<CaseKeys> merged = mergeKeys(weighted, options.merge, budgetOf(options));
+void makeCases(const PlanOptions& options, const CaseChooser& choose, Plan& plan) {
+    const std::vector<WeightedKey> weighted = weightedKeys(plan, options);
+    std::vector<CaseKeys> merged = options.merge == MergePolicy::Auto && choose
+                                       ? choose(plan)
+                                       : mergeKeys(weighted, options.merge, budgetOf(options));
     const std::vector<int> ids = assignShaderIds(weighted, merged, options.lockedIds);
     const int count = ids.empty() ? 0 : 1 + std::ranges::max(ids);
     plan.cases.resize(static_cast<std::size_t>(count));
@@ -205,10 +204,19 @@ Plan planKeys(std::span<const materials::Material> materials,
     return plan;
 }
 
-Plan planCases(Plan plan, std::span<const materials::PrimitiveInputs> primitives,
-               const PlanOptions& options) {
+std::vector<WeightedKey> weightedKeys(const Plan& plan, const PlanOptions& options) {
+    std::vector<WeightedKey> keys;
+    keys.reserve(plan.keys.size());
+    for (const Key& key : plan.keys) {
+        keys.push_back({key.mask, key.share, plan.model, options.branchFactor});
+    }
+    return keys;
+}
+
+Plan planCases(Plan plan, std::span<const materials::PrimitiveInputs> primitives, const PlanOptions& options,
+               const CaseChooser& choose) {
     shareHits(primitives, options, plan.keys);
-    makeCases(options, plan);
+    makeCases(options, choose, plan);
 
     std::vector<materials::FeatureMask> hitMasks;
     for (const Key& key : plan.keys) {

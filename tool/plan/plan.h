@@ -9,6 +9,7 @@
 #include <glint/layers.h>
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -101,12 +102,20 @@ struct Plan {
 // Returns whether the shares of hits are counted rather than expected from the primitives.
 bool countsHits(const PlanOptions& options);
 
+// Returns the plan's keys as the cost model takes them.
+std::vector<WeightedKey> weightedKeys(const Plan& plan, const PlanOptions& options);
+
+// Returns the cases of a plan whose keys have their shares, for MergePolicy::Auto.
+using CaseChooser = std::function<std::vector<CaseKeys>(const Plan& plan)>;
+
 // Returns a plan with the keys of `primitives`, before hits and cases are known. Requires every
 // PrimitiveInputs::material to index `materials`, and one model for all of these.
 Plan planKeys(std::span<const materials::Material> materials,
               std::span<const materials::PrimitiveInputs> primitives, const materials::KeyOptions& options);
 // Completes what planKeys() returned for `primitives` with options.keys: clusters the keys into cases.
-Plan planCases(Plan keys, std::span<const materials::PrimitiveInputs> primitives, const PlanOptions& options);
+// Without `choose` Auto makes those with which an average hit runs fewest instructions in vain.
+Plan planCases(Plan keys, std::span<const materials::PrimitiveInputs> primitives, const PlanOptions& options,
+               const CaseChooser& choose = {});
 // Does both.
 inline Plan makePlan(std::span<const materials::Material> materials,
                      std::span<const materials::PrimitiveInputs> primitives, const PlanOptions& options) {

@@ -63,23 +63,10 @@ void findNearest(const std::vector<KeySet>& sets, std::vector<CaseCost>& cases) 
     }
 }
 
-PolicyCost costPolicy(Keys keys, MergePolicy merge, int maxCases) {
-    PolicyCost cost{merge};
-    for (const CaseKeys& shaderCase : mergeKeys(keys, merge, maxCases)) {
-        ++cost.cases;
-        cost.inVain += mergingCost(toSet(shaderCase.keys, keys));
-    }
-    return cost;
-}
-
 }  // namespace
 
 PlanCost costPlan(const Plan& plan, const PlanOptions& options) {
-    std::vector<WeightedKey> keys;
-    keys.reserve(plan.keys.size());
-    for (const Key& key : plan.keys) {
-        keys.push_back({key.mask, key.share, plan.model, options.branchFactor});
-    }
+    const std::vector<WeightedKey> keys = weightedKeys(plan, options);
     PlanCost cost;
     std::vector<KeySet> sets;
     for (const Case& shaderCase : plan.cases) {
@@ -98,11 +85,6 @@ PlanCost costPlan(const Plan& plan, const PlanOptions& options) {
         cost.inVain += entry.inVain;
     }
     findNearest(sets, cost.cases);
-    const int budget = options.maxShaders > 0 ? options.maxShaders : kDefaultMaxCases;
-    for (const MergePolicy merge :
-         {MergePolicy::None, MergePolicy::Family, MergePolicy::All, MergePolicy::Auto}) {
-        cost.policies.push_back(costPolicy(keys, merge, budget));
-    }
     return cost;
 }
 

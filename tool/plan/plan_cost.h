@@ -1,6 +1,5 @@
-// The cost of a plan by the model of plan/cost.h, case by case, and the cost of other choices of cases. It
-// explains to people how a plan came about. The unit is that of plan/cost.h: SPIR-V instructions that an
-// average hit runs in vain.
+// The cost of a plan by the model of plan/cost.h, case by case. It explains to people how a plan came about.
+// The unit is that of plan/cost.h: SPIR-V instructions that an average hit runs in vain.
 #pragma once
 
 #include "plan/plan.h"
@@ -43,18 +42,9 @@ struct CaseCost {
     std::optional<NearestCase> nearest;
 };
 
-// The cost of the same keys under another policy. The budget is that of the plan's options, if the policy has
-// one.
-struct PolicyCost {
-    MergePolicy merge{};
-    std::size_t cases = 0;
-    double inVain = 0.0;
-};
-
 struct PlanCost {
     std::vector<CaseCost> cases;  // by shader ID, without retired ones
     double inVain = 0.0;
-    std::vector<PolicyCost> policies;  // None, Family, All, Auto
 };
 
 // Takes O(n^2) steps in the number of cases.

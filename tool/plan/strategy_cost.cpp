@@ -83,13 +83,40 @@ double independentLanes(double subgroupSize, double coherence) {
     return 1.0 + std::max(0.0, subgroupSize - 1.0) * (1.0 - std::clamp(coherence, 0.0, 1.0));
 }
 
-double instructionsRun(const Round& round, double lanes) {
+namespace {
+
+// Returns the chance that one of `lanes` does what each does with the given chance.
+double someLane(double chance, double lanes) {
+    // expm1 and log1p keep the digits that pow would lose for small chances.
+    return chance < 1.0 ? -std::expm1(lanes * std::log1p(-std::max(chance, 0.0))) : 1.0;
+}
+
+double weightOf(const PartialCode& part) {
+    return part.instructions + kFetchCost * part.fetches;
+}
+
+}  // namespace
+
+double unsortedWork(const Round& round, double lanes) {
     double sum = 0.0;
     for (const RoundCase& roundCase : round.cases) {
-        const double chance = std::clamp(round.hitShare * roundCase.share, 0.0, 1.0);
-        // expm1 and log1p keep the digits that pow would lose for small chances.
-        const double some = chance < 1.0 ? -std::expm1(lanes * std::log1p(-chance)) : 1.0;
-        sum += some * weightOf(roundCase);
+        const double chance = round.hitShare * roundCase.share;
+        sum += someLane(chance, lanes) * weightOf(roundCase);
+        for (const PartialCode& part : roundCase.parts) {
+            sum += someLane(chance * part.share, lanes) * weightOf(part);
+        }
+    }
+    return sum;
+}
+
+double sortedWork(const Round& round, double lanes) {
+    double sum = 0.0;
+    for (const RoundCase& roundCase : round.cases) {
+        double work = weightOf(roundCase);
+        for (const PartialCode& part : roundCase.parts) {
+            work += someLane(part.share, lanes) * weightOf(part);
+        }
+        sum += round.hitShare * roundCase.share * work;
     }
     return sum;
 }
@@ -106,8 +133,9 @@ double casesRun(const Round& round, double subgroupSize) {
 
 TermValues termsOf(const Round& round, double subgroupSize) {
     const auto cases = static_cast<double>(round.cases.size());
-    const double together = instructionsRun(round, 1.0);
-    const double apart = instructionsRun(round, independentLanes(subgroupSize, round.coherence));
+    const double lanes = independentLanes(subgroupSize, round.coherence);
+    const double together = sortedWork(round, lanes);
+    const double apart = unsortedWork(round, lanes);
     const double waits = std::max(0.0, apart - together);
     // The order is that of CostTerm.
     return {1.0,
@@ -137,6 +165,22 @@ TermValues estimate(const Round& round, const StrategyCosts& costs, double subgr
 double estimatedMs(const Round& round, const StrategyCosts& costs, double subgroupSize) {
     const TermValues parts = estimate(round, costs, subgroupSize);
     return std::accumulate(parts.begin(), parts.end(), 0.0);
+}
+
+double firstHitsMs(const Round& firstHits, const DeviceCosts& device) {
+    if (device.strategies.empty() || firstHits.rays <= 0.0) {
+        return 0.0;
+    }
+    const auto like = std::ranges::find_if(device.strategies, [](const StrategyCosts& costs) {
+        return package::findStrategy(costs.strategy)->dispatchesCases;
+    });
+    const StrategyCosts& costs = like != device.strategies.end() ? *like : device.strategies.front();
+    const auto constant = [&](CostTerm term) { return costs.constants[static_cast<std::size_t>(term)]; };
+    const double lanes = independentLanes(device.subgroupSize, firstHits.coherence);
+    const double aCase = std::max(constant(CostTerm::Cases), device.onCpu ? 0.0 : kFirstCaseMs);
+    return firstHits.rays * sortedWork(firstHits, lanes) * kFirstHitWork * constant(CostTerm::Instructions) *
+               kPicosecond +
+           static_cast<double>(firstHits.cases.size()) * aCase;
 }
 
 namespace {
@@ -259,7 +303,7 @@ FrameFacts factsOf(std::span<const Round> rounds, double subgroupSize) {
         facts.hits += hits;
         facts.cases = std::max(facts.cases, round.cases.size());
         facts.coherence += round.rays * round.coherence;
-        facts.instructions += round.rays * instructionsRun(round, 1.0);
+        facts.instructions += round.rays * sortedWork(round, 1.0);
         facts.casesRun += hits * casesRun(round, subgroupSize);
     }
     facts.coherence /= std::max(facts.rays, 1e-12);

@@ -1,18 +1,22 @@
 // The time that each strategy takes to shade the hits of a list of rays: the model behind --strategy auto.
 //
-// A round is one list of N rays, of which the share h hits something. Case i gets the share s(i) of the hits,
-// and its shader weighs c(i) = instructions + kFetchCost * fetches. Of the W lanes of a subgroup,
+// A round is one list of N rays, of which the share h hits something. Case i gets the share s(i) of the hits.
+// All of them run c(i) of its code, and the share p(i, j) of them runs part j, c(i, j), of a feature that
+// only some keys of the case have; code weighs instructions + kFetchCost * fetches. Of the W lanes of a
+// subgroup,
 //
 //     g = 1 + (W - 1) * (1 - coherence)
 //
-// are as good as drawn at random; each of the others is like one of them. The chance that some lane hits case
-// i is 1 - (1 - h s(i))^g, and then the whole subgroup runs c(i). A lane's part of the work of its subgroup
-// is therefore
+// are as good as drawn at random; each of the others is like one of them. The chance that some lane does what
+// a lane does with the probability p is r(p) = 1 - (1 - p)^g, and then the whole subgroup waits for it. A
+// lane's part of the work of its subgroup is therefore
 //
-//     E(g) = sum over i of ( 1 - (1 - h s(i))^g ) c(i)          E(1) = h * sum over i of s(i) c(i)
+//     unsorted:  E = sum over i of ( r( h s(i) ) c(i) + sum over j of r( h s(i) p(i, j) ) c(i, j) )
+//     sorted:    T = h * sum over i of s(i) ( c(i) + sum over j of r( p(i, j) ) c(i, j) )
 //
-// E(1) is the work if all lanes of a subgroup have one case, which is the purpose of ordering hits. Unsorted
-// shading runs E(g): for W = 32, random rays and 64 equal cases that is 25 cases instead of one.
+// T is the work if all lanes of a subgroup have one case, which is the purpose of ordering hits. For W = 32,
+// random rays and 64 equal cases E is that of 25 cases instead of one. With one case E and T are nearly the
+// same: keys that share a case share the code that they have in common.
 //
 // The time of a strategy is linear in constants of the device, none below zero. So they can be fitted to
 // measurements (bench/strategy_fit.h), and each product can be reported:
@@ -24,10 +28,10 @@
 //     rays          ns    N                             all: tracing; ordered: records, and their order
 //     incoherence   ns    N scatter                     all: rays that part, memory that is apart
 //     buckets       ns    N log2(1 + cases)             ordered: fewer hits that are added up at once
-//     instructions  ps    N E(1)                        all: shading without divergence
-//     divergence    ps    N (E(g) - E(1))               unsorted
-//     code          ps    N E(1) (sqrt(cases) - 1)      one shader for all cases
-//     misses        ps    N D sqrt(D / 1000), D = E(g) - E(1)      unsorted
+//     instructions  ps    N T                           all: shading without divergence of cases
+//     divergence    ps    N (E - T)                     unsorted
+//     code          ps    N T (sqrt(cases) - 1)         one shader for all cases
+//     misses        ps    N D sqrt(D / 1000), D = E - T unsorted
 // clang-format on
 //
 // The last two terms stand for instruction caches. Their form is a fit to measurements: on an H200 unsorted
@@ -37,6 +41,8 @@
 // The constants of two strategies also differ for reasons that the model does not name, such as registers: a
 // switch needs those of its largest case.
 #pragma once
+
+#include "plan/cost.h"
 
 #include <glint/internal/package_modules.h>
 
@@ -85,9 +91,10 @@ bool hasTerm(std::string_view strategy, CostTerm term);
 
 // A case of a round, with its share of the hits and the size of its code.
 struct RoundCase {
-    double share = 0.0;  // share of the hits; adds up to 1 over all cases
-    double instructions = 0.0;
+    double share = 0.0;         // share of the hits; adds up to 1 over all cases
+    double instructions = 0.0;  // of code that all hits of the case run
     double fetches = 0.0;
+    std::vector<PartialCode> parts{};
 };
 
 // One list of rays.
@@ -121,14 +128,16 @@ struct DeviceCosts {
 // Returns null if the device has no row of that name.
 const StrategyCosts* findCosts(const DeviceCosts& device, std::string_view strategy);
 
-// Returns the weight of a case's shader in instructions, c(i) of the formula above.
+// Returns the weight in instructions of the code that all hits of a case run, c(i) of the formula above.
 double weightOf(const RoundCase& roundCase);
 
 // Returns the number of lanes that are as good as drawn at random, g of the formula above.
 double independentLanes(double subgroupSize, double coherence);
 
-// Returns E(lanes) of the formula above: a lane's part of its subgroup's work, in instructions a ray.
-double instructionsRun(const Round& round, double lanes);
+// Return E and T of the formula above for g = lanes: a lane's part of its subgroup's work, in instructions a
+// ray. For one lane they are the same.
+double unsortedWork(const Round& round, double lanes);
+double sortedWork(const Round& round, double lanes);
 
 // Returns how many cases a subgroup of unsorted hits runs one after another; at least 1 if there is a hit.
 double casesRun(const Round& round, double subgroupSize);
@@ -140,6 +149,17 @@ TermValues termsOf(const Round& round, double subgroupSize);
 TermValues estimate(const Round& round, const StrategyCosts& costs, double subgroupSize);
 // Returns the sum of all terms, in milliseconds.
 double estimatedMs(const Round& round, const StrategyCosts& costs, double subgroupSize);
+
+// First hits of the camera are shaded by a dispatch a case with every strategy, by modules that are like
+// those of `visibility`. On a GPU each case adds the time of its indirect dispatch, most of which lies beside
+// others, and an instruction takes kFirstHitWork times as long as there, as a first hit goes through the
+// lights and traces their shadow rays one by one. Both are what frames measured on an H200 have
+// (docs/merging.md).
+inline constexpr double kFirstCaseMs = 0.0055;
+inline constexpr double kFirstHitWork = 2.0;
+
+// Returns the milliseconds that shading first hits takes.
+double firstHitsMs(const Round& firstHits, const DeviceCosts& device);
 
 // Chooses the strategy that is expected to be fastest, and gives the reasons. Used by --strategy auto and the
 // advice of `glint explain`.

@@ -4,6 +4,7 @@
 
 #include "gltf/scene_list.h"
 #include "plan/frame_rounds.h"
+#include "plan/frame_time.h"
 #include "plan/gpu_costs.h"
 #include "plan/plan.h"
 #include "plan/strategy_cost.h"
@@ -59,7 +60,10 @@ struct Build {
     // the package. compile.strategyChoice says why a strategy was chosen, and plan.effects why an effect was.
     Settings settings;
     Plan plan;
-    std::optional<std::string> excess{};    // why the plan has too many cases
+    // What frames take with other cases: with --merge auto, and for `explain`.
+    std::vector<std::string> mergedFor{};  // strategies
+    std::vector<MergeEstimate> merges{};   // the times are by strategy of mergedFor
+    std::optional<std::string> excess{};   // why the plan has too many cases
     std::optional<std::string> lockText{};  // what is to be written to the lock file, if that changes
     std::vector<Diagnostic> messages{};     // warnings and notes about the decisions
     bool draws = false;                     // for pictures on a device

@@ -165,8 +165,9 @@ public:
         const base::Clock::time_point start = base::Clock::now();
         takePurpose();
         decideByGpu();
-        GLINT_TRY_DO(planShaders());
+        GLINT_TRY_DO(decideKeys());
         GLINT_TRY_DO(decideLight());
+        GLINT_TRY_DO(decideCases());
         GLINT_TRY_DO(decideStrategy());
         if (!target_.package) {
             GLINT_TRY_DO(checkSettings(compile_, scenes_.path()));
@@ -226,30 +227,76 @@ private:
         settings_ = withSettings(settings_, decided);
     }
 
-    // Makes keys and cases.
-    Status planShaders() {
+    Status decideKeys() {
         PlanOptions& options = compile_.plan;
         std::vector<Diagnostic>& messages = build_.messages;
         decideAlpha();
         GLINT_TRY_DO(keepPackLobes());
-        Plan keys = planKeys(scenes_.materials(), scenes_.primitives(), options.keys);
+        build_.plan = planKeys(scenes_.materials(), scenes_.primitives(), options.keys);
         if (!settings_.profile.empty()) {
-            GLINT_TRY(options.hits, readHits(settings_.profile, scenes_, keys, options, messages));
+            GLINT_TRY(options.hits, readHits(settings_.profile, scenes_, build_.plan, options, messages));
         }
         std::stable_partition(messages.begin(), messages.end(), [](const Diagnostic& message) {
             return message.severity == Severity::Warning;
         });
+        return okStatus();
+    }
+
+    // Decides which keys share a case. Which is best depends on the rays, and so on the effects.
+    Status decideCases() {
+        PlanOptions& options = compile_.plan;
+        std::vector<Diagnostic>& messages = build_.messages;
         const LockRequest& lock = settings_.lock;
         LockText before;
         if (!lock.file.empty()) {
-            GLINT_TRY(before, readLock(lock, *keys.model));
+            GLINT_TRY(before, readLock(lock, *build_.plan.model));
             options.lockedIds = before.ids;
         }
-        build_.plan = planCases(std::move(keys), scenes_.primitives(), options);
+        std::vector<MergeCandidate> candidates;
+        const auto compare = [&](const Plan& plan) {
+            const std::vector<WeightedKey> keys = weightedKeys(plan, options);
+            const int most = budgetOf(options) > 0 ? budgetOf(options) : kDefaultMaxCases;
+            candidates = mergeCandidates(keys, most);
+            const FrameModel model = modelOf(plan);
+            build_.mergedFor = model.strategies;
+            build_.merges = estimateMerges(model, keys, candidates);
+        };
+        CaseChooser choose;
+        if (!target_.package) {
+            choose = [&](const Plan& plan) {
+                compare(plan);
+                if (plan.keys.empty()) {
+                    return std::vector<CaseKeys>();
+                }
+                const auto chosen = std::ranges::find(build_.merges, true, &MergeEstimate::chosen);
+                messages.push_back({Severity::Note, "merge-choice", "",
+                                    describeChoice(build_.merges, build_.mergedFor, choosesStrategy()), ""});
+                return candidates[static_cast<std::size_t>(chosen - build_.merges.begin())].cases;
+            };
+        }
+        build_.plan = planCases(std::move(build_.plan), scenes_.primitives(), options, choose);
+        if (settings_.advisesStrategy && build_.merges.empty()) {
+            compare(build_.plan);
+        }
         if (!lock.file.empty()) {
             GLINT_TRY(build_.lockText, updateLock(lock, before, scenes_, build_.plan, messages));
         }
         return okStatus();
+    }
+
+    // Returns what is known of frames while keys have no cases yet.
+    FrameModel modelOf(const Plan& plan) const {
+        FrameModel model{{}, frameShape(), target_.costs.device, {}, choosesStrategy()};
+        model.strategies = model.takesFastest ? availableStrategies()
+                           : build_.draws ? strategyNames(*settings_.strategy | settings_.furtherStrategies)
+                                          : strategyNames(compile_.strategies);
+        for (std::size_t i = 0; i < scenes_.scenes().size(); ++i) {
+            const gltf::SceneList::Range range = scenes_.primitivesOf(i);
+            const auto primitives = scenes_.primitives().subspan(range.first, range.count);
+            model.scenes.push_back({frameRounds(scenes_.materials(), primitives, model.shape),
+                                    keysOfScene(plan, compile_.plan, primitives, range.first)});
+        }
+        return model;
     }
 
     // Chooses the policy of `--alpha auto`, and reports it if a scene has surfaces that are not opaque.
@@ -340,8 +387,7 @@ private:
 
     // Chooses the strategy that should be fastest, and from the strategies the tracers.
     Status decideStrategy() {
-        const bool isAuto = build_.draws ? !settings_.strategy : settings_.advisesStrategy;
-        if (isAuto) {
+        if (choosesStrategy()) {
             build_.messages.insert(build_.messages.end(), target_.warnings.begin(), target_.warnings.end());
             GLINT_TRY(compile_.strategyChoice, advise());
             const package::Strategy chosen =
@@ -374,8 +420,17 @@ private:
         return okStatus();
     }
 
+    bool choosesStrategy() const {
+        return build_.draws ? !settings_.strategy : settings_.advisesStrategy;
+    }
+
+    std::vector<std::string> availableStrategies() const {
+        return runnableStrategies(
+            target_, build_.draws ? settings_.renderer.tracer : std::optional<package::Tracer>());
+    }
+
     // Expects a frame of the picture's size, or of the usual one.
-    Result<StrategyAdvice> advise() const {
+    FrameShape frameShape() const {
         FrameShape shape{.effects = build_.plan.effects.effects.all,
                          .maxReflectionRoughness = settings_.frame.maxReflectionRoughness,
                          .batchEffects = settings_.renderer.batchEffects,
@@ -383,8 +438,12 @@ private:
         if (build_.draws) {
             shape.pixels = static_cast<double>(settings_.renderer.width) * settings_.renderer.height;
         }
-        const std::vector<std::string> available = runnableStrategies(
-            target_, build_.draws ? settings_.renderer.tracer : std::optional<package::Tracer>());
+        return shape;
+    }
+
+    Result<StrategyAdvice> advise() const {
+        const FrameShape shape = frameShape();
+        const std::vector<std::string> available = availableStrategies();
         const DeviceCosts& device = target_.costs.device;
         std::optional<StrategyChoice> choice = chooseStrategy(roundsOf(shape), device, available);
         if (!choice) {
@@ -399,18 +458,17 @@ private:
 
     // Returns the rounds of a frame of each scene, for all scenes together.
     std::vector<Round> roundsOf(const FrameShape& shape) const {
-        const std::vector<CaseFeatures> cases =
-            target_.package ? target_.package->cases : caseFeatures(build_.plan);
         std::vector<Round> rounds;
         for (std::size_t i = 0; i < scenes_.scenes().size(); ++i) {
             const gltf::SceneList::Range range = scenes_.primitivesOf(i);
-            const std::span<const materials::PrimitiveInputs> primitives =
-                scenes_.primitives().subspan(range.first, range.count);
-            const std::vector<CaseHits> hits =
-                target_.package ? target_.package->hits
-                                : caseHits(build_.plan, compile_.plan, primitives, range.first);
-            std::ranges::move(frameRounds(scenes_.materials(), primitives, roundCases(cases, hits), shape),
-                              std::back_inserter(rounds));
+            const auto primitives = scenes_.primitives().subspan(range.first, range.count);
+            const std::vector<KeySet> cases =
+                target_.package
+                    ? caseKeys(target_.package->cases, target_.package->hits, *build_.plan.model)
+                    : caseKeys(build_.plan, keysOfScene(build_.plan, compile_.plan, primitives, range.first));
+            std::vector<Round> ofScene = frameRounds(scenes_.materials(), primitives, shape);
+            setCases(ofScene, roundCases(cases), shape);
+            std::ranges::move(ofScene, std::back_inserter(rounds));
         }
         return rounds;
     }

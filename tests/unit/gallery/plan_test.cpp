@@ -147,9 +147,8 @@ TEST(GalleryPlan, GetsTheFastestStrategyByBounces) {
         shape.effects = builtinEffects({"shadow", "reflection"});
         shape.maxReflectionRoughness = 1.0F;
         shape.bounces = bounces;
-        const std::vector<Round> rounds =
-            frameRounds(scene().materials, inputs,
-                        roundCases(caseFeatures(plan), caseHits(plan, options, inputs, 0)), shape);
+        std::vector<Round> rounds = frameRounds(scene().materials, inputs, shape);
+        setCases(rounds, roundCases(caseKeys(plan, keysOfScene(plan, options, inputs, 0))), shape);
         const auto choice = chooseStrategy(rounds, builtInCosts(false), available);
         ASSERT_TRUE(choice);
         EXPECT_EQ(choice->strategy, "sorted-uber") << choice->why;

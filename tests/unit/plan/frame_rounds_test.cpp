@@ -61,8 +61,9 @@ struct Box {
         shape.maxReflectionRoughness = 1.0F;
         shape.bounces = bounces;
         shape.pixels = pixels;
-        return frameRounds(materials, primitives,
-                           roundCases(caseFeatures(plan), caseHits(plan, options, primitives, 0)), shape);
+        std::vector<compiler::Round> rounds = frameRounds(materials, primitives, shape);
+        setCases(rounds, roundCases(caseKeys(plan, keysOfScene(plan, options, primitives, 0))), shape);
+        return rounds;
     }
 
     std::vector<std::string> strategies{"uber", "sorted-uber", "visibility", "hit-shaders"};

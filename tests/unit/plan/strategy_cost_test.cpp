@@ -63,32 +63,44 @@ double ms(const compiler::Round& round, std::string_view strategy) {
 
 TEST(StrategyCost, RunsWhatSubgroupsOfRandomHitsRun) {
     compiler::Round round{1.0, 0.7, 0.0, 1.0, {{0.5, 100.0, 0.0}, {0.3, 400.0, 2.0}, {0.2, 1000.0, 0.0}}};
+    round.cases[1].parts = {{0.25, 700.0, 1.0}};
     constexpr int kLanes = 8;
     constexpr int kGroups = 200000;
     std::mt19937 random(7);  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same draws in every run
     std::uniform_real_distribution<double> uniform;
-    double run = 0.0;
+    double mixed = 0.0;   // work of subgroups of any hits
+    double sorted = 0.0;  // work of subgroups of one case's hits
     for (int group = 0; group < kGroups; ++group) {
         std::vector<bool> hit(round.cases.size());
+        bool hitsPart = false;
+        bool partOfSorted = false;
         for (int lane = 0; lane < kLanes; ++lane) {
             double draw = uniform(random) / round.hitShare;
             for (std::size_t i = 0; i < hit.size(); ++i) {
                 if (draw >= 0.0 && draw < round.cases[i].share) {
                     hit[i] = true;
+                    hitsPart = hitsPart || (i == 1 && draw < 0.25 * round.cases[i].share);
                 }
                 draw -= round.cases[i].share;
             }
+            partOfSorted = partOfSorted || uniform(random) < 0.25;
         }
+        const double part = 700.0 + compiler::kFetchCost;
         for (std::size_t i = 0; i < hit.size(); ++i) {
-            run += hit[i] ? weightOf(round.cases[i]) : 0.0;
+            const double work = weightOf(round.cases[i]);
+            mixed += hit[i] ? work : 0.0;
+            sorted += round.hitShare * round.cases[i].share * (work + (i == 1 && partOfSorted ? part : 0.0));
         }
+        mixed += hitsPart ? part : 0.0;
     }
-    EXPECT_NEAR(instructionsRun(round, kLanes) / (run / kGroups), 1.0, 0.005);
+    EXPECT_NEAR(unsortedWork(round, kLanes) / (mixed / kGroups), 1.0, 0.005);
+    EXPECT_NEAR(sortedWork(round, kLanes) / (sorted / kGroups), 1.0, 0.005);
+    EXPECT_NEAR(unsortedWork(round, 1.0), sortedWork(round, 1.0), 1e-9);
 }
 
 TEST(StrategyCost, OneLaneRunsItsOwnCaseAlone) {
     const compiler::Round round{1.0, 0.6, 1.0, 0.0, {{0.75, 200.0, 1.0}, {0.25, 1000.0, 0.0}}};
-    EXPECT_NEAR(instructionsRun(round, 1.0), 0.6 * (0.75 * (200.0 + compiler::kFetchCost) + 0.25 * 1000.0),
+    EXPECT_NEAR(unsortedWork(round, 1.0), 0.6 * (0.75 * (200.0 + compiler::kFetchCost) + 0.25 * 1000.0),
                 1e-9);
     EXPECT_DOUBLE_EQ(compiler::independentLanes(32.0, 1.0), 1.0);
     EXPECT_DOUBLE_EQ(compiler::independentLanes(32.0, 0.0), 32.0);

@@ -148,22 +148,22 @@ std::string singlesText(const compiler::Build& build, const compiler::PlanCost& 
                                   formatTable(rows, detail);
 }
 
-std::string policiesText(const compiler::Build& build, const compiler::PlanCost& cost) {
-    Rows rows{{"--merge", "cases", "in vain", "for cases", "all", ""}};
-    const auto add = [&](compiler::MergePolicy merge, std::size_t cases, double inVain,
-                         const std::string& note) {
-        const double all = compiler::totalCost(inVain, cases);
-        rows.push_back({std::string(nameOf(merge)), std::to_string(cases), fmt::format("{:.2f}", inVain),
-                        fmt::format("{:.0f}", all - inVain), fmt::format("{:.2f}", all), note});
-    };
-    for (const compiler::PolicyCost& policy : cost.policies) {
-        const bool isThis = policy.merge == build.settings.compile.plan.merge;
-        add(policy.merge, policy.cases, policy.inVain, isThis ? "this plan" : "");
+std::string mergesText(const compiler::Build& build) {
+    std::vector<std::string> head{"merged by", "cases", "in vain", "first hits"};
+    head.insert(head.end(), build.mergedFor.begin(), build.mergedFor.end());
+    head.emplace_back();
+    Rows rows{std::move(head)};
+    for (const compiler::MergeEstimate& merge : build.merges) {
+        std::vector<std::string>& row = rows.emplace_back();
+        row = {merge.name, std::to_string(merge.cases), fmt::format("{:.2f}", merge.inVain),
+               fmt::format("{:.3f}", merge.firstMs)};
+        for (const double ms : merge.ms) {
+            row.push_back(fmt::format("{:.3f}", ms));
+        }
+        row.emplace_back(merge.chosen ? "auto" : "");
     }
-    if (build.settings.compile.plan.merge == compiler::MergePolicy::Profile) {
-        add(compiler::MergePolicy::Profile, caseCount(build.plan), cost.inVain, "this plan");
-    }
-    return "\nThe same keys under every policy\n\n" + formatTable(rows);
+    return "\nOther cases for the same keys; ms of first hits, and of these and rays by strategy\n\n" +
+           formatTable(rows);
 }
 
 base::Json toJson(const compiler::CodeEstimate& code) {
@@ -239,7 +239,7 @@ std::string planText(const compiler::Build& build, Detail detail) {
             text += "\n" + mergedText(build, entry, detail);
         }
     }
-    return text + singlesText(build, cost, detail) + policiesText(build, cost);
+    return text + singlesText(build, cost, detail) + mergesText(build);
 }
 
 base::Json planToJson(const compiler::Build& build) {
@@ -248,12 +248,18 @@ base::Json planToJson(const compiler::Build& build) {
     for (const compiler::CaseCost& entry : cost.cases) {
         cases.push_back(caseToJson(build, entry));
     }
-    base::Json policies = base::Json::array();
-    for (const compiler::PolicyCost& policy : cost.policies) {
-        policies.push_back(base::Json{{"merge", nameOf(policy.merge)},
-                                      {"cases", policy.cases},
-                                      {"inVain", policy.inVain},
-                                      {"cost", compiler::totalCost(policy.inVain, policy.cases)}});
+    base::Json merges = base::Json::array();
+    for (const compiler::MergeEstimate& merge : build.merges) {
+        base::Json times = base::Json::object();
+        for (std::size_t i = 0; i < build.mergedFor.size(); ++i) {
+            times[build.mergedFor[i]] = merge.ms[i];
+        }
+        merges.push_back(base::Json{{"name", merge.name},
+                                    {"cases", merge.cases},
+                                    {"inVain", merge.inVain},
+                                    {"firstHitsMilliseconds", merge.firstMs},
+                                    {"milliseconds", times},
+                                    {"chosen", merge.chosen}});
     }
     const int budget = budgetOf(build.settings.compile.plan);
     return {{"maxShaders", budget > 0 ? base::Json(budget) : base::Json()},
@@ -263,7 +269,7 @@ base::Json planToJson(const compiler::Build& build) {
             {"caseCost", compiler::kCaseCost},
             {"cost", compiler::totalCost(cost.inVain, cost.cases.size())},
             {"cases", cases},
-            {"policies", policies}};
+            {"merges", merges}};
 }
 
 std::string strategiesText(const compiler::StrategyAdvice& advice) {

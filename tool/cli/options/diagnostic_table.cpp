@@ -77,7 +77,7 @@ constexpr DiagnosticList kLists[] = {
     {kNote,
      " alpha-blend alpha-stochastic alpha-tested animation-pointer cache-write calibration-points"
      " edit-fallback edit-unused effect-absent environment-resampled extension-no-picture gpu-choice "
-     "lock-moved lock-stale"
+     "lock-moved lock-stale merge-choice"
      " node-instances payload-bytes pipeline-cache pipeline-statistics profile-keys profile-stale"
      " query-flags scene-choice texture-basisu texture-compression texture-source texture-unknown"
      " window-shot"
