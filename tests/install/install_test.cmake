@@ -65,6 +65,29 @@ run(${CMAKE_COMMAND} -S "${CONSUMER}" -B "${build}" -G "${GENERATOR}" "-DCMAKE_P
 run(${CMAKE_COMMAND} --build "${build}")
 run("${build}/uses_runtime" "${WORK}/no-such-package")
 run("${build}/uses_compiler")
+
+# An engine asks for the runtime and the command, and has nothing that the compiler's libraries link.
+file(WRITE "${WORK}/engine/CMakeLists.txt"
+     "cmake_minimum_required(VERSION 3.25)\nproject(engine LANGUAGES CXX)\n"
+     "find_package(Glint REQUIRED COMPONENTS \${COMPONENTS})\n"
+     "add_executable(uses_runtime \"${CONSUMER}/uses_runtime.cpp\")\n"
+     "target_link_libraries(uses_runtime PRIVATE Glint::runtime)\n"
+     "glint_add_materials(TARGET uses_runtime SCENES \"${WORK}/scenes/cubes.gltf\")\n")
+set(without "")
+foreach(package fmt draco meshoptimizer glslang SPIRV-Tools SPIRV-Tools-opt PkgConfig)
+  list(APPEND without -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
+endforeach()
+set(engine -S "${WORK}/engine" -G "${GENERATOR}" "-DCMAKE_PREFIX_PATH=${prefix}" "-DCMAKE_CXX_FLAGS=${FLAGS}"
+    "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}" ${without})
+run(${CMAKE_COMMAND} ${engine} -B "${WORK}/engine_build" "-DCOMPONENTS=runtime\;glint")
+run(${CMAKE_COMMAND} --build "${WORK}/engine_build")
+foreach(wrong compiler shader)
+  execute_process(COMMAND ${CMAKE_COMMAND} ${engine} -B "${WORK}/engine_${wrong}" -DCOMPONENTS=${wrong}
+                  RESULT_VARIABLE failed OUTPUT_QUIET ERROR_QUIET)
+  if(failed EQUAL 0)
+    message(FATAL_ERROR "the component ${wrong} was found, which lacks what it links or is none")
+  endif()
+endforeach()
 run("${build}/uses_gltf" "${WORK}/scenes/cubes.gltf")
 expect_output("4 meshes, 4 materials")
 run("${build}/uses_session" "${WORK}/scenes/cubes.gltf")
