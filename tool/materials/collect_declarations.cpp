@@ -11,6 +11,11 @@ namespace {
 
 constexpr std::string_view kTexelLetters = "rgba";
 
+// What features of packs cost that do not say it: the medians of Glint's own.
+constexpr FeatureCost kUsualLobe{253.0, 0.0};
+constexpr FeatureCost kUsualInput{35.0, 0.0};
+constexpr FeatureCost kUsualTexture{39.0, 1.0};
+
 // "clearcoatRoughnessTexture" becomes "CLEARCOAT_ROUGHNESS_TEXTURE", and "texCoord0" "TEX_COORD_0".
 std::string macroCase(std::string_view name) {
     std::string macro;
@@ -38,6 +43,8 @@ int ModelBuilder::addFeature(const Members& members, Feature feature, bool isLit
     if (members.has("cost")) {
         const Members cost(members["cost"], members.at("cost"), {"instructions", "fetches"});
         feature.cost = {cost.number("instructions", 0.0), cost.number("fetches", 0.0)};
+    } else if (isOfPack_) {
+        feature.cost = feature.texture >= 0 ? kUsualTexture : isLobe(feature) ? kUsualLobe : kUsualInput;
     }
     pending_.push_back(
         {std::move(feature), members.number("order", kNoOrder), members.where(), isLit, isOfPack_});

@@ -322,6 +322,11 @@ void ModelBuilder::linkScales(const Members& members, int slot) {
             failAt(members.at("scales"), fmt::format("there is no parameter \"{}\"", name));
         }
         Parameter& parameter = model_.parameters[static_cast<std::size_t>(index)];
+        if (parameter.scaledBy >= 0 && parameter.scaledBy != slot) {
+            failAt(members.at("scales"),
+                   fmt::format("{} scales \"{}\", too; one texture can",
+                               model_.textures[static_cast<std::size_t>(parameter.scaledBy)].name, name));
+        }
         parameter.scaledBy = slot;
         const std::string_view channels = std::string_view(scaled).substr(name.size());
         if (channels.empty()) {
@@ -425,6 +430,11 @@ void ModelBuilder::linkBehaviour(const File& file, const Members& members) {
                        expression(members["when"], members.at("when"), true)};
     if (members.has("roughness")) {
         rule.roughness = expression(members["roughness"], members.at("roughness"), false);
+        if (rule.roughness->channels() != 1) {
+            failAt(members.at("roughness"),
+                   fmt::format("has {} channels; name the one that holds the roughness",
+                               rule.roughness->channels()));
+        }
     }
     if (members.has("value")) {
         rule.value = expression(members["value"], members.at("value"), false);

@@ -32,16 +32,6 @@ struct FrameModel {
     bool takesFastest = false;            // one of them will run, whichever is fastest; else each may
 };
 
-// The time of a frame of all scenes with some cases.
-struct MergeEstimate {
-    std::string name;  // of MergeCandidate
-    std::size_t cases = 0;
-    double inVain = 0.0;     // by plan/cost.h, in instructions of an average hit
-    double firstMs = 0.0;    // first hits
-    std::vector<double> ms;  // first hits and rays, by strategy of the model
-    bool chosen = false;
-};
-
 // Estimates this close to each other say nothing about which is faster.
 inline constexpr double kSameTime = 0.03;  // relative
 

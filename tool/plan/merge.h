@@ -105,6 +105,16 @@ struct MergeCandidate {
 // another policy if its cases are the same.
 std::vector<MergeCandidate> mergeCandidates(std::span<const WeightedKey> keys, int maxCases);
 
+// The time that a frame of all scenes is expected to take with some cases (plan/frame_time.h).
+struct MergeEstimate {
+    std::string name;  // of MergeCandidate
+    std::size_t cases = 0;
+    double inVain = 0.0;     // by plan/cost.h, in instructions of an average hit
+    double firstMs = 0.0;    // first hits
+    std::vector<double> ms;  // first hits and rays, by strategy
+    bool chosen = false;
+};
+
 std::string_view toString(CaseReason reason);  // one word: "cold"
 std::string_view explain(CaseReason reason);   // a sentence without a full stop
 

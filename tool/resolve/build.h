@@ -4,7 +4,6 @@
 
 #include "gltf/scene_list.h"
 #include "plan/frame_rounds.h"
-#include "plan/frame_time.h"
 #include "plan/gpu_costs.h"
 #include "plan/plan.h"
 #include "plan/strategy_cost.h"

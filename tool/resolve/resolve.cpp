@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/text.h"
+#include "plan/frame_time.h"
 #include "resolve/build.h"
 #include "resolve/light.h"
 #include "resolve/lock_file.h"

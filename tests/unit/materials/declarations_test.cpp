@@ -208,6 +208,45 @@ TEST(Declarations, AliasesHaveNoRangeOfTheirOwn) {
     }
 }
 
+// What a parameter may be is told by one texture: with two, a feature was left out that changes something.
+TEST(Declarations, OneTextureScalesAParameter) {
+    EXPECT_NE(refusal(R"({"name": "wet", "stage": "surface",
+            "parameters": [{"name": "wetness", "type": "float", "default": 0, "range": [0, 1]}],
+            "textures": [{"name": "wetTexture", "scales": ["wetness.r"]},
+                         {"name": "dampTexture", "scales": ["wetness.g"]}]})")
+                  .find("#/textures/1/scales: wetTexture scales \"wetness\", too"),
+              std::string::npos);
+}
+
+TEST(Declarations, FeaturesOfPacksCostSomething) {
+    const std::string text = R"({"name": "wet", "extension": "EXT_wet", "stage": "layer",
+        "textures": [{"name": "wetTexture"}, {"name": "dampTexture", "cost": {"instructions": 7, "fetches": 2}}]})";
+    for (const bool isOfPack : {true, false}) {
+        const materials::DeclarationFile file{"wet.json", text, isOfPack};
+        const Result<materials::MaterialModel> model = materials::readDeclarations({&file, 1});
+        ASSERT_TRUE(model.ok()) << toString(model.error());
+        const auto cost = [&](std::string_view name) {
+            return model->features[static_cast<std::size_t>(model->findFeature(name))].cost;
+        };
+        EXPECT_EQ(cost("wet").instructions > 0.0, isOfPack);
+        EXPECT_EQ(cost("wetTexture").fetches, isOfPack ? 1.0 : 0.0);
+        EXPECT_EQ(cost("dampTexture").instructions, 7.0);
+        EXPECT_EQ(cost("dampTexture").fetches, 2.0);
+    }
+}
+
+TEST(Declarations, RoughnessIsOneNumber) {
+    const auto reflecting = [](const std::string& roughness) {
+        return R"({"name": "wet", "stage": "layer", "extension": "EXT_wet",
+            "parameters": [{"name": "wetRoughness", "type": "vec2", "default": [0, 0], "range": [0, 1]}],
+            "effects": [{"does": "reflects", "when": "doubleSided", "roughness": ")" +
+               roughness + R"(", "text": "is wet"}]})";
+    };
+    EXPECT_NE(refusal(reflecting("wetRoughness")).find("#/effects/0/roughness: has 2 channels"),
+              std::string::npos);
+    EXPECT_TRUE(modelWith(reflecting("wetRoughness.g")).ok());
+}
+
 TEST(Declarations, AFeatureReadsOneUvSetOfItsOwn) {
     EXPECT_NE(refusal(R"({"name": "wet", "stage": "layer", "extension": "EXT_wet",
                           "needs": ["texCoord0", "texCoord1"]})")
