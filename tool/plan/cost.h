@@ -1,4 +1,5 @@
-// The cost of keys that share a case: the model behind --merge auto.
+// The cost of keys that share a case, in code: what the ways to merge of --merge auto are made and compared
+// by (plan/merge.h, plan/frame_time.h).
 //
 // The unit is SPIR-V instructions that an average hit runs in vain. A hit runs the code of its own features
 // in any clustering, so only the surplus counts. A case that gets the share w of all hits costs

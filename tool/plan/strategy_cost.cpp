@@ -46,6 +46,7 @@ std::span<const std::string_view> simplestFirst() {
             return std::tuple(info->ownPipeline, info->dispatchesCases, info->ordersHits);
         });
         std::vector<std::string_view> names;
+        names.reserve(infos.size());
         for (const package::StrategyInfo* const info : infos) {
             names.push_back(info->name);
         }
