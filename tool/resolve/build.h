@@ -60,9 +60,9 @@ struct Build {
     Settings settings;
     Plan plan;
     // What frames take with other cases: with --merge auto, and for `explain`.
-    std::vector<std::string> mergedFor{};  // strategies
-    std::vector<MergeEstimate> merges{};   // the times are by strategy of mergedFor
-    std::optional<std::string> excess{};   // why the plan has too many cases
+    std::vector<std::string> mergedFor{};   // strategies
+    std::vector<MergeEstimate> merges{};    // the times are by strategy of mergedFor
+    std::optional<std::string> excess{};    // why the plan has too many cases
     std::optional<std::string> lockText{};  // what is to be written to the lock file, if that changes
     std::vector<Diagnostic> messages{};     // warnings and notes about the decisions
     bool draws = false;                     // for pictures on a device

@@ -87,7 +87,8 @@ TEST_F(MaterialPacks, DeclaredGlslMustBeThere) {
 }
 
 TEST_F(MaterialPacks, NamesMustNotCollide) {
-    write("mud.json", R"({"name": "sheen", "object": "extras", "stage": "surface", "short": "Mud"})");
+    write("mud.json", R"({"name": "sheen", "object": "extras", "stage": "surface",
+                          "neutral": [{"when": "doubleSided", "because": "both sides are clean"}]})");
     expectError("declaration", "#/name", "is declared twice");
 }
 
@@ -145,7 +146,8 @@ TEST_F(MaterialPacks, CodeOfTraversalNeedsAFeature) {
     write("mud.json",
           R"({"name": "mud", "object": "extras", "stage": "opacity", "glsl": {"opacity": "mud.glsl"}})");
     expectError("declaration", "mud.json#/glsl/opacity", "a feature of its own");
-    write("mud.json", R"({"name": "mud", "object": "extras", "stage": "surface", "short": "Mud",
+    write("mud.json", R"({"name": "mud", "object": "extras", "stage": "surface",
+                          "neutral": [{"when": "doubleSided", "because": "both sides are clean"}],
                           "glsl": {"diffuse": "mud.glsl"}})");
     expectError("declaration", "mud.json#/glsl/diffuse", "\"bsdf\"");
 }
@@ -202,8 +204,7 @@ TEST_F(MaterialPacks, FeaturesFillTheKey) {
     const std::size_t room = materials::kFeatureBits - materials::builtinMaterialModel().features.size();
     for (std::size_t i = 0; i < room; ++i) {
         write(fmt::format("f{}.json", i),
-              fmt::format(R"({{"name": "f{}", "object": "extras", "stage": "surface", "short": "F{}"}})", i,
-                          i));
+              fmt::format(R"({{"name": "f{}", "extension": "EXT_f{}", "stage": "surface"}})", i, i));
     }
     const Result<const materials::MaterialModel*> model = load();
     ASSERT_TRUE(model) << toString(model.error());
@@ -215,7 +216,7 @@ TEST_F(MaterialPacks, FeaturesFillTheKey) {
     }
     EXPECT_EQ(all, ~materials::FeatureMask{0});
     EXPECT_EQ((*model)->lobes, materials::builtinMaterialModel().lobes);
-    write("more.json", R"({"name": "more", "object": "extras", "stage": "surface", "short": "More"})");
+    write("more.json", R"({"name": "more", "extension": "EXT_more", "stage": "surface"})");
     expectError("declaration", "#", "more features than");
 }
 
