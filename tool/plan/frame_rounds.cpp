@@ -111,6 +111,12 @@ std::vector<KeySet> caseKeys(std::span<const CaseFeatures> cases, std::span<cons
             KeySet& set = sets.emplace_back(
                 toSet(WeightedKey{cases[i].always | cases[i].sometimes, byCase[i], &model}));
             set.always = cases[i].always;
+            // Being unlit is the feature that leaves code out.
+            for (const materials::Feature& feature : model.features) {
+                if ((feature.mask() & model.unlit & cases[i].sometimes) != 0) {
+                    set.shareWith[static_cast<std::size_t>(feature.bit)] = 0.0;
+                }
+            }
         }
     }
     return sets;

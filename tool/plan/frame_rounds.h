@@ -74,7 +74,7 @@ struct CaseHits {
     int shaderId = 0;  // the ID of a case that is not retired
     double hits = 0.0;
 };
-// Returns each case that is not retired. All of its hits have all of its features, as nothing else is known.
+// Returns each case that is not retired. All of its hits run all of its code, as nothing else is known.
 // `cases` is indexed by shader ID.
 std::vector<KeySet> caseKeys(std::span<const CaseFeatures> cases, std::span<const CaseHits> hits,
                              const materials::MaterialModel& model);

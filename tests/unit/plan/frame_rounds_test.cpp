@@ -98,6 +98,27 @@ TEST(FrameRounds, OfPathsHaveFewerRaysAndPart) {
     EXPECT_GT(rounds[0].cases[0].instructions, box.rounds(1)[0].cases[0].instructions);
 }
 
+// The hits of a finished package's case are taken to run all of its code, lit shading included.
+TEST(FrameRounds, OfPackagesRunWholeCases) {
+    const materials::MaterialModel& model = materials::builtinMaterialModel();
+    const materials::FeatureMask clearcoat = model.mask("clearcoat");
+    const materials::FeatureMask normals = model.mask("normals");
+    const std::vector<compiler::CaseFeatures> cases{
+        {normals, clearcoat | model.unlit, false}, {0, 0, true}, {clearcoat, normals, false}};
+    const std::vector<compiler::CaseHits> hits{{0, 3.0}, {2, 1.0}};
+    const std::vector<compiler::RoundCase> found = roundCases(compiler::caseKeys(cases, hits, model));
+    ASSERT_EQ(found.size(), 2U);
+    EXPECT_EQ(found[0].share, 0.75);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        const compiler::CaseFeatures& features = cases[2 * i];
+        double run = found[i].instructions;
+        for (const compiler::PartialCode& part : found[i].parts) {
+            run += part.share * part.instructions;
+        }
+        EXPECT_NEAR(run, compiler::estimateCode(features.always, features.sometimes).instructions, 1e-9);
+    }
+}
+
 // docs/paths.md has the measurements on an H200: with 16 keys sorted-uber is the fastest at 1, 2 and 8
 // bounces, and its time over that of uber falls from bounce to bounce.
 TEST(FrameRounds, ChooseWhatIsFastestByBounces) {
