@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::string_view kTexelLetters = "rgba";
 
-// What features of packs cost that do not say it: the medians of Glint's own.
+// The costs of features of packs that do not say it: the medians of Glint's own.
 constexpr FeatureCost kUsualLobe{253.0, 0.0};
 constexpr FeatureCost kUsualInput{35.0, 0.0};
 constexpr FeatureCost kUsualTexture{39.0, 1.0};

@@ -18,7 +18,7 @@
 
 namespace glint::compiler {
 
-// What a frame of one scene shades.
+// The rays of a frame of one scene, and the keys that they hit.
 struct SceneRays {
     std::vector<Round> rounds;      // without cases
     std::vector<WeightedKey> keys;  // of the plan, with their hits in this scene

@@ -59,7 +59,7 @@ struct Build {
     // the package. compile.strategyChoice says why a strategy was chosen, and plan.effects why an effect was.
     Settings settings;
     Plan plan;
-    // What frames take with other cases: with --merge auto, and for `explain`.
+    // The times of frames with other cases: with --merge auto, and for `explain`.
     std::vector<std::string> mergedFor{};   // strategies
     std::vector<MergeEstimate> merges{};    // the times are by strategy of mergedFor
     std::optional<std::string> excess{};    // why the plan has too many cases
