@@ -75,7 +75,7 @@ void ModelBuilder::readNeeds(const Members& members, Feature& feature) {
 
 void ModelBuilder::checkOwn(const Members& members, bool hasOwn) {
     for (const char* const member :
-         {"lit", "given", "needs", "draft", "ofBase", "cost", "order", "gltf", "excludes"}) {
+         {"short", "lit", "given", "needs", "draft", "ofBase", "cost", "order", "gltf", "excludes"}) {
         if (!hasOwn && members.has(member)) {
             failAt(members.at(member), "is of a feature of the declaration's own, and it has none",
                    "give the declaration \"extension\" or \"neutral\"");
@@ -103,7 +103,7 @@ void ModelBuilder::collect(File& file) {
     file.object = members.has("extension") ? addObject(members.text("extension"), true)
                   : members.has("object")  ? addObject(members.text("object"), false)
                                            : 0;
-    const bool hasOwn = members.has("short") || members.has("neutral") || members.has("extension");
+    const bool hasOwn = members.has("neutral") || members.has("extension");
     checkOwn(members, hasOwn);
     if (hasOwn) {
         Feature feature;

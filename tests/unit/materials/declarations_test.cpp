@@ -163,9 +163,10 @@ TEST(Declarations, SayWhatIsWrongAndWhere) {
 // of bounds once.
 TEST(Declarations, MembersOfAFeatureNeedOne) {
     for (const std::string member :
-         {R"("lit": false)", R"("given": "doubleSided")", R"("needs": "tangents")", R"("draft": true)",
-          R"("ofBase": true)", R"("cost": {"instructions": 1, "fetches": 0})", R"("order": 3)",
-          R"("gltf": "somewhere")", R"("excludes": {"stage": "layer", "because": "it is wet"})"}) {
+         {R"("short": "Wet")", R"("lit": false)", R"("given": "doubleSided")", R"("needs": "tangents")",
+          R"("draft": true)", R"("ofBase": true)", R"("cost": {"instructions": 1, "fetches": 0})",
+          R"("order": 3)", R"("gltf": "somewhere")",
+          R"("excludes": {"stage": "layer", "because": "it is wet"})"}) {
         const std::string name = member.substr(1, member.find('"', 1) - 1);
         const std::string without = R"({"name": "wet", "stage": "layer", "parameters": [
             {"name": "wetness", "type": "float", "default": 0, "range": [0, 1]}], )" +
@@ -179,12 +180,9 @@ TEST(Declarations, MembersOfAFeatureNeedOne) {
 }
 
 TEST(Declarations, NoMaterialGetsAFeatureUnasked) {
-    for (const std::string member : {R"("short": "Wet")", R"("neutral": [])"}) {
-        EXPECT_NE(refusal(R"({"name": "wet", "stage": "layer", )" + member + "}")
-                      .find("every material would have its feature"),
-                  std::string::npos)
-            << member;
-    }
+    EXPECT_NE(refusal(R"({"name": "wet", "stage": "layer", "neutral": []})")
+                  .find("every material would have its feature"),
+              std::string::npos);
     const auto replacing = [](const std::string& name, const std::string& owner) {
         return R"({"name": ")" + name + R"(", "stage": "base", )" + owner +
                R"("replaces": {"object": "pbrMetallicRoughness"}})";
