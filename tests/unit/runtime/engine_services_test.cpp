@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <deque>
+#include <future>
 
 namespace glint {
 namespace {
@@ -113,6 +114,12 @@ public:
         const std::lock_guard lock(mutex_);
         jobs_.push_back(std::move(job));
         changed_.notify_one();
+    }
+    // Returns when all jobs before have ended.
+    void drain() {
+        const auto reached = std::make_shared<std::promise<void>>();
+        run([reached] { reached->set_value(); });
+        reached->get_future().wait();
     }
     std::thread::id id() const {
         return thread_.get_id();
@@ -225,10 +232,7 @@ TEST_F(EngineServices, NothingBypassesThem) {
             EXPECT_EQ(image->pixels[8 * 16 + 8][0], 1.0F);
             ASSERT_TRUE((*renderer)->replacePackage(other));
         }
-        // The pool destroys the replaced pipelines.
-        for (int waits = 0; pool_.done == 0 && waits < 1000; ++waits) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        }
+        pool_.drain();  // it destroys the replaced pipelines
         EXPECT_GT(pool_.done, 0);
         for (const std::string& function : hooks.bypasses) {
             ADD_FAILURE() << function << " bypasses a service";
@@ -300,6 +304,7 @@ TEST_F(EngineServices, BackgroundPipelines) {
     }
     std::make_unique<BackgroundPipelines>(jobs, std::move(late), 0, 3).reset();
     busy.unlock();
+    pool_.drain();  // its jobs use the variables of this function
     EXPECT_EQ(made, 0);
 }
 
