@@ -82,8 +82,11 @@ std::string claimParameters(const materials::MaterialModel& model, int feature, 
     std::uint32_t next = kFirstParameter;
     for (const materials::Parameter& parameter : model.parameters) {
         const auto channels = static_cast<std::uint32_t>(parameter.channels);
-        if (parameter.feature != feature || feature < 0 || parameter.aliasOf >= 0 || !parameter.inRecord ||
-            next + channels > kFirstTexel) {
+        // GLSL reads what a parameter of another base fills by that one's name.
+        const bool isAlias = parameter.aliasOf >= 0;
+        const materials::Parameter& own =
+            isAlias ? model.parameters[static_cast<std::size_t>(parameter.aliasOf)] : parameter;
+        if (parameter.feature != feature || feature < 0 || !own.inRecord || next + channels > kFirstTexel) {
             continue;
         }
         std::string values;
@@ -95,7 +98,7 @@ std::string claimParameters(const materials::MaterialModel& model, int feature, 
             values += fmt::format("{}glintGiven[{}]", channel == 0 ? "" : ", ", next++);
         }
         macros += fmt::format("#undef GLINT_MATERIAL_{0}\n#define GLINT_MATERIAL_{0}(hit) {1}({2})\n",
-                              macroOf(parameter.name), parameter.type, values);
+                              macroOf(own.name), own.type, values);
     }
     return macros;
 }
@@ -250,6 +253,8 @@ Result<FeatureProof> compileFeatureProof(const compiler::Build& build, const mat
     section("surface", code.surface);
     section("bsdf", code.bsdf);
     section("layer", code.layer);
+    section("model", code.model);
+    section("sampled", code.isSampled ? code.model : std::string());
     section("emission", code.emission);
     section("diffuse", code.diffuse);
     section("coordinates", code.coordinates);

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes a scene of spheres on a floor, one with each of the example materials, or several with each of the
-drafts.
+drafts or models.
 
-usage: make_scene.py [--drafts] OUTPUT.gltf
+usage: make_scene.py [--drafts | --models] OUTPUT.gltf
 """
 
 import math
@@ -85,6 +85,23 @@ DRAFTS = [
                                                         "diffuseRoughnessTexture": {"index": 5}}}},
 ]
 
+MODELS = [
+    {"name": "Toon", "extensions": {"EXAMPLE_materials_toon": {"toonColor": [0.8, 0.25, 0.1, 1], "toonBands": 3}}},
+    {"name": "Toon bricks", "extensions": {"EXAMPLE_materials_toon": {"toonBands": 5, "toonTexture": {"index": 0}}}},
+    {"name": "Blinn-Phong",
+     "extensions": {"EXAMPLE_materials_blinn_phong": {"blinnDiffuse": [0.05, 0.2, 0.5, 1],
+                                                      "blinnSpecular": [0.3, 0.3, 0.3], "blinnShininess": 60}}},
+    {"name": "Varnished Blinn-Phong",
+     "extensions": {"EXAMPLE_materials_blinn_phong": {"blinnDiffuseTexture": {"index": 0},
+                                                      "blinnSpecularTexture": {"index": 2},
+                                                      "blinnSpecular": [0.5, 0.4, 0.3], "blinnShininess": 12},
+                    "KHR_materials_clearcoat": {"clearcoatFactor": 1, "clearcoatRoughnessFactor": 0.05}}},
+    {"name": "Leaf", "doubleSided": True,
+     "extensions": {"EXAMPLE_materials_leaf": {"leafColor": [0.3, 0.6, 0.1, 1], "leafPassed": [0.5, 0.6, 0.3]}}},
+    {"name": "glTF",
+     "pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.25, 0.1, 1], "metallicFactor": 0, "roughnessFactor": 0.4}},
+]
+
 FLOOR = {"name": "Floor",
          "pbrMetallicRoughness": {"baseColorFactor": [0.35, 0.35, 0.35, 1], "metallicFactor": 0,
                                   "roughnessFactor": 0.9}}
@@ -139,16 +156,16 @@ TEXTURES = [
 
 
 def main():
-    drafts = sys.argv[1:2] == ["--drafts"]
-    if len(sys.argv) != 2 + drafts:
+    others = {"--drafts": DRAFTS, "--models": MODELS}.get(sys.argv[1]) if len(sys.argv) == 3 else None
+    if len(sys.argv) != 2 and not others:
         sys.exit(__doc__.strip())
-    materials = (DRAFTS if drafts else MATERIALS) + [FLOOR]
-    textures = TEXTURES if drafts else TEXTURES[:2]
+    materials = (others or MATERIALS) + [FLOOR]
+    textures = TEXTURES if others else TEXTURES[:2]
     positions, normals, tangents, uvs, indices = sphere(SEGMENTS, RINGS)
     buffer = Buffer()
     ball = {"POSITION": buffer.add(positions, 3, min=[-1, -1, -1], max=[1, 1, 1]),
             "NORMAL": buffer.add(normals, 3), "TANGENT": buffer.add(tangents, 4), "TEXCOORD_0": buffer.add(uvs, 2)}
-    if not drafts:
+    if not others:
         hills = {**ball, "_TERRAIN": buffer.add(terrain_shares(positions), 3)}
     faces = buffer.add_indices(indices)
     ground = {"POSITION": buffer.add([-12, 0, 6, 12, 0, 6, 12, 0, -9, -12, 0, -9], 3, min=[-12, 0, -9], max=[12, 0, 6])}

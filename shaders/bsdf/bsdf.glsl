@@ -1,6 +1,9 @@
 // The BSDF of glTF materials: metallic-roughness (glTF 2.0, appendix B) and its extensions, in layers over a base that
 // is part metal, part dielectric. A lobe leaves no code if no key of the case has it.
 //
+// A key with a model of a pack has that in place of the base (bsdf/model.glsl), whose functions then give 0: no
+// microfacets, and the diffuse lobes stand for all that the model reflects and lets through.
+//
 // Appendix B.1 mixes two BRDFs: mix(dielectric, metal, metallic). Both have the same microfacets. A key with
 // GLINT_PARTIAL_METAL has both bases; in any other key the base is all metal or all dielectric.
 #include "generated/scene.glsl"
@@ -29,7 +32,8 @@ struct Bsdf {
     GLINT_RELAXED vec3 diffuseTransmitted;  // albedo of the diffuse lobe on the far side
     Layers layers;
 #if GLINT_SHARED_LIGHTS
-    float mirrored;           // share of the microfacets' first reflection that counts; 1 unless rays bring the rest
+    float mirrored;           // share of the microfacets' first reflection, or of a model's light, that counts; 1 unless
+                              // rays bring the rest
 #endif
     // prepareBsdf() sets the following members, which depend on the view:
     vec3 view;         // unit, z >= kMinViewCosine
@@ -63,12 +67,18 @@ GLINT_RELAXED vec3 multiScatterFresnel(Bsdf b, Features features) {
 
 // The share of a uniform white sky that the microfacets reflect at the first bounce, from E's loss and bias.
 GLINT_RELAXED vec3 singleScatterAlbedo(Bsdf b, Features features, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
+    if (hasModel(features)) {
+        return vec3(0.0);
+    }
     GLINT_RELAXED vec3 dielectric = b.f0 * (1.0 - loss - bias) + vec3(b.f90 * bias);
     return withMetal(b, features, dielectric, b.metalF0 * (1.0 - loss - bias) + vec3(bias));
 }
 
 // The share that the microfacets reflect in all. With energy compensation this includes the later bounces.
 GLINT_RELAXED vec3 specularAlbedo(Bsdf b, Features features, GLINT_RELAXED float loss, GLINT_RELAXED float bias) {
+    if (hasModel(features)) {
+        return vec3(0.0);
+    }
     GLINT_RELAXED vec3 single = singleScatterAlbedo(b, features, loss, bias);
     return GLINT_ENERGY_COMPENSATION != 0 ? single + multiScatterFresnel(b, features) * loss : single;
 }
@@ -117,6 +127,14 @@ void prepareBsdf(inout Bsdf b, Features features, vec3 view) {
         float length2 = dot(across, across);
         b.view = vec3(length2 > 0.0 ? across * inversesqrt(length2) : vec2(1.0, 0.0), kMinViewCosine);
     }
+#if GLINT_MODELS
+    if (hasModel(features)) {
+        b.viewLoss = b.viewBias = b.meanLoss = b.meanBias = 0.0;
+        prepareModel(b.layers, features, b.view);
+        prepareLayers(b.layers, features, b.view);
+        return;
+    }
+#endif
     vec2 lossBias = lobeAlbedo(b, features, b.view);
     b.viewLoss = lossBias.x;
     b.viewBias = lossBias.y;
@@ -335,6 +353,14 @@ vec3 baseTransmission(Bsdf b, Features features, vec3 l) {
 // is their part of evaluateBsdf(): rays that share the light with samples must bring the same.
 vec3 evaluateDiffuse(Bsdf b, Features features, vec3 l) {
     vec3 base = vec3(0.0);
+#if GLINT_MODELS
+    if (hasModel(features)) {
+        if (l.z > 0.0 || transmits(features)) {
+            // Both vanish together where light grazes the surface.
+            base = evaluateModel(b.layers, features, b.view, l) * (kPi / max(abs(l.z), 1e-6));
+        }
+    } else
+#endif
     if (l.z > 0.0) {
         GLINT_RELAXED float fresnel = largest(facetBetween(b, features, l).dielectricFresnel);
         base = diffuseLobe(b.layers, features, b.diffuse, b.view, l) * diffuseShare(b, features, l, fresnel);
@@ -352,6 +378,15 @@ vec3 evaluateDiffuse(Bsdf b, Features features, vec3 l) {
 
 // Returns the light that the base reflects or transmits, times |n·l|, without the layers above it.
 vec3 evaluateBase(Bsdf b, Features features, vec3 l) {
+#if GLINT_MODELS
+    if (hasModel(features)) {
+        vec3 light = l.z > 0.0 || transmits(features) ? evaluateModel(b.layers, features, b.view, l) : vec3(0.0);
+#if GLINT_SHARED_LIGHTS
+        light *= b.mirrored;
+#endif
+        return light;
+    }
+#endif
     if (l.z > 0.0) {
         return baseReflection(b, features, l);
     }

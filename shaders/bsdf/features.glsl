@@ -53,9 +53,24 @@ bool inputOfKey(Features features, uint bit) {
     ((GLINT_MODULE_ALWAYS_INPUTS & GLINT_DECIDED_ALWAYS_INPUTS & (bit)) != 0u ||                                \
      (((GLINT_MODULE_ANY_INPUTS | GLINT_DECIDED_ANY_INPUTS) & (bit)) != 0u && inputOfKey(features, bit)))
 
+// Returns whether light changes what the surface shows.
+bool isLit(Features features) {
+    return !hasLobe(features, GLINT_UNLIT_LOBES);
+}
+
+// Returns whether a model of a pack stands in place of glTF's base (bsdf/model.glsl).
+bool hasModel(Features features) {
+    return hasLobe(features, GLINT_MODEL_LOBES);
+}
+
 // Returns whether the base sends light to the far side.
 bool transmits(Features features) {
-    return hasLobe(features, GLINT_TRANSMISSION) || hasLobe(features, GLINT_DIFFUSE_TRANSMISSION);
+    return hasLobe(features, GLINT_BOTH_SIDES_LOBES);
+}
+
+// Returns whether it scatters light there: Bsdf::diffuseTransmitted.
+bool scattersBehind(Features features) {
+    return hasLobe(features, GLINT_DIFFUSE_TRANSMISSION | (GLINT_MODEL_LOBES & GLINT_BOTH_SIDES_LOBES));
 }
 
 // The features of any key of the scene, with all lobes: for primary surfaces.

@@ -1,6 +1,13 @@
 // Samples directions in proportion to the BSDF, one lobe of a mixture at a time, and gives the density of the mixture.
 #include "bsdf/bsdf.glsl"
 
+#if GLINT_MODELS
+// Returns whether the model samples itself.
+bool samplesModel(Features features) {
+    return hasLobe(features, GLINT_SAMPLED_MODEL_LOBES);
+}
+#endif
+
 struct BsdfSample {
     vec3 direction;  // unit vector, in the frame of the surface
     vec3 weight;     // BSDF |n·l| / pdf
@@ -20,6 +27,9 @@ LobeChances lobeChances(Bsdf b, Features features) {
     vec3 all = specularAlbedo(b, features, b.viewLoss, b.viewBias);
     float below = max(smallest(specularPassed(b, b.viewLoss, b.viewBias)), 0.0);
     LobeChances chances;
+    if (hasModel(features)) {
+        below = 1.0;
+    }
     chances.microfacets = luminance(single);
     chances.diffuse = luminance(b.diffuse) * below + luminance(all - single);
     chances.passed = 0.0;
@@ -28,7 +38,7 @@ LobeChances lobeChances(Bsdf b, Features features) {
         chances.microfacets += luminance(b.transmitted) * max(below - later, 0.0);
         chances.passed = luminance(b.transmitted) * later;
     }
-    if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
+    if (scattersBehind(features)) {
         chances.passed += luminance(b.diffuseTransmitted) * below;
     }
     float base = layerChances(b.layers, features, b.view, chances.layers);
@@ -38,6 +48,10 @@ LobeChances lobeChances(Bsdf b, Features features) {
     float scale = isBlack ? 0.0 : 1.0 / total;
     chances.microfacets = !isBlack ? chances.microfacets * base * scale : 1.0;
     chances.diffuse *= base * scale;
+    if (hasModel(features)) {
+        chances.diffuse = !isBlack ? chances.diffuse : 1.0;
+        chances.microfacets = 0.0;
+    }
     chances.passed *= base * scale;
     scaleChances(chances.layers, scale);
     return chances;
@@ -135,8 +149,15 @@ float microfacetPdf(Bsdf b, Features features, vec3 l) {
 // The density, by solid angle, with which sampleBsdf() chooses l.
 float bsdfPdf(Bsdf b, Features features, vec3 l) {
     LobeChances chances = lobeChances(b, features);
-    float pdf = chances.microfacets * microfacetPdf(b, features, l);
-    pdf += (l.z > 0.0 ? chances.diffuse * l.z : chances.passed * -l.z) * kInversePi;
+    float pdf = (l.z > 0.0 ? chances.diffuse * l.z : chances.passed * -l.z) * kInversePi;
+#if GLINT_MODELS
+    if (samplesModel(features)) {
+        pdf = (chances.diffuse + chances.passed) * modelDensity(b.layers, features, b.view, l);
+    }
+#endif
+    if (!hasModel(features)) {
+        pdf += chances.microfacets * microfacetPdf(b, features, l);
+    }
     return pdf + layersDensity(b.layers, features, chances.layers, b.view, l);
 }
 
@@ -172,8 +193,12 @@ BsdfSample sampleBsdf(Bsdf b, Features features, vec3 u) {
     LobeChances chances = lobeChances(b, features);
     float chooser = u.z;
     vec3 l;
-    if (chooser < chances.microfacets) {
+    if (!hasModel(features) && chooser < chances.microfacets) {
         l = sampleMicrofacet(b, features, vec3(u.xy, min(chooser / chances.microfacets, 0.99999994)));
+#if GLINT_MODELS
+    } else if (samplesModel(features) && chooser < chances.diffuse + chances.passed) {
+        l = sampleModel(b.layers, features, b.view, u.xy);
+#endif
     } else if (chooser < chances.microfacets + chances.diffuse) {
         l = sampleCosine(u.xy);
     } else if (chooser < chances.microfacets + chances.diffuse + chances.passed) {

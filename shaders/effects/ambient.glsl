@@ -118,7 +118,7 @@ vec3 ambientLight(Surface surface, Features features, vec3 view, SkyShares sky) 
     if (hasLobe(features, GLINT_TRANSMISSION) && sky.transmitted > 0.0) {
         back += ambientTransmission(surface, features) * sky.transmitted;
     }
-    if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
+    if (scattersBehind(features)) {
         back += surface.bsdf.diffuseTransmitted * (below * sky.behind) * hostSkyIrradianceOverPi(-surface.normal);
     }
 #if GLINT_SHADOW_GLASS

@@ -31,10 +31,10 @@ void shadeFirst(uvec2 pixel, uint number, HostGeometry geometry, uint primitive,
                        uintBitsToFloat(packSnorm2x16(octahedralEncode(hit.geometricNormal))));
     float depth = dot(hit.position - GLINT_FRAME.cameraPosition, GLINT_FRAME.cameraForward);
     Surface surface = evaluateAny(hit, features);
-    bool isLit = !hasLobe(features, GLINT_UNLIT);
+    bool lit = isLit(features);
     vec3 radiance = surface.emission;
     vec3 scattered = vec3(0.0);
-    if (isLit) {
+    if (lit) {
         SkyShares sky = wholeSky();
         sampleEffects(hit, surface, features, sky);
         scattered = scatteredBy(hit, surface, features, sky);
@@ -43,7 +43,7 @@ void shadeFirst(uvec2 pixel, uint number, HostGeometry geometry, uint primitive,
         skipEffects(hit.target, kRayUnlit);
     }
 #if GLINT_SURFACE_LAYERS
-    storeSurfaceLayers(PrimaryPoint(place, geometry, number, primitive, ray, hit, surface, features, isLit, depth),
+    storeSurfaceLayers(PrimaryPoint(place, geometry, number, primitive, ray, hit, surface, features, lit, depth),
                        scattered);
 #endif
     storeFirst(place, radiance, depth, origin);

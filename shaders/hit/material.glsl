@@ -14,7 +14,8 @@ SurfaceValues surfaceValues(Hit hit, Features features) {
     return valuesAt(hit, features);
 }
 
-// Returns the base's BSDF: glTF 2.0, appendix B.3.5. The layers are not set.
+// Returns the base's BSDF: glTF 2.0, appendix B.3.5; of a model, what it has unless it says more. The layers are not
+// set.
 Bsdf makeBase(SurfaceValues values, Features features) {
     Bsdf bsdf;
     bool both = hasInput(features, GLINT_PARTIAL_METAL);
@@ -27,6 +28,11 @@ Bsdf makeBase(SurfaceValues values, Features features) {
     bsdf.transmitted = vec3(0.0);
     bsdf.diffuseTransmitted = vec3(0.0);
     bsdf.eta = vec3(1.0);
+    if (hasModel(features)) {
+        bsdf.diffuse = values.color.rgb;
+        bsdf.f0 = bsdf.metalF0 = vec3(0.0);
+        bsdf.f90 = bsdf.metallic = 0.0;
+    }
 #if GLINT_SHARED_LIGHTS
     bsdf.mirrored = 1.0;
     bsdf.layers.counted = wholeLayerShares();
@@ -64,7 +70,7 @@ Surface evaluateSurface(Hit hit, Features features) {
 Surface evaluateAny(Hit hit, Features features) {
     changeCoordinates(hit, features);
     SurfaceValues values = valuesAt(hit, features);
-    if (hasLobe(features, GLINT_UNLIT)) {
+    if (!isLit(features)) {
         Surface surface;
         surface.emission = values.color.rgb;
         return surface;

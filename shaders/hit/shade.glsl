@@ -32,7 +32,7 @@ void keepSampledLobes(Hit hit, Features features, uint emitter, SkyShares sky, i
 #if GLINT_SKY_LIGHT
     if (emitter == kSkyEmitter) {
         if (!sendsRay()) {
-            keepShares(sampledShares(surface, features, wholeSky(), wholeSky()), surface);
+            keepShares(features, sampledShares(surface, features, wholeSky(), wholeSky()), surface);
         }
 #if GLINT_SHADOW_GLASS
         surface.bsdf.transmitted = vec3(0.0);
@@ -325,7 +325,7 @@ ShadeResult shadeSurface(Hit hit, Surface surface, Features features) {
 // Returns the light of the hit by itself, whatever path led to it.
 ShadeResult shadeAlone(Hit hit, Features features) {
     Surface surface = evaluateAny(hit, features);
-    if (hasLobe(features, GLINT_UNLIT)) {
+    if (!isLit(features)) {
         ShadeResult result = darkness();
         result.radiance = surface.emission;
         return result;

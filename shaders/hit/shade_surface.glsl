@@ -10,7 +10,7 @@ ShadeResult shade(Hit hit, Features features) {
     answer.motion = hit.position - hit.previousPosition;
     answer.material = hit.material;
     Surface surface = evaluateAny(hit, features);
-    if (hasLobe(features, GLINT_UNLIT)) {
+    if (!isLit(features)) {
         answer.normal = hit.geometricNormal;
         answer.roughness = 1.0;
         answer.occlusion = 1.0;

@@ -52,7 +52,7 @@ float passedToDiffuse(PrimaryPoint at) {
 
 vec3 diffuseAlbedo(PrimaryPoint at) {
     vec3 both = at.surface.bsdf.diffuse;
-    if (hasLobe(at.features, GLINT_DIFFUSE_TRANSMISSION)) {
+    if (scattersBehind(at.features)) {
         both += at.surface.bsdf.diffuseTransmitted;
     }
     return both * passedToDiffuse(at);

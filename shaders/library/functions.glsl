@@ -67,7 +67,7 @@ GlintSurface librarySurface(GlintHit given, HostGeometry geometry, Features feat
     result.featureInputs = geometry.featureInputs;
     result.number = given.number;
     result.clearance = hit.clearance;
-    if (hasLobe(features, GLINT_UNLIT)) {
+    if (!isLit(features)) {
         result.normal = hit.normal * facing(hit, features);
         result.albedo = vec3(0.0);
         result.f0 = vec3(0.0);
@@ -97,7 +97,7 @@ Surface surfaceSeenFrom(GlintSurface given, Features features, vec3 wo) {
 }
 
 vec3 libraryEvaluate(GlintSurface given, Features features, vec3 wo, vec3 wi) {
-    if (hasLobe(features, GLINT_UNLIT)) {
+    if (!isLit(features)) {
         return vec3(0.0);
     }
     return scatteredLight(surfaceSeenFrom(given, features, wo), features, given.geometricNormal, wi);
@@ -105,7 +105,7 @@ vec3 libraryEvaluate(GlintSurface given, Features features, vec3 wo, vec3 wi) {
 
 GlintSample librarySample(GlintSurface given, Features features, vec3 wo, vec3 random) {
     GlintSample result = GlintSample(vec3(0.0), vec3(0.0), 0.0);
-    if (hasLobe(features, GLINT_UNLIT)) {
+    if (!isLit(features)) {
         return result;
     }
     Surface surface = surfaceSeenFrom(given, features, wo);
@@ -119,7 +119,7 @@ GlintSample librarySample(GlintSurface given, Features features, vec3 wo, vec3 r
 }
 
 float libraryDensity(GlintSurface given, Features features, vec3 wo, vec3 wi) {
-    if (hasLobe(features, GLINT_UNLIT)) {
+    if (!isLit(features)) {
         return 0.0;
     }
     Surface surface = surfaceSeenFrom(given, features, wo);
@@ -138,7 +138,7 @@ Hit hitOf(GlintSurface given) {
 }
 
 GlintRadiance libraryRadiance(GlintSurface given, Features features) {
-    if (hasLobe(features, GLINT_UNLIT)) {
+    if (!isLit(features)) {
         return GlintRadiance(given.emission, vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
     }
     Hit hit = hitOf(given);
@@ -149,7 +149,7 @@ GlintRadiance libraryRadiance(GlintSurface given, Features features) {
 
 GlintMirror libraryMirror(GlintSurface given, Features features) {
     GlintMirror result = GlintMirror(reflect(-given.view, given.normal), vec3(0.0), vec3(0.0));
-    if (hasLobe(features, GLINT_UNLIT)) {
+    if (!isLit(features)) {
         return result;
     }
     Surface surface = given.inner;

@@ -18,7 +18,7 @@ void keepLobesOfLight(Features features, HostLight light, vec3 direction, float 
         shares = sampledShares(surface, features, shares, sky);
     }
 #endif
-    keepShares(shares, surface);
+    keepShares(features, shares, surface);
 }
 
 #endif

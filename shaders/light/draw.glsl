@@ -115,7 +115,7 @@ uint firstDrawn() {
 // `features` are those of the module.
 void drawLightsFirst(Hit hit, Features features) {
     uint first = firstDrawn();
-    uint end = hasLobe(features, GLINT_UNLIT) ? first : hostLightCount(hit.position);
+    uint end = isLit(features) ? hostLightCount(hit.position) : first;
     for (uint i = first; i < end; ++i) {
         lightsDrawnFirst[i - first] = drawLight(hit, features, i);
     }

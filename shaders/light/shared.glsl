@@ -54,8 +54,8 @@ bool passesAsLight(uint emitter) {
 }
 
 // Keeps these shares of the lobes.
-void keepShares(SkyShares shares, inout Surface surface) {
-    surface.bsdf.mirrored = shares.mirrored;
+void keepShares(Features features, SkyShares shares, inout Surface surface) {
+    surface.bsdf.mirrored = hasModel(features) ? shares.diffuse : shares.mirrored;
     surface.bsdf.layers.counted = shares.layers;
     surface.bsdf.diffuse *= shares.diffuse;
     surface.bsdf.transmitted *= shares.transmitted;

@@ -3,6 +3,7 @@
 #include "base/fields.h"
 #include "cli/render/report.h"
 #include "emit/package/manifest.h"
+#include "gltf/document/material_list.h"
 #include "inspect/pipelines.h"
 #include "resolve/profile.h"
 
@@ -58,6 +59,7 @@ std::vector<Part> parts() {
         outputOf("render", "glint render --json; --stats writes the same without diagnostics",
                  schemaOf<cli::RenderReport>()),
         fileOf("edits", "The file of glint render --edits", schemaOf<session::EditList>()),
+        fileOf("material_list", "A list of materials without a scene", schemaOf<gltf::MaterialList>()),
         fileOf("device", "The device file of glint bench --calibrate", schemaOf<measure::DeviceFile>()),
         fileOf("gpu", "A table of --gpu", schemaOf<compiler::GpuCosts>()),
         fileOf("manifest", "manifest.json of a package", schemaOf<compiler::Manifest>()),

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -37,9 +38,10 @@ const materials::MaterialModel& packs() {
 
 class ExamplePacks : public ::testing::TestWithParam<std::string> {};
 std::string nameOfFolder(const ::testing::TestParamInfo<std::string>& folder) {
-    return folder.index == 0 ? "Examples" : "Drafts";
+    return std::array{"Examples", "Drafts", "Models"}[folder.index];
 }
-INSTANTIATE_TEST_SUITE_P(Folders, ExamplePacks, ::testing::Values("materials", "materials/drafts"),
+INSTANTIATE_TEST_SUITE_P(Folders, ExamplePacks,
+                         ::testing::Values("materials", "materials/drafts", "materials/models"),
                          nameOfFolder);
 
 TEST_P(ExamplePacks, StrategiesAndMergePoliciesGiveOneImage) {

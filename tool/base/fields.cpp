@@ -1,5 +1,7 @@
 #include "base/fields.h"
 
+#include "base/text.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -86,6 +88,19 @@ void readFields(const Fields& fields, void* object, JsonReader& reader, const Js
             if (value != nullptr) {
                 readField(field, object, reader, *value, place + "/" + field.name);
             }
+        }
+    }
+}
+
+void refuseOthers(const Fields& fields, JsonReader& reader, const Json& json, const std::string& place) {
+    std::vector<std::string> names;
+    for (const Field& field : fields) {
+        names.emplace_back(field.name);
+    }
+    for (const auto& [name, value] : json.items()) {
+        if (std::ranges::find(names, name) == names.end()) {
+            reader.fail(fmt::format("{}/{}", place, name),
+                        fmt::format("is no member{}", suggestion(name, names)));
         }
     }
 }

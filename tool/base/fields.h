@@ -72,6 +72,8 @@ const Fields& fields() {
 Json writeFields(const Fields& fields, const void* object);
 void readFields(const Fields& fields, void* object, JsonReader& reader, const Json& json,
                 const std::string& place);
+// Fails at the first member of an object that is none of the fields.
+void refuseOthers(const Fields& fields, JsonReader& reader, const Json& json, const std::string& place);
 Json schemaOfFields(const Fields& fields);
 Json schemaOfNumber(bool isWhole, const FieldTraits& traits);
 Json schemaOfText(const FieldTraits& traits);

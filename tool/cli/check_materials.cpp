@@ -110,7 +110,7 @@ base::Json toJson(const measure::MaterialChecksReport& report, const std::vector
         }
         features.push_back(base::Json{{"feature", feature.feature},
                                       {"declaration", feature.declaration},
-                                      {"layer", feature.isLayer},
+                                      {"lobe", feature.isLobe},
                                       {"combinations", feature.combinations},
                                       {"failed", feature.failed()},
                                       {"checks", checks}});

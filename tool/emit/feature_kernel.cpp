@@ -17,16 +17,16 @@ constexpr const char* kKernelName = "check_features.comp";
 static_assert(sizeof(FeatureKernelInput) == 14 * sizeof(std::uint32_t));
 static_assert(sizeof(FeatureKernelOutput) == 28 * sizeof(float));
 
-std::vector<const materials::FeatureCode*> layersOf(const Plan& plan) {
+std::vector<const materials::FeatureCode*> lobesOf(const Plan& plan) {
     const materials::FeatureMask used = plan.primaryAlways | plan.primarySometimes;
-    std::vector<const materials::FeatureCode*> layers;
+    std::vector<const materials::FeatureCode*> lobes;
     for (const materials::FeatureCode& code : plan.model->code) {
-        if (!code.layer.empty() &&
+        if (!(code.layer.empty() && code.model.empty()) &&
             (plan.model->features[static_cast<std::size_t>(code.feature)].mask() & used) != 0) {
-            layers.push_back(&code);
+            lobes.push_back(&code);
         }
     }
-    return layers;
+    return lobes;
 }
 
 }  // namespace
@@ -37,15 +37,18 @@ Result<FeatureKernel> compileFeatureKernel(const Build& build) {
     GLINT_TRY(auto sources, makeSourceSet(*build.scenes, plan, settings));
     FeatureKernel kernel;
     kainjow::mustache::data layers(kainjow::mustache::data::type::list);
-    for (const materials::FeatureCode* const layer : layersOf(plan)) {
-        kernel.layers.push_back(layer->name);
-        layers.push_back(kainjow::mustache::object{
-            {"name", layer->name},
-            {"macro", plan.model->features[static_cast<std::size_t>(layer->feature)].macro},
-            {"lobe", std::to_string(kernel.layers.size())}});
+    kainjow::mustache::data models(kainjow::mustache::data::type::list);
+    for (const materials::FeatureCode* const lobe : lobesOf(plan)) {
+        kernel.lobes.push_back(lobe->name);
+        (lobe->model.empty() ? layers : models)
+            .push_back(kainjow::mustache::object{
+                {"name", lobe->name},
+                {"macro", plan.model->features[static_cast<std::size_t>(lobe->feature)].macro},
+                {"lobe", std::to_string(kernel.lobes.size())}});
     }
     kainjow::mustache::data context;
     context.set("layers", layers);
+    context.set("models", models);
     context.set("wordsIn", std::to_string(sizeof(FeatureKernelInput) / sizeof(std::uint32_t)));
     context.set("wordsOut", std::to_string(sizeof(FeatureKernelOutput) / sizeof(float)));
     GLINT_TRY(const auto text, renderTemplate(sources, kKernelTemplate, context));

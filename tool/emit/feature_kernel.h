@@ -16,7 +16,7 @@ namespace glint::compiler {
 // Vectors of the world are unit vectors; the surface's own frame has its normal as z.
 struct FeatureKernelInput {
     std::uint32_t geometry = 0;
-    std::uint32_t lobe = 0;  // 0: the whole BSDF; else 1 + an index into FeatureKernel::layers
+    std::uint32_t lobe = 0;  // 0: the whole BSDF; else 1 + an index into FeatureKernel::lobes
     std::uint32_t mode = 0;  // kKernelSamples, kKernelSwaps
     float place[2]{};        // barycentrics on the first triangle
     float view[3]{};         // in the world
@@ -46,7 +46,7 @@ struct FeatureKernelOutput {
 
 struct FeatureKernel {
     std::vector<std::uint32_t> spirv;
-    std::vector<std::string> layers;  // names of declarations, from the lowest layer to the highest
+    std::vector<std::string> lobes;  // names of the declarations of layers and models
 };
 
 // Compiles the kernel for the package of a build. Has the errors of compilePackage() that concern GLSL.

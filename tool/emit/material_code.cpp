@@ -43,8 +43,10 @@ std::string conditionOf(const materials::MaterialModel& model, const materials::
                         Asked asked) {
     const auto feature = [&](int index) { return model.features[static_cast<std::size_t>(index)]; };
     std::string text = code.feature < 0 ? "" : hasFeature(feature(code.feature), asked);
-    if (code.unless >= 0) {
-        text += fmt::format("{}!{}", text.empty() ? "" : " && ", hasFeature(feature(code.unless), asked));
+    for (const materials::Feature& other : model.features) {
+        if ((other.mask() & code.unless) != 0) {
+            text += fmt::format("{}!{}", text.empty() ? "" : " && ", hasFeature(other, asked));
+        }
     }
     return text;
 }
@@ -130,6 +132,19 @@ void addLayers(mustache::data& context, const materials::MaterialModel& model,
                                                {"when", conditionOf(model, *one, Asked::OfModule)}});
         }
     }
+    mustache::data models(mustache::data::type::list);
+    for (const materials::FeatureCode* const one : code) {
+        if (!one->model.empty()) {
+            models.push_back(
+                mustache::object{{"name", one->name},
+                                 {"type", typeName(one->name)},
+                                 {"file", one->model},
+                                 {"macro", model.features[static_cast<std::size_t>(one->feature)].macro},
+                                 {"isSampled", mustache::data(one->isSampled)}});
+        }
+    }
+    context.set("hasModels", mustache::data(!models.is_empty_list()));
+    context.set("models", models);
     context.set("diffuse", diffuse);
     context.set("layers", layers);
     context.set("mirrors", mirrors);

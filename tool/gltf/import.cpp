@@ -11,6 +11,7 @@
 #include <exception>
 #include <map>
 #include <new>
+#include <numbers>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -166,6 +167,55 @@ bool usesMaterial(const Scene& scene, std::size_t material) {
     });
 }
 
+// Planning takes what a list says of values and textures that programs give at run time; pictures show the
+// values of the list, white textures and
+// level normals.
+void addRunTimeValues(const Document& document, Scene& scene) {
+    for (const auto& [material, index] : document.edited()) {
+        const materials::Material& rest = scene.materials[static_cast<std::size_t>(material)];
+        if (scene.animatedMaterials.empty() || scene.animatedMaterials.back().material != material) {
+            scene.animatedMaterials.push_back({material, rest, rest, {}});
+            for (const float value : rest.values) {
+                scene.animatedMaterials.back().planned.ranges.push_back({value, value});
+            }
+        }
+        AnimatedMaterial& animated = scene.animatedMaterials.back();
+        const materials::Parameter& parameter = rest.model().parameters[static_cast<std::size_t>(index)];
+        const materials::ValueInterval range =
+            parameter.isAngle
+                ? materials::ValueInterval{-std::numbers::pi, std::numbers::pi}
+                : materials::ValueInterval{parameter.hold(parameter.low), parameter.hold(parameter.high)};
+        for (int i = 0; i < parameter.channels; ++i) {
+            animated.planned.ranges[static_cast<std::size_t>(parameter.first + i)] = range;
+        }
+        animated.changes.push_back(fmt::format("{} {:.4g} to {:.4g}", parameter.name, range.low, range.high));
+    }
+}
+
+void fillRunTimeImages(const ImportOptions& options, Scene& scene) {
+    if (!options.decodeImages && !options.keepImageFiles) {
+        return;
+    }
+    for (Image& image : scene.images) {
+        if (image.isAtRunTime) {
+            image.width = image.height = 1;
+            image.pixels = {255, 255, 255, 255};
+        }
+    }
+    for (const materials::Material& material : scene.materials) {
+        for (std::size_t slot = 0; slot < material.textures.size(); ++slot) {
+            const int texture = material.textures[slot].texture;
+            if (texture >= 0 && material.readsOf(static_cast<int>(slot)).isNormals) {
+                Image& image = scene.images[static_cast<std::size_t>(
+                    scene.textures[static_cast<std::size_t>(texture)].image)];
+                if (image.isAtRunTime) {
+                    image.pixels = {128, 128, 255, 255};
+                }
+            }
+        }
+    }
+}
+
 Status fillScene(Document& document, Scene& scene) {
     GLINT_TRY_DO(importMaterials(document, scene));
     GLINT_TRY_DO(importNodes(document, scene));
@@ -180,6 +230,7 @@ Status fillScene(Document& document, Scene& scene) {
     GLINT_TRY_DO(importSkins(document, scene));
     GLINT_TRY_DO(importInstances(document, scene));
     importAnimations(document, scene);
+    addRunTimeValues(document, scene);
     settleColors(document, scene);
     GLINT_TRY_DO(applyVariant(document, scene));
     if (usesMaterial(scene, scene.materials.size())) {
@@ -199,6 +250,7 @@ Status fillScene(Document& document, Scene& scene) {
         }
         foldConstantTextures(scene);
     }
+    fillRunTimeImages(document.options(), scene);
     scene.files = document.files();
     scene.warnings.insert(scene.warnings.begin(), document.warnings().begin(), document.warnings().end());
     return okStatus();

@@ -188,6 +188,7 @@ struct Image {
     std::vector<std::uint8_t> file;
     // The image that stands for all with the same texels, or -1 if this one does. Textures show that one.
     int sameAs = -1;
+    bool isAtRunTime = false;  // a program gives its texels; until then it is white
 };
 
 constexpr std::uint64_t pixelCount(const Image& image, int level) {

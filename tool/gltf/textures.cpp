@@ -181,6 +181,10 @@ Result<Image> importImage(Document& document, int index) {
     Image image;
     image.name = nameOf(json, index);
     image.pointer = imagePointer(index);
+    if (find(json, kAtRunTime) != nullptr) {
+        image.isAtRunTime = true;
+        return image;
+    }
     const bool hasView = find(json, "bufferView") != nullptr;
     const std::string uri = memberOr<std::string>(json, "uri", "");
     if (hasView == !uri.empty()) {

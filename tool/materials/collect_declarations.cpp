@@ -32,7 +32,7 @@ std::string macroCase(std::string_view name) {
 
 }  // namespace
 
-int ModelBuilder::addFeature(const Members& members, Feature feature, bool isLit) {
+int ModelBuilder::addFeature(const Members& members, Feature feature, Light light) {
     feature.macro = "GLINT" + macroCase("_" + feature.name);
     feature.about = members.text("about", "");
     feature.isInDraft = members.flag("draft", false);
@@ -47,7 +47,7 @@ int ModelBuilder::addFeature(const Members& members, Feature feature, bool isLit
         feature.cost = feature.texture >= 0 ? kUsualTexture : isLobe(feature) ? kUsualLobe : kUsualInput;
     }
     pending_.push_back(
-        {std::move(feature), members.number("order", kNoOrder), members.where(), isLit, isOfPack_});
+        {std::move(feature), members.number("order", kNoOrder), members.where(), light, isOfPack_});
     return static_cast<int>(pending_.size()) - 1;
 }
 
@@ -75,7 +75,7 @@ void ModelBuilder::readNeeds(const Members& members, Feature& feature) {
 
 void ModelBuilder::checkOwn(const Members& members, bool hasOwn) {
     for (const char* const member :
-         {"short", "lit", "given", "needs", "draft", "ofBase", "cost", "order", "gltf", "excludes"}) {
+         {"short", "light", "given", "needs", "draft", "ofBase", "cost", "order", "gltf", "excludes"}) {
         if (!hasOwn && members.has(member)) {
             failAt(members.at(member), "is of a feature of the declaration's own, and it has none",
                    "give the declaration \"extension\" or \"neutral\"");
@@ -112,7 +112,8 @@ void ModelBuilder::collect(File& file) {
         feature.object = members.has("extension") ? file.object : -1;
         feature.gltf = members.text("gltf", gltfPlace(file.object, ""));
         feature.isOfBase = members.flag("ofBase", false);
-        file.mainFeature = addFeature(members, std::move(feature), members.flag("lit", true));
+        const Light light = choose(kLights, members, "light", members.text("light", "front")).light;
+        file.mainFeature = addFeature(members, std::move(feature), light);
     }
     for (const auto& [json, where] : members.list("parameters")) {
         const Members parameter(*json, where, kParameterMembers);
@@ -137,7 +138,7 @@ void ModelBuilder::collect(File& file) {
                         : stage == Stage::Layer ? Stage::Surface
                                                 : stage;
         feature.gltf = further.text("gltf");
-        addFeature(further, std::move(feature), true);
+        addFeature(further, std::move(feature), Light::Front);
     }
 }
 
@@ -155,6 +156,10 @@ Parameter ModelBuilder::makeParameter(const File& file, const Members& members, 
     parameter.low = -kLargestFloat;
     parameter.high = kLargestFloat;
     if (members.has("range")) {
+        if (parameter.isAngle) {
+            failAt(members.at("range"), "angles are held between half a turn either way, whatever the range",
+                   "leave it out");
+        }
         const auto range = members.list("range");
         if (range.size() != 2) {
             failAt(members.at("range"), "must be the least and the greatest value; null means no limit");
@@ -322,7 +327,7 @@ void ModelBuilder::addTexture(const File& file, const Members& members) {
         }
         feature.hasOwnCoordinates = true;
     }
-    texture.feature = addFeature(members, std::move(feature), true);
+    texture.feature = addFeature(members, std::move(feature), Light::Front);
     model_.textures.push_back(std::move(texture));
 }
 

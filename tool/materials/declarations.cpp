@@ -253,7 +253,6 @@ MaterialModel ModelBuilder::build() {
             parameter.scaledByChannels = own.scaledByChannels;
         }
     }
-    keepPlacesOfUnlit();
     std::vector<DeclaredCode> code;
     for (const File& file : files_) {
         const Members members = membersOf(file);
@@ -264,18 +263,21 @@ MaterialModel ModelBuilder::build() {
         }
     }
     model_.code = orderCode(std::move(code));
+    excludeFromModels();
+    keepPlacesOfUnlit();
     orderByDependence();
     return std::move(model_);
 }
 
-int ModelBuilder::replacing(int object) const {
+FeatureMask ModelBuilder::replacing(int object) const {
+    FeatureMask mask = 0;
     for (const File& file : files_) {
         const int replaced = model_.objects[static_cast<std::size_t>(file.object)].replaces;
-        if (object > 0 && replaced == object) {
-            return file.mainFeature;
+        if (object > 0 && replaced == object && file.mainFeature >= 0) {
+            mask |= model_.features[static_cast<std::size_t>(file.mainFeature)].mask();
         }
     }
-    return -1;
+    return mask;
 }
 
 void ModelBuilder::parse(const DeclarationFile& file) {

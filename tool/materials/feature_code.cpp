@@ -2,10 +2,29 @@
 
 namespace glint::materials {
 
+namespace {
+
+// A model stands in place of the base that it replaces, in the keys of its own feature.
+void checkModel(const Members& declaration, const Members& glsl, const FeatureCode& code) {
+    if (declaration.text("stage") != "base") {
+        failAt(glsl.at("model"), "needs a declaration whose \"stage\" is \"base\"");
+    }
+    if (code.feature < 0 || !declaration.has("extension") || !declaration.has("replaces")) {
+        failAt(glsl.at("model"), "a model is the base of materials that name it",
+               "give the declaration \"extension\", and \"replaces\" with the object of the base");
+    }
+    if (code.bsdf.empty() || !code.layer.empty() || !code.diffuse.empty()) {
+        failAt(glsl.at("model"),
+               "needs \"bsdf\", which sets its parameters; it can be neither a layer nor a diffuse lobe");
+    }
+}
+
+}  // namespace
+
 DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, int feature) {
     const Members members(declaration["glsl"], declaration.at("glsl"),
-                          {"surface", "bsdf", "layer", "diffuse", "emission", "coordinates", "opacity",
-                           "after", "coversEmission", "traced", "reciprocal"});
+                          {"surface", "bsdf", "layer", "model", "diffuse", "emission", "coordinates",
+                           "opacity", "after", "coversEmission", "traced", "reciprocal", "sampled"});
     DeclaredCode declared;
     declared.where = members.where();
     FeatureCode& code = declared.code;
@@ -16,13 +35,10 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
     struct {
         std::string_view member;
         std::string& file;
-    } const stages[] = {{"surface", code.surface},
-                        {"bsdf", code.bsdf},
-                        {"layer", code.layer},
-                        {"emission", code.emission},
-                        {"coordinates", code.coordinates},
-                        {"opacity", code.opacity},
-                        {"diffuse", code.diffuse}};
+    } const stages[] = {{"surface", code.surface},   {"bsdf", code.bsdf},
+                        {"layer", code.layer},       {"model", code.model},
+                        {"emission", code.emission}, {"coordinates", code.coordinates},
+                        {"opacity", code.opacity},   {"diffuse", code.diffuse}};
     for (const auto& [member, place] : stages) {
         if (members.has(member)) {
             const std::string name = members.text(member);
@@ -37,10 +53,20 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
     code.coversEmission = members.flag("coversEmission", false);
     code.isTraced = members.flag("traced", false);
     code.isReciprocal = members.flag("reciprocal", false);
-    for (const std::string_view ofLayer : {"coversEmission", "traced", "reciprocal"}) {
+    code.isSampled = members.flag("sampled", false);
+    for (const std::string_view ofLayer : {"coversEmission", "traced"}) {
         if (members.has(ofLayer) && code.layer.empty()) {
             failAt(members.at(ofLayer), "is for layers; there is no \"layer\"");
         }
+    }
+    if (members.has("reciprocal") && code.layer.empty() && code.model.empty()) {
+        failAt(members.at("reciprocal"), "is for layers and models; there is no \"layer\" or \"model\"");
+    }
+    if (members.has("sampled") && code.model.empty()) {
+        failAt(members.at("sampled"), "is for models; there is no \"model\"");
+    }
+    if (!code.model.empty()) {
+        checkModel(declaration, members, code);
     }
     if (!code.layer.empty() && feature < 0) {
         failAt(members.at("layer"), "a layer needs a feature of its own: give the declaration \"neutral\"");

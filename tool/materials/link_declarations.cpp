@@ -30,9 +30,8 @@ void ModelBuilder::assignBits() {
         }
         model_.lobes |= row.feature.isLobe ? row.feature.mask() : 0;
         indexOf[static_cast<std::size_t>(i)] = static_cast<int>(model_.features.size());
-        if (!row.isLit) {
-            model_.unlit |= row.feature.mask();
-        }
+        model_.unlit |= row.light == Light::None ? row.feature.mask() : 0;
+        model_.bothSides |= row.light == Light::Both ? row.feature.mask() : 0;
         model_.features.push_back(std::move(row.feature));
     }
     for (MaterialTexture& texture : model_.textures) {
@@ -105,6 +104,47 @@ void ModelBuilder::orderByDependence() {
         }
         placed[static_cast<std::size_t>(*next)] = true;
         model_.order.push_back(*next);
+    }
+}
+
+void ModelBuilder::excludeFromModels() {
+    // What changes the replaced BSDF: its lobes but for layers, what features of packs make of its values,
+    // and what the declaration of the replaced object itself adds.
+    FeatureMask ofBase = 0;
+    for (const Feature& feature : model_.features) {
+        ofBase |= feature.stage == Stage::Layer && feature.texture < 0 ? feature.mask() : 0;
+    }
+    for (const FeatureCode& code : model_.code) {
+        const FeatureMask own = code.feature < 0 ? 0 : featureAt(code.feature).mask();
+        ofBase = code.layer.empty() ? ofBase | (code.bsdf.empty() ? 0 : own) : ofBase & ~own;
+    }
+    const FeatureMask models = model_.baseModels() & ~model_.unlit;
+    for (std::size_t i = 0; i < model_.features.size(); ++i) {
+        const FeatureMask later = models & ~(model_.features[i].mask() * 2 - 1);
+        if ((model_.features[i].mask() & models) != 0 && later != 0) {
+            model_.exclusions.push_back({static_cast<int>(i), later,
+                                         fmt::format("{} is the material's model", model_.features[i].name)});
+        }
+    }
+    for (const FeatureCode& code : model_.code) {
+        if (code.model.empty()) {
+            continue;
+        }
+        const Feature& feature = featureAt(code.feature);
+        model_.ownModels |= feature.mask();
+        FeatureMask excluded = ofBase & ~models;
+        const int replaced = model_.objects[static_cast<std::size_t>(feature.object)].replaces;
+        for (const File& file : files_) {
+            if (file.object != replaced) {
+                continue;
+            }
+            for (const auto& [json, where] : membersOf(file).list("features")) {
+                const Members further(*json, where, kFeatureMembers);
+                excluded |= model_.mask(further.text("name"));
+            }
+        }
+        model_.exclusions.push_back(
+            {code.feature, excluded, fmt::format("{} is the material's model", code.name)});
     }
 }
 
@@ -248,7 +288,7 @@ Expression ModelBuilder::expression(const DeclarationJson& json, const std::stri
     return std::move(*parsed);
 }
 
-void ModelBuilder::linkFeature(const Members& members, int index, int onlyWith) {
+void ModelBuilder::linkFeature(const Members& members, int index, FeatureMask onlyWith) {
     if (members.has("given")) {
         featureAt(index).given = expression(members["given"], members.at("given"), true);
     }
@@ -263,11 +303,11 @@ void ModelBuilder::linkFeature(const Members& members, int index, int onlyWith) 
 void ModelBuilder::link(const File& file) {
     const Members members = membersOf(file);
     if (file.mainFeature >= 0) {
-        linkFeature(members, file.mainFeature, -1);
+        linkFeature(members, file.mainFeature, 0);
     }
     for (const auto& [json, where] : members.list("features")) {
         const Members further(*json, where, kFeatureMembers);
-        linkFeature(further, model_.findFeature(further.text("name")), -1);
+        linkFeature(further, model_.findFeature(further.text("name")), 0);
     }
     for (const auto& [json, where] : members.list("textures")) {
         const Members texture(*json, where, kTextureMembers);
@@ -289,7 +329,7 @@ void ModelBuilder::link(const File& file) {
 void ModelBuilder::linkTexture(const File& file, const Members& members) {
     const int slot = model_.findTexture(members.text("name"));
     const int feature = model_.textures[static_cast<std::size_t>(slot)].feature;
-    linkFeature(members, feature, -1);
+    linkFeature(members, feature, 0);
     const bool ofLayer = file.mainFeature >= 0 && featureAt(file.mainFeature).isLobe;
     featureAt(feature).lobe = members.has("of") ? featureNamed(members.text("of"), members.at("of"))
                               : ofLayer         ? file.mainFeature
@@ -306,10 +346,11 @@ void ModelBuilder::linkAliases(const File& file) {
         }
         const int slot = model_.findTexture(texture.text("is"));
         const int feature = model_.textures[static_cast<std::size_t>(slot)].feature;
+        const FeatureMask own = file.mainFeature < 0 ? 0 : featureAt(file.mainFeature).mask();
         for (NeutralReason& reason : featureAt(feature).neutral) {
-            reason.onlyWithout = texture.has("neutral") ? file.mainFeature : reason.onlyWithout;
+            reason.onlyWithout |= texture.has("neutral") ? own : 0;
         }
-        linkFeature(texture, feature, file.mainFeature);
+        linkFeature(texture, feature, own);
         linkScales(texture, slot);
     }
 }
@@ -390,8 +431,10 @@ void ModelBuilder::linkBase(const File& file, const Members& members) {
             failAt(replaces.at("object"), "no declaration has this object");
         }
         const auto other = std::ranges::find(model_.objects, object, &MaterialObject::replaces);
-        if (other != model_.objects.end()) {
-            failAt(members.at("replaces"), fmt::format("{} replaces it, too", other->name));
+        const bool isModel = file.mainFeature >= 0 && featureAt(file.mainFeature).stage == Stage::Base;
+        if (other != model_.objects.end() && !isModel) {
+            failAt(members.at("replaces"), fmt::format("{} replaces it, too", other->name),
+                   "base models alone can replace the same object");
         }
         MaterialObject& owner = model_.objects[static_cast<std::size_t>(file.object)];
         owner.replaces = object;
@@ -428,6 +471,11 @@ void ModelBuilder::linkBase(const File& file, const Members& members) {
 void ModelBuilder::linkBehaviour(const File& file, const Members& members) {
     BehaviourRule rule{choose(kBehaviours, members, "does", members.text("does")).behaviour, file.object,
                        expression(members["when"], members.at("when"), true)};
+    const FeatureMask own = file.mainFeature < 0 ? 0 : featureAt(file.mainFeature).mask();
+    if (rule.does == Behaviour::Transmits && (own & model_.bothSides) == 0) {
+        failAt(members.at("does"), "light comes to such a surface from the viewer's side alone",
+               "give the declaration \"light\": \"both\", and a feature of its own");
+    }
     if (members.has("roughness")) {
         rule.roughness = expression(members["roughness"], members.at("roughness"), false);
         if (rule.roughness->channels() != 1) {

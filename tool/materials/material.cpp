@@ -123,15 +123,20 @@ bool Material::reads(int object) const {
     // An unlit material reads the plain base, whatever replaces it.
     const bool unlit = isUnlit();
     const MaterialObject& row = model_->objects[static_cast<std::size_t>(object)];
-    if (row.replaces >= 0) {
-        return given[static_cast<std::size_t>(object)] != 0 && !unlit;
-    }
-    for (std::size_t i = 0; !unlit && i < model_->objects.size(); ++i) {
-        if (model_->objects[i].replaces == object && given[i] != 0) {
-            return false;
+    // Of several models that replace the same one, the first counts.
+    const auto isReplaced = [&](int replaced, std::size_t end) {
+        for (std::size_t i = 0; i < end; ++i) {
+            if (model_->objects[i].replaces == replaced && given[i] != 0) {
+                return true;
+            }
         }
+        return false;
+    };
+    if (row.replaces >= 0) {
+        const auto index = static_cast<std::size_t>(object);
+        return given[index] != 0 && !unlit && !isReplaced(row.replaces, index);
     }
-    return true;
+    return unlit || !isReplaced(object, model_->objects.size());
 }
 
 bool isReadable(const Material& material, const PrimitiveInputs& primitive, int texture) {
@@ -197,12 +202,7 @@ std::string lostInput(const Material& material, const PrimitiveInputs& primitive
     const MaterialFacts there(material, whole, options, asked);
     const auto isNeutral = [&](const Feature& one, const MaterialFacts& facts) {
         return std::ranges::find_if(one.neutral, [&](const NeutralReason& reason) {
-            const auto has = [&](int index) {
-                return (asked & model.features[static_cast<std::size_t>(index)].mask()) != 0;
-            };
-            return (reason.onlyWith < 0 || has(reason.onlyWith)) &&
-                   (reason.onlyWithout < 0 || !has(reason.onlyWithout)) &&
-                   reason.when.holds(facts) == Certainty::True;
+            return reason.countsIn(asked) && reason.when.holds(facts) == Certainty::True;
         });
     };
     const Feature* const lobe =

@@ -99,7 +99,15 @@ FeatureMask MaterialModel::baseModels() const {
 }
 
 std::string MaterialModel::featureDefines() const {
-    std::string text = fmt::format("#define GLINT_LOBES 0x{:x}u\n", lobes);
+    FeatureMask sampledModels = 0;
+    for (const FeatureCode& one : code) {
+        sampledModels |= one.isSampled ? features[static_cast<std::size_t>(one.feature)].mask() : 0;
+    }
+    std::string text = fmt::format(
+        "#define GLINT_LOBES 0x{:x}u\n#define GLINT_UNLIT_LOBES 0x{:x}u\n"
+        "#define GLINT_BOTH_SIDES_LOBES 0x{:x}u\n#define GLINT_MODEL_LOBES 0x{:x}u\n"
+        "#define GLINT_SAMPLED_MODEL_LOBES 0x{:x}u\n",
+        lobes, unlit, bothSides, ownModels, sampledModels);
     for (const Feature& feature : features) {
         text += fmt::format("#define {} 0x{:x}u\n", feature.macro,
                             1U << (static_cast<unsigned>(feature.bit) % 32U));

@@ -217,9 +217,13 @@ inline constexpr std::size_t kMostVertexAttributes = 64;
 struct NeutralReason {
     Expression when;
     std::string because;
-    // The reason holds only in keys that have this feature, or that lack that one. -1: in all.
-    int onlyWith = -1;
-    int onlyWithout = -1;
+    // The reason holds only in keys that have all of these features and lack all of those.
+    FeatureMask onlyWith = 0;
+    FeatureMask onlyWithout = 0;
+
+    bool countsIn(FeatureMask key) const {
+        return (onlyWith & ~key) == 0 && (onlyWithout & key) == 0;
+    }
 };
 
 // A feature leaves others out of the keys that have it.
@@ -267,21 +271,24 @@ struct FeatureCode {
     std::string name;         // of the declaration: "clearcoat"
     std::string declaration;  // its file
     int feature = -1;         // Keys without this feature do not run the code; -1: all keys run it.
-    int unless = -1;          // Keys with this feature do not run it.
+    FeatureMask unless = 0;   // Keys with any of these features do not run it.
     // Names of files as an #include gives them, empty where there is no such function. surface:
     // clearcoatSurface(); bsdf: clearcoatBsdf(); emission: clearcoatEmission(); coordinates:
     // clearcoatCoordinates(); opacity: clearcoatOpacity(); diffuse: the struct Clearcoat and
-    // clearcoatDiffuse(); layer: the struct Clearcoat and the functions that shaders/bsdf/layer.glsl lists.
+    // clearcoatDiffuse(); layer and model: the struct Clearcoat and the functions that
+    // shaders/bsdf/layer.glsl and shaders/bsdf/model.glsl list.
     std::string surface{};
     std::string bsdf{};
     std::string layer{};
+    std::string model{};
     std::string diffuse{};
     std::string emission{};
     std::string coordinates{};
     std::string opacity{};
     bool coversEmission = false;  // the layer's reflection also weakens the emission
     bool isTraced = false;        // rays may trace the layer's reflection
-    bool isReciprocal = false;    // the layer claims that view and light may change places
+    bool isReciprocal = false;    // the layer or model claims that view and light may change places
+    bool isSampled = false;       // the model samples directions itself; otherwise they are cosine-weighted
     bool isOfPack = false;        // of a user's own
 };
 
@@ -343,6 +350,8 @@ public:
     std::vector<FeatureCode> code;           // in the order in which it runs
     std::vector<ModelSource> sources;        // GLSL of packs; that of Glint's own features is embedded
     FeatureMask unlit = 0;                   // features without light
+    FeatureMask bothSides = 0;               // features that let light through to the far side
+    FeatureMask ownModels = 0;               // models whose GLSL stands in place of glTF's base
     FeatureMask lobes = 0;                   // features that are lobes
     int valueCount = 0;                      // length of Material::values
     std::vector<std::array<int, 2>> pairs;   // textures that same() compares
@@ -365,7 +374,9 @@ public:
     // Returns "#define GLINT_BASE_COLOR_TEXTURE 0x1u" for every feature; lobes and inputs are numbered within
     // their own word. GLINT_HAS_BASE_COLOR_TEXTURE(features) asks for it, and
     // GLINT_KEY_HAS_BASE_COLOR_TEXTURE(features) where the code runs for keys that are not the module's own.
-    // GLINT_LOBES is the set of lobes.
+    // GLINT_LOBES is the set of lobes; GLINT_UNLIT_LOBES, GLINT_BOTH_SIDES_LOBES, GLINT_MODEL_LOBES and
+    // GLINT_SAMPLED_MODEL_LOBES are those that take no light, that let light through, and that are models of
+    // their own, also with samples of their own.
     std::string featureDefines() const;
 
     // Numbers of symbols. The kinds follow each other.

@@ -34,6 +34,16 @@ inline constexpr NamedStage kStages[] = {
     {"opacity", Stage::Opacity},
 };
 
+// Where a surface takes light from.
+enum class Light : std::uint8_t { None, Front, Both };
+
+struct NamedLight {
+    std::string_view name;
+    Light light;
+};
+inline constexpr NamedLight kLights[] = {
+    {"none", Light::None}, {"front", Light::Front}, {"both", Light::Both}};
+
 struct NamedType {
     std::string_view name;
     std::string_view glsl;
@@ -65,14 +75,14 @@ private:
         Feature feature;
         double order = kNoOrder;
         std::string where;
-        bool isLit = true;
+        Light light = Light::Front;
         bool isOfPack = false;
     };
 
     // Members of the objects of a declaration.
     static constexpr std::string_view kFileMembers[] = {
         "$schema",  "name",  "about",      "extension", "object",   "stage",      "short",
-        "order",    "needs", "lit",        "replaces",  "excludes", "parameters", "derived",
+        "order",    "needs", "light",      "replaces",  "excludes", "parameters", "derived",
         "textures", "given", "neutral",    "features",  "effects",  "gltf",       "cost",
         "ofBase",   "glsl",  "attributes", "draft"};
     static constexpr std::string_view kAttributeMembers[] = {"name", "at", "type", "default", "about"};
@@ -86,8 +96,8 @@ private:
 
     // declarations.cpp
 
-    // Returns the feature whose object a material has in place of this one, or -1.
-    int replacing(int object) const;
+    // Returns the features whose objects a material may have in place of this one.
+    FeatureMask replacing(int object) const;
     void parse(const DeclarationFile& file);
     // Declarations of effects have a kind; those of features have none.
     void readEffects();
@@ -101,7 +111,7 @@ private:
 
     // collect_declarations.cpp: the first pass
 
-    int addFeature(const Members& members, Feature feature, bool isLit);
+    int addFeature(const Members& members, Feature feature, Light light);
     static void readNeeds(const Members& members, Feature& feature);
     // Refuses members that would have no effect, or one on every material. `hasOwn`: the declaration has a
     // feature of its own.
@@ -126,6 +136,8 @@ private:
     // A feature is evaluated after those that its conditions need. Vertex attributes come last, because all
     // textures and lobes may need them.
     void orderByDependence();
+    // The features of a model's keys that are of the base which it replaces, and other models, are left out.
+    void excludeFromModels();
     // Unlit surfaces read a texture and have an opacity, so packs may change both.
     void keepPlacesOfUnlit();
     bool asksForOpacity(const Feature& feature) const;
@@ -136,7 +148,7 @@ private:
 
     std::optional<Symbol> resolve(std::string_view function, const std::vector<std::string_view>& names);
     Expression expression(const DeclarationJson& json, const std::string& where, bool isCondition);
-    void linkFeature(const Members& members, int index, int onlyWith);
+    void linkFeature(const Members& members, int index, FeatureMask onlyWith);
     void link(const File& file);
     void linkTexture(const File& file, const Members& members);
     // In keys of another base model, the texture's reasons are those that this model gives, if it gives any.

@@ -98,8 +98,8 @@ Status checkCode(const MaterialModel& model) {
         if (!code.isOfPack) {
             continue;
         }
-        for (const std::string& file : {code.surface, code.bsdf, code.layer, code.emission, code.coordinates,
-                                        code.opacity, code.diffuse}) {
+        for (const std::string& file : {code.surface, code.bsdf, code.layer, code.model, code.emission,
+                                        code.coordinates, code.opacity, code.diffuse}) {
             GLINT_TRY_DO(file.empty() ? okStatus() : check(code.name, file));
         }
     }

@@ -191,9 +191,8 @@ private:
             ofWhole.emplace(material_, *whole, options_, key_, materials::MaterialFacts::Textures::Unknown);
         }
         for (const materials::NeutralReason& reason : feature.neutral) {
-            const bool counts = (reason.onlyWith < 0 || has(reason.onlyWith)) &&
-                                (reason.onlyWithout < 0 || !has(reason.onlyWithout));
-            if (!counts || (ofWhole && reason.when.holds(*ofWhole) != materials::Certainty::True)) {
+            if (!reason.countsIn(key_) ||
+                (ofWhole && reason.when.holds(*ofWhole) != materials::Certainty::True)) {
                 continue;
             }
             if (reason.when.holds(blind_) == materials::Certainty::True) {

@@ -26,7 +26,7 @@ EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, 
     vec3 base = baseShare(surface, features) * vec3(diffusePassed(surface));
     vec3 front = surface.bsdf.diffuse * base;
     vec3 back = vec3(0.0);
-    if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
+    if (scattersBehind(features)) {
         back = surface.bsdf.diffuseTransmitted * base;
     }
     sky.diffuse = 0.0;

@@ -3,7 +3,7 @@
 
 // The lobes of a material that an interface reads. Coats and sheen of inner surfaces are left out, and absorption
 // counts over real distances. Inputs that have bits of the lobes' word stay.
-const uint kWalkedLobes = GLINT_UNLIT | GLINT_SPECULAR_GLOSSINESS | GLINT_IOR | GLINT_SPECULAR | GLINT_ANISOTROPY |
+const uint kWalkedLobes = GLINT_UNLIT_LOBES | GLINT_SPECULAR_GLOSSINESS | GLINT_IOR | GLINT_SPECULAR | GLINT_ANISOTROPY |
                           GLINT_IRIDESCENCE | GLINT_TRANSMISSION | GLINT_DIFFUSE_TRANSMISSION | GLINT_VOLUME |
                           GLINT_DISPERSION | ~GLINT_LOBES;
 

@@ -4,6 +4,7 @@
 #include "materials/declaration_files.h"
 #include "plan/plan.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -163,7 +164,7 @@ TEST(Declarations, SayWhatIsWrongAndWhere) {
 // of bounds once.
 TEST(Declarations, MembersOfAFeatureNeedOne) {
     for (const std::string member :
-         {R"("short": "Wet")", R"("lit": false)", R"("given": "doubleSided")", R"("needs": "tangents")",
+         {R"("short": "Wet")", R"("light": "none")", R"("given": "doubleSided")", R"("needs": "tangents")",
           R"("draft": true)", R"("ofBase": true)", R"("cost": {"instructions": 1, "fetches": 0})",
           R"("order": 3)", R"("gltf": "somewhere")",
           R"("excludes": {"stage": "layer", "because": "it is wet"})"}) {
@@ -188,7 +189,56 @@ TEST(Declarations, NoMaterialGetsAFeatureUnasked) {
                R"("replaces": {"object": "pbrMetallicRoughness"}})";
     };
     EXPECT_NE(refusal(replacing("wet", "")).find("#/replaces: every material would lose"), std::string::npos);
-    EXPECT_NE(refusal(replacing("wet", R"("extension": "EXT_wet", )")).find("replaces it, too"),
+    // Base models may replace the same object; others may not.
+    const std::string base = replacing("wet", R"("extension": "EXT_wet", )");
+    EXPECT_TRUE(modelWith(base).ok());
+    std::string surface = base;
+    surface.replace(surface.find("\"base\""), 6, "\"surface\"");
+    EXPECT_NE(refusal(surface).find("replaces it, too"), std::string::npos);
+}
+
+TEST(Declarations, WhatTransmitsTakesLightFromBothSides) {
+    const auto wet = [](const std::string& members) {
+        return R"({"name": "wet", "stage": "layer", "extension": "EXT_wet", )" + members +
+               R"("effects": [{"does": "transmits", "when": "doubleSided", "text": "lets light through"}]})";
+    };
+    EXPECT_NE(refusal(wet("")).find("#/effects/0/does: light comes to such a surface"), std::string::npos);
+    EXPECT_TRUE(modelWith(wet(R"("light": "both", )")).ok());
+}
+
+TEST(Declarations, AnglesHaveNoRange) {
+    EXPECT_NE(refusal(R"({"name": "wet", "stage": "surface", "parameters": [
+            {"name": "wetness", "type": "float", "default": 0, "unit": "radians", "range": [0, 1]}]})")
+                  .find("#/parameters/0/range: angles are held"),
+              std::string::npos);
+}
+
+TEST(Declarations, ModelsReplaceABase) {
+    const auto declared = [](const std::string& stage, const std::string& members, const std::string& glsl) {
+        return R"({"name": "wet", "stage": ")" + stage + R"(", )" + members + R"("glsl": {)" + glsl + "}}";
+    };
+    const std::string whole = R"("extension": "EXT_wet", "replaces": {"object": "pbrMetallicRoughness"}, )";
+    const std::string files = R"("bsdf": "wet.glsl", "model": "wet.glsl")";
+    const Result<materials::MaterialModel> model =
+        modelWith(declared("base", whole + R"("light": "both", )", files + R"(, "sampled": true)"));
+    ASSERT_TRUE(model.ok()) << toString(model.error());
+    EXPECT_EQ(model->ownModels, model->mask("wet"));
+    EXPECT_NE(model->bothSides & model->mask("wet"), 0U);
+    EXPECT_NE(
+        model->featureDefines().find(fmt::format("GLINT_SAMPLED_MODEL_LOBES 0x{:x}u\n", model->mask("wet"))),
+        std::string::npos);
+    EXPECT_NE(refusal(declared("layer", R"("extension": "EXT_wet", )", files))
+                  .find("#/glsl/model: needs a declaration whose"),
+              std::string::npos);
+    EXPECT_NE(
+        refusal(declared("base", R"("extension": "EXT_wet", )", files)).find("#/glsl/model: a model is"),
+        std::string::npos);
+    EXPECT_NE(refusal(declared("base", whole, R"("model": "wet.glsl")")).find("#/glsl/model: needs \"bsdf\""),
+              std::string::npos);
+    EXPECT_NE(refusal(declared("base", whole, R"("bsdf": "wet.glsl", "sampled": true)"))
+                  .find("#/glsl/sampled: is for models"),
+              std::string::npos);
+    EXPECT_NE(refusal(declared("base", whole + R"("light": "back", )", files)).find("#/light"),
               std::string::npos);
 }
 

@@ -31,7 +31,7 @@ constexpr DiagnosticList kLists[] = {
      " hit-lobe-unknown host-folder host-unknown image-data image-decode image-extension image-format"
      " image-mismatch image-size index-range internal json-depth json-missing json-range json-syntax"
      " json-type layer-effect layer-missing light-type lights lint-path lock-format lock-outdated malioc"
-     " manifest-format material-unknown materials-folder materials-glsl max-error max-shaders"
+     " manifest-format material-list material-unknown materials-folder materials-glsl max-error max-shaders"
      " memory-count memory-host memory-size memory-type meshopt-decode meshopt-layout meshopt-size "
      "module-features"
      " module-format module-missing module-stale module-unknown morph-limit ninja-name node-cycle"

@@ -308,6 +308,14 @@ Status Document::parse() {
     GLINT_TRY(const auto container, splitContainer(*this, file_));
     binary_ = container.binary;
     GLINT_TRY(json_, parseJson(*this, container.json));
+    if (isMaterialList(json_)) {
+        GLINT_TRY(auto list, expandMaterialList(container.json, name_, *options_.materialModel));
+        json_ = std::move(list.document);
+        file_ = std::move(list.buffer);
+        binary_ = file_;
+        places_ = std::move(list.places);
+        edited_ = std::move(list.edited);
+    }
     GLINT_TRY_DO(checkVersion(*this, json_));
     GLINT_TRY_DO(checkExtensions(*this, json_));
     if (const Status status = checkDocument(json_, *options_.materialModel); !status) {
@@ -421,6 +429,14 @@ Result<base::Bytes> Document::readUri(const std::string& uri, const std::string&
 }
 
 std::string Document::where(std::string_view pointer) const {
+    // The longest part of the pointer that stands elsewhere in the list counts.
+    for (std::size_t end = pointer.size(); !places_.empty() && end > 0 && end != std::string_view::npos;
+         end = pointer.rfind('/', end - 1)) {
+        const auto found = places_.find(pointer.substr(0, end));
+        if (found != places_.end()) {
+            return fmt::format("{}#{}{}", name_, found->second, pointer.substr(end));
+        }
+    }
     return pointer.empty() ? name_ : fmt::format("{}#{}", name_, pointer);
 }
 

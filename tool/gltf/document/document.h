@@ -3,6 +3,7 @@
 #pragma once
 
 #include "gltf/document/files.h"
+#include "gltf/document/material_list.h"
 #include "gltf/document/model.h"
 #include "gltf/import_options.h"
 
@@ -10,10 +11,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace glint::gltf {
@@ -73,7 +77,13 @@ public:
         return source_.files();
     }
 
-    // "scene.gltf#/materials/3"
+    // The parameters of a material list that may be anything in their range.
+    const std::vector<std::pair<int, int>>& edited() const {
+        return edited_;
+    }
+
+    // "scene.gltf#/materials/3". Pointers of a document that was made of a material list become those of the
+    // list.
     std::string where(std::string_view pointer) const;
     Diagnostic error(std::string id, std::string_view pointer, std::string message,
                      std::string hint = {}) const;
@@ -122,6 +132,8 @@ private:
     base::Bytes file_;
     std::optional<ByteView> binary_;  // views file_
     Json json_;
+    std::map<std::string, std::string, std::less<>> places_;  // ExpandedList
+    std::vector<std::pair<int, int>> edited_;
     tinygltf::Model model_;
     std::vector<std::optional<base::Bytes>> buffers_;
     std::vector<std::optional<base::Bytes>> unpackedViews_;

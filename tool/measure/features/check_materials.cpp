@@ -54,7 +54,7 @@ Result<std::unique_ptr<FeatureEvaluator>> FeatureEvaluator::create(const gltf::S
     GLINT_TRY(const auto build, compiler::resolve(std::span(&scene, 1), settings));
     GLINT_TRY(auto package, session::compileAndLoad(build));
     GLINT_TRY(auto kernel, compileFeatureKernel(build));
-    evaluator->layers_ = std::move(kernel.layers);
+    evaluator->lobes_ = std::move(kernel.lobes);
 
     observer.progress("making the pipeline");
     session::SceneViewData data = session::makeSceneView(scene);
@@ -65,9 +65,9 @@ Result<std::unique_ptr<FeatureEvaluator>> FeatureEvaluator::create(const gltf::S
     return evaluator;
 }
 
-std::uint32_t FeatureEvaluator::lobeOf(const std::string& layer) const {
-    const auto found = std::ranges::find(layers_, layer);
-    return found == layers_.end() ? 0 : static_cast<std::uint32_t>(found - layers_.begin()) + 1;
+std::uint32_t FeatureEvaluator::lobeOf(const std::string& feature) const {
+    const auto found = std::ranges::find(lobes_, feature);
+    return found == lobes_.end() ? 0 : static_cast<std::uint32_t>(found - lobes_.begin()) + 1;
 }
 
 Result<std::vector<compiler::FeatureKernelOutput>> FeatureEvaluator::run(
@@ -133,7 +133,7 @@ Result<FeatureChecks> checkFeature(const FeatureOnDevice& on) {
     FeatureChecks checks;
     checks.feature = code.name;
     checks.declaration = code.declaration;
-    checks.isLayer = on.lobe != 0;
+    checks.isLobe = on.lobe != 0;
     checks.combinations = static_cast<std::uint32_t>(on.feature.materials.size());
     GLINT_TRY(auto ranges, checkRanges(on));
     GLINT_TRY(auto integrals, checkIntegrals(on));
@@ -191,8 +191,8 @@ Result<MaterialChecksReport> checkMaterials(const CheckMaterialsOptions& options
     for (const CheckedFeature& feature : scene.features) {
         observer.progress(fmt::format("checking {} of {}: {}", report.features.size() + 1,
                                       scene.features.size(), feature.code->name));
-        const std::string layer = feature.code->layer.empty() ? std::string() : feature.code->name;
-        const FeatureOnDevice on{*evaluator, scene, feature, evaluator->lobeOf(layer), options.samples};
+        const FeatureOnDevice on{*evaluator, scene, feature, evaluator->lobeOf(feature.code->name),
+                                 options.samples};
         GLINT_TRY(auto checks, checkFeature(on));
         report.features.push_back(std::move(checks));
         if (options.pictures) {
@@ -212,7 +212,7 @@ std::vector<Diagnostic> failuresOf(const FeatureChecks& feature) {
             continue;
         }
         const CheckInfo& info = infoOf(outcome.check);
-        const std::string function = feature.isLayer && *info.function != '\0'
+        const std::string function = feature.isLobe && *info.function != '\0'
                                          ? fmt::format(fmt::runtime(info.function), feature.feature)
                                          : feature.feature;
         failures.push_back(makeError(info.id, feature.declaration,

@@ -60,7 +60,7 @@ void noteFault(Fault& worst, double distance, const char* what) {
     }
 }
 
-Fault faultOf(const compiler::FeatureKernelOutput& output, bool isLayer) {
+Fault faultOf(const compiler::FeatureKernelOutput& output, bool isLobe) {
     Fault worst;
     if (!isFinite(output)) {
         return {std::numeric_limits<double>::infinity(), "a value is NaN or infinite"};
@@ -72,7 +72,7 @@ Fault faultOf(const compiler::FeatureKernelOutput& output, bool isLayer) {
     noteFault(worst, -static_cast<double>(smallestOf(output.emission)), "the emission is negative");
     noteFault(worst, -static_cast<double>(output.density), "the density is negative");
     noteFault(worst, -static_cast<double>(output.roughness), "the roughness is negative");
-    if (isLayer) {
+    if (isLobe) {
         noteFault(worst, std::max(-output.passed, output.passed - 1.0F) - kShareTolerance,
                   "the share that passes for one light is outside of [0, 1]");
         noteFault(worst, std::max(-output.albedoPassed, output.albedoPassed - 1.0F) - kShareTolerance,
@@ -279,10 +279,10 @@ CheckOutcome outcomeOf(MaterialCheck check, double limit) {
 
 // Judges one combination and view by each of the checks.
 void judgeIntegrals(const LobeIntegrals& integrals, const compiler::FeatureKernelOutput& shares,
-                    double baseEnergy, std::uint32_t samples, const CheckPlace& place, bool isLayer,
+                    double baseEnergy, std::uint32_t samples, const CheckPlace& place, bool isLobe,
                     IntegralOutcomes& outcomes) {
     bool isNormalised = true;
-    if (isLayer) {
+    if (isLobe) {
         const double total = integrals.density + integrals.lost;
         const double noise = 4.0 * std::sqrt(integrals.lost * (1.0 - integrals.lost) / samples);
         // A distance that noise and the quadrature's own error explain is no fault.
@@ -464,7 +464,7 @@ Result<IntegralOutcomes> checkIntegrals(const FeatureOnDevice& on) {
     outcomes.samples.worst = 1.0;
     GLINT_TRY(const auto seen, seenMaterials(on));
     GLINT_TRY(const auto samples, sampleAll(on, seen));
-    const bool isLayer = on.lobe != 0;
+    const bool isLobe = on.lobe != 0;
     const Result<std::vector<LobeIntegrals>> integrals =
         integrateLobes(samples, [&](std::span<const LobeQuery> queries) -> Result<std::vector<LobeValues>> {
             std::vector<compiler::FeatureKernelInput> inputs;
@@ -493,11 +493,11 @@ Result<IntegralOutcomes> checkIntegrals(const FeatureOnDevice& on) {
     std::uint64_t evaluations = 0;
     for (std::size_t i = 0; i < seen.size(); ++i) {
         judgeIntegrals((*integrals)[i], shares[i], bases[i], on.samples,
-                       placeOf(*seen[i].material, seen[i].surfaceView, nullptr), isLayer, outcomes);
+                       placeOf(*seen[i].material, seen[i].surfaceView, nullptr), isLobe, outcomes);
         evaluations += (*integrals)[i].evaluations;
     }
     outcomes.energy.evaluations = evaluations;
-    if (isLayer) {
+    if (isLobe) {
         outcomes.density.evaluations = evaluations;
         outcomes.albedo.evaluations = evaluations;
         outcomes.samples.evaluations = seen.size() * on.samples;

@@ -63,9 +63,9 @@ public:
                                                             const CheckMaterialsOptions& options,
                                                             const Observer& observer);
 
-    // Returns the number of a layer for FeatureKernelInput::lobe; 0, the whole BSDF, if there is no such
-    // layer.
-    std::uint32_t lobeOf(const std::string& layer) const;
+    // Returns the number of a layer or a model for FeatureKernelInput::lobe; 0, the whole BSDF, if the
+    // feature is neither.
+    std::uint32_t lobeOf(const std::string& feature) const;
     // Has the errors of SceneKernel::run().
     Result<std::vector<compiler::FeatureKernelOutput>> run(
         std::span<const compiler::FeatureKernelInput> inputs) const;
@@ -79,7 +79,7 @@ private:
     std::unique_ptr<Context> context_;
     session::DeviceScene scene_;
     std::unique_ptr<SceneKernel> kernel_;
-    std::vector<std::string> layers_;
+    std::vector<std::string> lobes_;
 };
 
 // One feature on the device.
@@ -95,7 +95,8 @@ struct FeatureOnDevice {
 // ends of the permitted ones. Errors here and below are those of FeatureEvaluator::run().
 Result<CheckOutcome> checkRanges(const FeatureOnDevice& on);
 
-// Checks reciprocity: that layers which claim it give the same value if view and light are exchanged.
+// Checks reciprocity: that layers and models which claim it give the same value if view and light are
+// exchanged.
 Result<CheckOutcome> checkReciprocity(const FeatureOnDevice& on);
 
 // Density, samples, energy and albedo, from integrals over all directions.

@@ -71,7 +71,7 @@ struct FeaturePicture {
 struct FeatureChecks {
     std::string feature;
     std::string declaration;  // its file
-    bool isLayer = false;
+    bool isLobe = false;      // a layer or a model
     std::uint32_t combinations = 0;
     std::vector<CheckOutcome> outcomes;  // one for each of kMaterialChecks, in that order
 

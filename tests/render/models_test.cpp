@@ -1,0 +1,191 @@
+// Models of packs, in place of glTF's base: examples/materials/models.
+#include "materials/declarations.h"
+#include "plan/key.h"
+#include "render/harness.h"
+#include "render/light_pictures.h"
+#include "render/pixel_test.h"
+#include "render/scene_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+
+const materials::MaterialModel& models() {
+    static const materials::MaterialModel& model = []() -> const materials::MaterialModel& {
+        const Result<const materials::MaterialModel*> loaded = materials::loadMaterialModel(
+            std::vector<std::string>{GLINT_SOURCE_DIR "/examples/materials/models"});
+        EXPECT_TRUE(loaded) << toString(loaded.error());
+        return **loaded;
+    }();
+    return model;
+}
+
+constexpr gltf::Float3 kColor{0.6F, 0.4F, 0.2F};
+
+// A surface that scatters by Lambert's law: the model leaf without passage, or glTF's base without
+// reflection.
+materials::Material lambert(bool ofPack) {
+    materials::Material material(models());
+    if (ofPack) {
+        material.give("EXAMPLE_materials_leaf");
+        material["leafPassed"] = {0.0F, 0.0F, 0.0F};
+    } else {
+        material["metallicFactor"] = 0.0F;
+        material.give("KHR_materials_specular");
+        material["specularFactor"] = 0.0F;
+    }
+    material["baseColorFactor"] = {kColor[0], kColor[1], kColor[2], 1.0F};
+    return material;
+}
+
+// A corner of two walls and a floor under a lamp and a directional light, with a mirror.
+gltf::Scene corner(bool ofPack) {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    addQuad(scene, lambert(ofPack), {-3, -1, -6}, {6, 0, 0}, {0, 4, 0});
+    addQuad(scene, lambert(ofPack), {-3, -1, 1}, {6, 0, 0}, {0, 0, -7});
+    materials::Material lamp(models());
+    lamp["baseColorFactor"] = {0.0F, 0.0F, 0.0F, 1.0F};
+    lamp["emissiveFactor"] = {1.0F, 0.8F, 0.6F};
+    lamp["emissiveStrength"] = 4.0F;
+    addQuad(scene, lamp, {-1, 2, -5}, {0, 0, 1.5F}, {1.5F, 0, 0});
+    materials::Material mirror(models());
+    mirror["roughnessFactor"] = 0.0F;
+    addQuad(scene, mirror, {1.2F, -0.9F, -5}, {1, 0, 1}, {0, 1.5F, 0});
+    addDirectionalLight(scene, {0.3F, -0.8F, -0.52F}, 1.5F);
+    return scene;
+}
+
+struct LambertWay {
+    const char* name;
+    compiler::EmissiveLights emissive;
+    compiler::SkyLight sky;
+    std::uint32_t bounces;
+    package::Strategy strategy;
+};
+
+// The same numbers choose the same directions, so pictures are equal, not only their means.
+TEST(Models, LambertsLawGivesThePictureOfGltfsBase) {
+    using compiler::EmissiveLights;
+    using compiler::SkyLight;
+    for (const LambertWay& way :
+         {LambertWay{"one bounce", EmissiveLights::Off, SkyLight::Off, 1, package::kStrategyUber},
+          LambertWay{"lamps are lights", EmissiveLights::On, SkyLight::Off, 1, package::kStrategyVisibility},
+          LambertWay{"paths", EmissiveLights::On, SkyLight::On, 3, package::kStrategySortedUber}}) {
+        compiler::CompileSettings settings;
+        settings.strategies = way.strategy;
+        settings.emissiveLights = way.emissive;
+        settings.skyLight = way.sky;
+        settings.maxBounces = way.bounces;
+        settings.effects = {false, compiler::builtinEffects({"shadow", "reflection", "indirect-diffuse"})};
+        LinearImage reference;
+        for (const bool ofPack : {false, true}) {
+            const gltf::Scene scene = corner(ofPack);
+            const LoadedScene loaded(scene, settings);
+            ASSERT_TRUE(loaded.ok()) << way.name;
+            RenderSetup setup = defaultSetup(scene, 24, 24);
+            setup.samples = 4;
+            RendererOptions options;
+            options.strategy = way.strategy;
+            options.bounces = way.bounces;
+            const LinearImage image = loaded.render(options, setup);
+            ASSERT_FALSE(image.pixels.empty()) << way.name;
+            if (ofPack) {
+                expectSameImage(image, reference, way.name);
+                EXPECT_GT(meanOf(image), 0.05) << way.name;
+            }
+            reference = image;
+        }
+    }
+    expectNoValidationMessages();
+}
+
+// The light that goes along `direction` from a wall at right angles to the view to the camera, without a sky.
+Pixel litBy(const materials::Material& material, gltf::Float3 direction) {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    addQuad(scene, material, {-4, -4, -4}, {8, 0, 0}, {0, 8, 0});
+    addDirectionalLight(scene, direction, 2.0F);
+    RenderSetup setup = defaultSetup(scene, 17, 17);
+    setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    compiler::CompileSettings settings;
+    settings.effects = {false, compiler::builtinEffects({"shadow"})};
+    settings.strategies = package::kStrategyUber;
+    const LoadedScene loaded(scene, settings);
+    const LinearImage image = loaded.ok() ? loaded.render(package::kStrategyUber, setup) : LinearImage{};
+    return image.pixels.empty() ? Pixel{-1, -1, -1, -1} : at(image, 8, 8);
+}
+
+void expectLight(const Pixel& pixel, double share, const std::string& what) {
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        const double expected = 2.0 * static_cast<double>(kColor[channel]) * share / std::numbers::pi;
+        EXPECT_NEAR(pixel[channel], expected, 1e-5) << what;
+    }
+}
+
+TEST(Models, ToonHasTheCosineInSteps) {
+    materials::Material material(models());
+    material.give("EXAMPLE_materials_toon");
+    material["toonColor"] = {kColor[0], kColor[1], kColor[2], 1.0F};
+    for (const auto& [cosine, step] :
+         {std::pair{0.9, 1.0}, {0.6, 2.0 / 3.0}, {0.45, 1.0 / 3.0}, {0.1, 0.0}}) {
+        const auto sine = static_cast<float>(std::sqrt(1.0 - cosine * cosine));
+        expectLight(litBy(material, {sine, 0, -static_cast<float>(cosine)}), step, std::to_string(cosine));
+    }
+    expectNoValidationMessages();
+}
+
+TEST(Models, ALeafPassesLightFromBehind) {
+    materials::Material material = lambert(true);
+    material["leafPassed"] = {0.25F, 0.25F, 0.25F};
+    expectLight(litBy(material, {0.6F, 0, -0.8F}), 0.75 * 0.8, "from the front");
+    expectLight(litBy(material, {0.6F, 0, 0.8F}), 0.25 * 0.8, "from behind");
+    material["leafPassed"] = {0.0F, 0.0F, 0.0F};
+    expectLight(litBy(material, {0.6F, 0, 0.8F}), 0.0, "of which nothing passes");
+}
+
+TEST(Models, AHighlightIsThatOfDoublePrecision) {
+    materials::Material material(models());
+    material.give("EXAMPLE_materials_blinn_phong");
+    material["blinnDiffuse"] = {0.0F, 0.0F, 0.0F, 1.0F};
+    material["blinnSpecular"] = {kColor[0], kColor[1], kColor[2]};
+    material["blinnShininess"] = 20.0F;
+    // Between the view along the normal and the light lies half of its angle.
+    const double half = std::cos(0.5 * std::acos(0.8));
+    const double scale = 22.0 * 24.0 / (8.0 * (std::exp2(-10.0) + 20.0));
+    expectLight(litBy(material, {0.6F, 0, -0.8F}), scale * std::pow(half, 20.0) * 0.8, "");
+}
+
+// A material has one model: the first that it names. That leaves out what changes glTF's base, and keeps
+// layers.
+TEST(Models, LeaveOutWhatChangesTheBase) {
+    materials::Material material(models());
+    material.give("EXAMPLE_materials_toon");
+    material.give("EXAMPLE_materials_blinn_phong");
+    material.give("KHR_materials_clearcoat");
+    material.give("KHR_materials_transmission");
+    material.give("KHR_materials_anisotropy");
+    material["metallicFactor"] = 0.5F;
+    material["clearcoatFactor"] = 1.0F;
+    material["transmissionFactor"] = 1.0F;
+    material["anisotropyStrength"] = 1.0F;
+    const materials::FeatureMask key = compiler::makeKey(material, {}, {});
+    for (const char* const present : {"blinnPhong", "clearcoat"}) {
+        EXPECT_NE(key & models().mask(present), 0U) << present;
+    }
+    for (const char* const absent : {"toon", "transmission", "anisotropy", "partialMetal"}) {
+        EXPECT_EQ(key & models().mask(absent), 0U) << absent;
+    }
+    material.give("KHR_materials_unlit");
+    EXPECT_EQ(compiler::makeKey(material, {}, {}) & models().ownModels, 0U);
+}
+
+}  // namespace

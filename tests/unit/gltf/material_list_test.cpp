@@ -1,0 +1,163 @@
+// Lists of materials without a scene.
+#include "gltf/import.h"
+#include "plan/key.h"
+#include "support/temporary_folder.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+
+class MaterialLists : public ::testing::Test {
+protected:
+    // Reads a list of these materials.
+    Result<gltf::Scene> read(const std::string& materials, const gltf::ImportOptions& options = {}) {
+        return readFile(R"({"materialList": 1, "materials": [)" + materials + "]}", options);
+    }
+    Result<gltf::Scene> readFile(const std::string& text, const gltf::ImportOptions& options = {}) {
+        std::ofstream(folder_.path() / "list.json") << text;
+        return gltf::importScene(folder_.path() / "list.json", options);
+    }
+    // Returns the place below the file and the message of the error.
+    std::string refusal(const std::string& materials) {
+        const Result<gltf::Scene> scene = read(materials);
+        if (scene) {
+            return "accepted";
+        }
+        EXPECT_EQ(scene.error().id, "material-list");
+        return scene.error().where.substr(scene.error().where.find('#') + 1) + ": " + scene.error().message;
+    }
+    static materials::FeatureMask keyOf(const gltf::Scene& scene) {
+        return compiler::makeKey(gltf::planningMaterials(scene)[0], gltf::planningInputs(scene)[0], {});
+    }
+    static bool hasFeature(const gltf::Scene& scene, const char* feature) {
+        return (keyOf(scene) & scene.materials[0].model().mask(feature)) != 0;
+    }
+
+    test::TemporaryFolder folder_;
+};
+
+TEST_F(MaterialLists, GiveASphereToEachMaterial) {
+    const Result<gltf::Scene> scene = read(R"(
+        {"name": "paint", "values": {"roughnessFactor": 0.25, "clearcoatFactor": 1, "sheenColorFactor": [0, 0.5, 1]},
+         "alphaMode": "MASK", "doubleSided": true, "weight": 4, "attributes": ["NORMAL", "TANGENT", "COLOR_0"]},
+        {"name": "sign", "features": ["unlit"]},
+        {"name": "old", "model": "specularGlossiness", "values": {"glossinessFactor": 0.5}})");
+    ASSERT_TRUE(scene) << toString(scene.error());
+    EXPECT_TRUE(scene->warnings.empty()) << toString(scene->warnings.front());
+    ASSERT_EQ(scene->materials.size(), 3U);
+    const materials::Material& paint = scene->materials[0];
+    EXPECT_EQ(paint.name, "paint");
+    EXPECT_EQ(paint["roughnessFactor"][0], 0.25F);
+    EXPECT_EQ(paint["sheenColorFactor"][2], 1.0F);
+    EXPECT_EQ(paint.alphaMode, materials::AlphaMode::Mask);
+    EXPECT_TRUE(paint.doubleSided);
+    EXPECT_TRUE(hasFeature(*scene, "clearcoat"));
+    EXPECT_TRUE(scene->materials[1].isUnlit());
+    EXPECT_EQ(scene->materials[2]["glossinessFactor"][0], 0.5F);
+    ASSERT_EQ(scene->meshes.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+        ASSERT_EQ(scene->meshes[i].primitives.size(), 1U);
+        EXPECT_EQ(scene->meshes[i].primitives[0].material, static_cast<int>(i));
+    }
+    const gltf::Primitive& primitive = scene->meshes[0].primitives[0];
+    EXPECT_TRUE(primitive.texCoords0.empty());
+    EXPECT_EQ(primitive.tangents.size(), primitive.positions.size());
+    EXPECT_EQ(primitive.colorContent, materials::ColorContent::Varying);
+    EXPECT_FALSE(scene->meshes[1].primitives[0].texCoords0.empty());
+    // The area of the sphere, not its radius, follows the weight.
+    EXPECT_EQ(scene->nodes[0].rest.scale[0], 2.0 * scene->nodes[1].rest.scale[0]);
+}
+
+TEST_F(MaterialLists, KeepFeaturesForEditedValues) {
+    for (const bool isEdited : {false, true}) {
+        const Result<gltf::Scene> scene =
+            read(fmt::format(R"({{"name": "a", "edited": [{}]}})", isEdited ? R"("clearcoatFactor")" : ""));
+        ASSERT_TRUE(scene) << toString(scene.error());
+        EXPECT_EQ(hasFeature(*scene, "clearcoat"), isEdited);
+        EXPECT_EQ(scene->materials[0]["clearcoatFactor"][0], 0.0F);
+        ASSERT_EQ(scene->animatedMaterials.size(), isEdited ? 1U : 0U);
+    }
+}
+
+TEST_F(MaterialLists, TrustNoTextureThatComesAtRunTime) {
+    gltf::ImportOptions options;
+    options.trustTextures = true;
+    options.decodeImages = true;
+    const Result<gltf::Scene> scene =
+        read(R"({"name": "a", "textures": {"baseColorTexture": {}, "normalTexture": {"name": "bumps"}},
+                 "values": {"normalScale": 0.5}})",
+             options);
+    ASSERT_TRUE(scene) << toString(scene.error());
+    EXPECT_TRUE(hasFeature(*scene, "baseColorTexture"));
+    EXPECT_TRUE(hasFeature(*scene, "normalTexture"));
+    ASSERT_EQ(scene->images.size(), 2U);
+    EXPECT_EQ(scene->images[0].name, "baseColorTexture");
+    EXPECT_EQ(scene->images[0].pixels, (std::vector<std::uint8_t>{255, 255, 255, 255}));
+    EXPECT_EQ(scene->images[1].name, "bumps");
+    EXPECT_EQ(scene->images[1].pixels, (std::vector<std::uint8_t>{128, 128, 255, 255}));
+}
+
+TEST_F(MaterialLists, RefuseWhatNoDeclarationHas) {
+    const auto material = [&](const std::string& members) {
+        return refusal(R"({"name": "a", )" + members + "}");
+    };
+    EXPECT_NE(material(R"("model": "tone")").find("/materials/0/model: no declaration of a base"),
+              std::string::npos);
+    EXPECT_NE(material(R"("features": ["unlitt"])").find("/materials/0/features/0: no feature"),
+              std::string::npos);
+    EXPECT_NE(material(R"("values": {"roughnesFactor": 1})")
+                  .find("/values/roughnesFactor: no parameter is called \"roughnesFactor\"; did you mean"),
+              std::string::npos);
+    EXPECT_NE(material(R"("values": {"roughnessFactor": [1, 2]})").find("must be a number"),
+              std::string::npos);
+    EXPECT_NE(material(R"("values": {"sheenColorFactor": [1, "a", 0]})").find("a list of 3 numbers"),
+              std::string::npos);
+    EXPECT_NE(
+        material(R"("values": {"glossinessFactor": 1})")
+            .find("glossinessFactor is of another base: the model of the material is metallicRoughness"),
+        std::string::npos);
+    EXPECT_NE(material(R"("model": "specularGlossiness", "edited": ["metallicFactor"])")
+                  .find("/edited/0: metallicFactor is of another base"),
+              std::string::npos);
+    EXPECT_NE(material(R"("values": {"normalScale": 1})").find("changes nothing without the texture"),
+              std::string::npos);
+    EXPECT_NE(material(R"("textures": {"colorTexture": "a.png"})").find("/textures/colorTexture: no texture"),
+              std::string::npos);
+    EXPECT_NE(material(R"("textures": {"baseColorTexture": {"texCoord": 2}})").find("texCoord"),
+              std::string::npos);
+    EXPECT_NE(material(R"("textures": {"baseColorTexture": {"scale": [2]}})").find("has 1 number, not 2"),
+              std::string::npos);
+    EXPECT_NE(material(R"("attributes": ["TEXCOORD_3"])").find("/attributes/0: no material reads"),
+              std::string::npos);
+    EXPECT_NE(material(R"("weight": 0)").find("/weight"), std::string::npos);
+    EXPECT_NE(material(R"("colour": 1)").find("/materials/0/colour"), std::string::npos);
+    EXPECT_NE(refusal("").find("/materials"), std::string::npos);
+    EXPECT_FALSE(readFile(R"({"materialList": 2, "materials": [{"name": "a"}]})"));
+}
+
+// Messages of what reads glTF name the places of the list.
+TEST_F(MaterialLists, MessagesNameTheirPlaces) {
+    const Result<gltf::Scene> high = read(R"({"name": "a", "values": {"clearcoatFactor": 2}})");
+    ASSERT_TRUE(high) << toString(high.error());
+    ASSERT_EQ(high->warnings.size(), 1U);
+    EXPECT_TRUE(high->warnings[0].where.ends_with("list.json#/materials/0/values/clearcoatFactor"))
+        << high->warnings[0].where;
+    gltf::ImportOptions options;
+    options.decodeImages = true;
+    const Result<gltf::Scene> missing =
+        read(R"({"name": "a", "textures": {"baseColorTexture": "none.png"}})", options);
+    ASSERT_FALSE(missing);
+    EXPECT_NE(missing.error().where.find("list.json#/materials/0/textures/baseColorTexture"),
+              std::string::npos)
+        << missing.error().where;
+}
+
+}  // namespace
