@@ -3,7 +3,7 @@
 
 // Returns the material's values of the surface at coordinates that are already changed.
 SurfaceValues valuesAt(Hit hit, Features features) {
-    SurfaceValues values = SurfaceValues(vec4(1.0), 1.0, 1.0, vec3(0.04), 1.0, hit.normal, 1.0, 1.0);
+    SurfaceValues values = SurfaceValues(vec4(1.0), 0.0, 1.0, vec3(0.04), 1.0, hit.normal, 1.0, 1.0);
     runSurfaceStage(hit, features, values);
     return values;
 }

@@ -210,6 +210,7 @@ TEST(SchemaFiles, FitTheDeclarationsOfMaterials) {
 
 TEST(SchemaFiles, FitTheExamplesOfTheDocuments) {
     expectFits("material_feature", exampleIn("material_features.md", "## Declarations"));
+    expectFits("material_list", exampleIn("material_lists.md", "## From nothing to a picture"));
     expectFits("effect", exampleIn("effects.md", "## An effect of your own"));
     expectFits("compile", exampleIn("cli.md", "## glint compile"));
     expectFits("lint", exampleIn("lint.md", "## JSON"));

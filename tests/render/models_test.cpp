@@ -1,10 +1,14 @@
 // Models of packs, in place of glTF's base: examples/materials/models.
+#include "base/files.h"
+#include "gltf/import.h"
 #include "materials/declarations.h"
 #include "plan/key.h"
 #include "render/harness.h"
 #include "render/light_pictures.h"
 #include "render/pixel_test.h"
 #include "render/scene_builder.h"
+#include "support/printed_files.h"
+#include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -162,6 +166,27 @@ TEST(Models, AHighlightIsThatOfDoublePrecision) {
     const double half = std::cos(0.5 * std::acos(0.8));
     const double scale = 22.0 * 24.0 / (8.0 * (std::exp2(-10.0) + 20.0));
     expectLight(litBy(material, {0.6F, 0, -0.8F}), scale * std::pow(half, 20.0) * 0.8, "");
+}
+
+// The documents print the model, and a list of materials with it, as they are.
+TEST(Models, AreAsTheDocumentsPrintThem) {
+    const test::TemporaryFolder folder;
+    test::writePrintedFiles("material_features.md", folder.path(),
+                            {"toon/toon.json", "toon/toon.glsl", "toon/toon_surface.glsl"});
+    for (const char* const file : {"toon/toon.json", "toon/toon.glsl", "toon/toon_surface.glsl"}) {
+        const Result<base::Bytes> printed = base::readFile(folder.path() / file);
+        const Result<base::Bytes> kept =
+            base::readFile(std::filesystem::path(GLINT_SOURCE_DIR "/examples/materials/models") / file);
+        ASSERT_TRUE(printed && kept) << file;
+        EXPECT_EQ(*printed, *kept) << file;
+    }
+    test::writePrintedFiles("material_lists.md", folder.path(), {"materials.json"});
+    gltf::ImportOptions options;
+    options.materialModel = &models();
+    const Result<gltf::Scene> list = importScene(folder.path() / "materials.json", options);
+    ASSERT_TRUE(list) << toString(list.error());
+    EXPECT_TRUE(list->warnings.empty()) << toString(list->warnings.front());
+    EXPECT_EQ(list->materials.size(), 4U);
 }
 
 // A material has one model: the first that it names. That leaves out what changes glTF's base, and keeps

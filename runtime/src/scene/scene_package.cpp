@@ -27,7 +27,7 @@ std::string placeOfEntry(const package::PrimitiveEntry& entry) {
 
 template <typename T>
 bool sameBytes(std::span<const T> a, std::span<const T> b) {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
 }
 
 std::vector<ScenePackage::Attribute> attributesOf(const Package& package) {

@@ -113,6 +113,8 @@ TEST_F(MaterialLists, RefuseWhatNoDeclarationHas) {
               std::string::npos);
     EXPECT_NE(material(R"("features": ["unlitt"])").find("/materials/0/features/0: no feature"),
               std::string::npos);
+    EXPECT_NE(material(R"("features": ["specularGlossiness"])").find("name it as the material's \"model\""),
+              std::string::npos);
     EXPECT_NE(material(R"("values": {"roughnesFactor": 1})")
                   .find("/values/roughnesFactor: no parameter is called \"roughnesFactor\"; did you mean"),
               std::string::npos);

@@ -6,6 +6,8 @@
 namespace glint::test {
 
 VulkanHooks* VulkanHooks::current_ = nullptr;
+DeviceTable VulkanHooks::last_;
+std::shared_mutex VulkanHooks::inside_;
 thread_local int VulkanHooks::depth = 0;
 
 template <typename A>
@@ -57,24 +59,6 @@ VkResult VulkanHooks::strike(const std::string& name) {
 
 template <auto Member, typename R, typename... A>
 R VKAPI_PTR VulkanHooks::hooked(A... arguments) {
-    VulkanHooks& hooks = *current_;
-    const std::string name = nameOf<Member>;
-    {
-        ++depth;
-        const std::lock_guard lock(hooks.mutex_);
-        ++hooks.callsOf[name];
-        (hooks.look(name, arguments), ...);
-        VkResult failed = VK_SUCCESS;
-        if constexpr (std::is_same_v<R, VkResult>) {
-            failed = hooks.strike(name);
-        }
-        --depth;
-        if constexpr (std::is_same_v<R, VkResult>) {
-            if (failed != VK_SUCCESS) {
-                return failed;
-            }
-        }
-    }
     struct Depth {
         Depth() {
             ++depth;
@@ -82,7 +66,24 @@ R VKAPI_PTR VulkanHooks::hooked(A... arguments) {
         ~Depth() {
             --depth;
         }
-    } inside;
+    } within;
+    const std::shared_lock inside(inside_);
+    if (current_ == nullptr) {
+        return (last_.*Member)(arguments...);
+    }
+    VulkanHooks& hooks = *current_;
+    const std::string name = nameOf<Member>;
+    {
+        const std::lock_guard lock(hooks.mutex_);
+        ++hooks.callsOf[name];
+        (hooks.look(name, arguments), ...);
+        if constexpr (std::is_same_v<R, VkResult>) {
+            const VkResult failed = hooks.strike(name);
+            if (failed != VK_SUCCESS) {
+                return failed;
+            }
+        }
+    }
     if constexpr (std::is_same_v<R, VkResult>) {
         const VkResult result = (hooks.real_.*Member)(arguments...);
         using Last = std::tuple_element_t<sizeof...(A) - 1, std::tuple<A...>>;
@@ -114,7 +115,11 @@ void VulkanHooks::install(R (VKAPI_PTR* DeviceTable::* /*member*/)(A...), const 
 }
 
 VulkanHooks::VulkanHooks(Context& context) : context_(context), real_(context.state().vk) {
-    current_ = this;
+    {
+        const std::lock_guard alone(inside_);
+        current_ = this;
+        last_ = real_;
+    }
 #define GLINT_HOOK(name) install<&DeviceTable::name>(&DeviceTable::name, "vk" #name);
     GLINT_DEVICE_FUNCTIONS(GLINT_HOOK)
     GLINT_RAY_PIPELINE_FUNCTIONS(GLINT_HOOK)
@@ -124,6 +129,7 @@ VulkanHooks::VulkanHooks(Context& context) : context_(context), real_(context.st
 }
 
 VulkanHooks::~VulkanHooks() {
+    const std::lock_guard alone(inside_);
     context_.state().vk = real_;
     current_ = nullptr;
 }

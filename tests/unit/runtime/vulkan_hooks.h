@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 #include <set>
+#include <shared_mutex>
 #include <string>
 #include <thread>
 #include <type_traits>
@@ -67,6 +68,9 @@ private:
     VkResult strike(const std::string& name);
 
     static VulkanHooks* current_;
+    // Calls of threads that outlive the hooks end before these do, and those that come after go past them.
+    static std::shared_mutex inside_;
+    static DeviceTable last_;
     Context& context_;
     DeviceTable real_;
     std::recursive_mutex mutex_;

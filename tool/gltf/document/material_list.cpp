@@ -357,6 +357,11 @@ private:
                                  listed.features[i], base::suggestion(listed.features[i], names)));
                 return;
             }
+            if (model_.objects[static_cast<std::size_t>(object)].replaces >= 0) {
+                fail(fmt::format("/materials/{}/features/{}", index, i),
+                     fmt::format("{} is a base: name it as the material's \"model\"", listed.features[i]));
+                return;
+            }
             objectOf(material, object);
         }
     }
