@@ -208,7 +208,7 @@ double ratio(double x, double y) {
 
 Result<Measurer> Measurer::create(const Observer& observer, BenchBed& bed, const MeasureOptions& options,
                                   const Truth& truth, BenchPoint& base) {
-    Measurer measurer(observer, bed, options, truth, base);
+    Measurer measurer(observer, bed, options, truth);
     GLINT_TRY(auto entry, measurer.mount(base));
     measurer.baseEntry_.push_back(std::move(entry));
     return measurer;

@@ -82,9 +82,8 @@ public:
     Status measure(std::span<BenchPoint> points);
 
 private:
-    Measurer(const Observer& observer, BenchBed& bed, const MeasureOptions& options, const Truth& truth,
-             BenchPoint& base)
-        : observer_(observer), bed_(bed), options_(options), truth_(truth), base_(base) {}
+    Measurer(const Observer& observer, BenchBed& bed, const MeasureOptions& options, const Truth& truth)
+        : observer_(observer), bed_(bed), options_(options), truth_(truth) {}
 
     // A configuration on the device, and its picture of the current round.
     struct Entry {
@@ -103,7 +102,6 @@ private:
     BenchBed& bed_;
     MeasureOptions options_;
     const Truth& truth_;
-    BenchPoint& base_;
     std::vector<Entry> baseEntry_;  // the one of the default
     bool baseIsKnown_ = false;      // its errors
     std::uint64_t batches_ = 0;

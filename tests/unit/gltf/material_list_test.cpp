@@ -63,6 +63,7 @@ TEST_F(MaterialLists, GiveASphereToEachMaterial) {
     EXPECT_TRUE(scene->materials[1].isUnlit());
     EXPECT_EQ(scene->materials[2]["glossinessFactor"][0], 0.5F);
     ASSERT_EQ(scene->meshes.size(), 3U);
+    EXPECT_EQ(scene->lights.size(), 1U);
     for (std::size_t i = 0; i < 3; ++i) {
         ASSERT_EQ(scene->meshes[i].primitives.size(), 1U);
         EXPECT_EQ(scene->meshes[i].primitives[0].material, static_cast<int>(i));
