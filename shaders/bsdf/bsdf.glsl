@@ -32,8 +32,8 @@ struct Bsdf {
     GLINT_RELAXED vec3 diffuseTransmitted;  // albedo of the diffuse lobe on the far side
     Layers layers;
 #if GLINT_SHARED_LIGHTS
-    float mirrored;           // share of the microfacets' first reflection, or of a model's light, that counts; 1 unless
-                              // rays bring the rest
+    float mirrored;           // share of the microfacets' first reflection, or of a model's light, that counts; 1
+                              // unless rays bring the rest
 #endif
     // prepareBsdf() sets the following members, which depend on the view:
     vec3 view;         // unit, z >= kMinViewCosine

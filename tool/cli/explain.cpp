@@ -409,7 +409,8 @@ void addExplain(CLI::App& app, Action& chosen) {
                                       "glint explain scene.gltf --material Leaves --alpha tested"},
                          .usual = {"--material", "--plan", "--merge", "--alpha", "--hit-lobes", "--bounces",
                                    "--variant", "--verbose", "--json"}});
-    addText(command, "SCENE", arguments->scene, "FILE", "the scene, .gltf or .glb, or a list of materials").required();
+    addText(command, "SCENE", arguments->scene, "FILE", "the scene, .gltf or .glb, or a list of materials")
+        .required();
     CLI::Option& material = addText(command, "--material", arguments->material, "NAME|INDEX",
                                     "show only this material; numbers count from 0 (default: all)");
     addFlag(command, "--plan", arguments->wholePlan,

@@ -3,9 +3,9 @@
 
 // The lobes of a material that an interface reads. Coats and sheen of inner surfaces are left out, and absorption
 // counts over real distances. Inputs that have bits of the lobes' word stay.
-const uint kWalkedLobes = GLINT_UNLIT_LOBES | GLINT_SPECULAR_GLOSSINESS | GLINT_IOR | GLINT_SPECULAR | GLINT_ANISOTROPY |
-                          GLINT_IRIDESCENCE | GLINT_TRANSMISSION | GLINT_DIFFUSE_TRANSMISSION | GLINT_VOLUME |
-                          GLINT_DISPERSION | ~GLINT_LOBES;
+const uint kWalkedLobes = GLINT_UNLIT_LOBES | GLINT_SPECULAR_GLOSSINESS | GLINT_IOR | GLINT_SPECULAR |
+                          GLINT_ANISOTROPY | GLINT_IRIDESCENCE | GLINT_TRANSMISSION | GLINT_DIFFUSE_TRANSMISSION |
+                          GLINT_VOLUME | GLINT_DISPERSION | ~GLINT_LOBES;
 
 #include "bsdf/sample.glsl"
 #include "effects/ambient.glsl"

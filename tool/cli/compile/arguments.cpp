@@ -109,7 +109,8 @@ void addOutputOptions(CLI::App& command, CompileArguments& arguments) {
 
 void addCompileOptions(CLI::App& command, CompileArguments& arguments) {
     addTexts(command, "SCENE", arguments.scenes, "FILE",
-             "the scenes, .gltf or .glb, or lists of materials; several share the shaders, and each has its own tables")
+             "the scenes, .gltf or .glb, or lists of materials; several share the shaders, and each has its "
+             "own tables")
         .required();
     addReadingOptions(command, arguments.settings);
     addSettingsFile(command, arguments.settingsFile);

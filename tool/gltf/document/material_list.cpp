@@ -217,11 +217,12 @@ public:
             addMaterial(list.materials[i], i);
             const double radius = std::sqrt(list.materials[i].weight);
             const double step = kGap * largest;
+            const std::size_t column = i % columns;
+            const std::size_t row = i / columns;
             nodes_.push_back(
                 {{"name", list.materials[i].name},
                  {"mesh", i},
-                 {"translation",
-                  {step * static_cast<double>(i % columns), -step * static_cast<double>(i / columns), 0.0}},
+                 {"translation", {step * static_cast<double>(column), -step * static_cast<double>(row), 0.0}},
                  {"scale", {radius, radius, radius}}});
             shown_.push_back(i);
         }

@@ -53,6 +53,7 @@ base::Fields fieldsOf(const ListedMaterial* none);
 base::Fields fieldsOf(const MaterialList* none);
 
 // The document that a list becomes.
+// Moving the Json can't throw here. NOLINTNEXTLINE(bugprone-exception-escape)
 struct ExpandedList {
     Json document;
     base::Bytes buffer;  // the document's only buffer

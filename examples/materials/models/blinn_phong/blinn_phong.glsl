@@ -1,5 +1,5 @@
-// Blinn, "Models of light reflection for computer synthesized pictures" (1977). The highlight, seen straight on, reflects
-// its colour in all.
+// Blinn, "Models of light reflection for computer synthesized pictures" (1977). The highlight, seen straight on,
+// reflects its colour in all.
 #include "bsdf/model.glsl"
 
 struct BlinnPhong {
