@@ -209,6 +209,15 @@ TEST(Models, LeaveOutWhatChangesTheBase) {
     for (const char* const absent : {"toon", "transmission", "anisotropy", "partialMetal"}) {
         EXPECT_EQ(key & models().mask(absent), 0U) << absent;
     }
+    const auto reads = [&](const char* object) { return material.reads(models().findObject(object)); };
+    EXPECT_TRUE(reads("EXAMPLE_materials_blinn_phong"));
+    EXPECT_FALSE(reads("EXAMPLE_materials_toon"));
+    EXPECT_FALSE(reads("pbrMetallicRoughness"));
+    // Glint's own come first, in the key and in what is read.
+    material.give("KHR_materials_pbrSpecularGlossiness");
+    EXPECT_EQ(compiler::makeKey(material, {}, {}) & models().ownModels, 0U);
+    EXPECT_TRUE(reads("KHR_materials_pbrSpecularGlossiness"));
+    EXPECT_FALSE(reads("EXAMPLE_materials_blinn_phong"));
     material.give("KHR_materials_unlit");
     EXPECT_EQ(compiler::makeKey(material, {}, {}) & models().ownModels, 0U);
 }

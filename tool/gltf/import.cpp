@@ -167,9 +167,7 @@ bool usesMaterial(const Scene& scene, std::size_t material) {
     });
 }
 
-// Planning takes what a list says of values and textures that programs give at run time; pictures show the
-// values of the list, white textures and
-// level normals.
+// Planning takes the whole range of values that a program may set; pictures show those of the list.
 void addRunTimeValues(const Document& document, Scene& scene) {
     for (const auto& [material, index] : document.edited()) {
         const materials::Material& rest = scene.materials[static_cast<std::size_t>(material)];
@@ -192,6 +190,7 @@ void addRunTimeValues(const Document& document, Scene& scene) {
     }
 }
 
+// Pictures show white textures and level normals where a program gives the texels.
 void fillRunTimeImages(const ImportOptions& options, Scene& scene) {
     if (!options.decodeImages && !options.keepImageFiles) {
         return;

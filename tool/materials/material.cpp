@@ -123,20 +123,25 @@ bool Material::reads(int object) const {
     // An unlit material reads the plain base, whatever replaces it.
     const bool unlit = isUnlit();
     const MaterialObject& row = model_->objects[static_cast<std::size_t>(object)];
-    // Of several models that replace the same one, the first counts.
-    const auto isReplaced = [&](int replaced, std::size_t end) {
-        for (std::size_t i = 0; i < end; ++i) {
-            if (model_->objects[i].replaces == replaced && given[i] != 0) {
-                return true;
+    // Returns the object that the material has in place of the replaced one, or -1. Of several models it has
+    // the first by bits, as in keys.
+    const auto chosen = [this](int replaced) {
+        const auto isGiven = [&](std::size_t one) {
+            return model_->objects[one].replaces == replaced && given[one] != 0;
+        };
+        for (const Feature& feature : model_->features) {
+            if (feature.object >= 0 && isGiven(static_cast<std::size_t>(feature.object))) {
+                return feature.object;
             }
         }
-        return false;
+        for (std::size_t i = 0; i < model_->objects.size(); ++i) {
+            if (isGiven(i)) {
+                return static_cast<int>(i);
+            }
+        }
+        return -1;
     };
-    if (row.replaces >= 0) {
-        const auto index = static_cast<std::size_t>(object);
-        return given[index] != 0 && !unlit && !isReplaced(row.replaces, index);
-    }
-    return unlit || !isReplaced(object, model_->objects.size());
+    return row.replaces >= 0 ? !unlit && chosen(row.replaces) == object : unlit || chosen(object) < 0;
 }
 
 bool isReadable(const Material& material, const PrimitiveInputs& primitive, int texture) {
