@@ -363,7 +363,12 @@ Status validateSpirv(const std::vector<std::uint32_t>& words, const std::string&
     tools.SetMessageConsumer(keepFirstError(message));
     spvtools::ValidatorOptions options;
     options.SetScalarBlockLayout(true);
+    // Making unique names of all ids can take longer than the validation, and only messages need them.
+    options.SetFriendlyNames(false);
     if (!tools.Validate(words.data(), words.size(), options)) {
+        message.clear();
+        options.SetFriendlyNames(true);
+        tools.Validate(words.data(), words.size(), options);
         return makeError("spirv-validate", name,
                          "the SPIR-V is not valid: " + (message.empty() ? "no reason given" : message),
                          "this is a defect of Glint; please report it with the scene");
