@@ -1,4 +1,5 @@
-// shadeFirst(): the light of a surface that the camera sees, and the samples that effects take there.
+// shadeFirst(): the light of a surface that the camera sees, and the samples that effects take there. Where its shadow
+// rays wait in memory and are more than fit, it is called again for the others.
 #include "first/first_store.glsl"
 #include "generated/effects.glsl"
 #include "hit/primary.glsl"
@@ -22,6 +23,17 @@ vec3 scatteredBy(Hit hit, Surface surface, Features features, SkyShares sky) {
 #endif
 }
 
+// Returns whether something is left of a pixel that earlier rounds of shadow rays have shaded.
+bool shadesInRound(uvec2 pixel) {
+#if GLINT_FIRST_SHADOWS_DEFERRED
+    uint place = pixel.x + pixel.y * GLINT_FRAME.width - GLINT_FRAME.bandFirst;
+    return pushed.shadowRound == 0u ||
+           GLINT_FRAME.firstShadowCounts.data[place] > kFirstShadowRays * pushed.shadowRound;
+#else
+    return true;
+#endif
+}
+
 // Shades the surface of a pixel: `primitive` of the geometry with that number.
 void shadeFirst(uvec2 pixel, uint number, HostGeometry geometry, uint primitive, Features features) {
     ivec2 place = ivec2(pixel);
@@ -42,6 +54,11 @@ void shadeFirst(uvec2 pixel, uint number, HostGeometry geometry, uint primitive,
     } else {
         skipEffects(hit.target, kRayUnlit);
     }
+#if GLINT_FIRST_SHADOWS_DEFERRED
+    if (pushed.shadowRound > 0u) {
+        return;
+    }
+#endif
 #if GLINT_SURFACE_LAYERS
     storeSurfaceLayers(PrimaryPoint(place, geometry, number, primitive, ray, hit, surface, features, lit, depth),
                        scattered);

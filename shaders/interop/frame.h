@@ -126,6 +126,10 @@ GLINT_CONSTANT(kShadowOfSharedWithin, 2u);  // the same within a volume
 GLINT_CONSTANT(kShadowPastGlass, 3u);
 GLINT_CONSTANT(kShadowKind, 3u);  // the bits of these numbers
 
+// The most shadow rays of a pixel that wait in memory at once. Pixels with more are shaded once more for each further
+// round of as many.
+GLINT_CONSTANT(kFirstShadowRays, 4u);
+
 // A hit as a surface, for a host that lights it. 112 bytes. Vectors are in the world.
 struct SurfaceRecord {
     vec3 position;         // of a miss: the direction of the ray
@@ -354,6 +358,7 @@ struct FrameConstants {
     GLINT_ADDRESS(Dispatch) bucketDispatch;  // bucketCount, then one over the ordered list, gaps included
     GLINT_ADDRESS(Shadow) shadows;           // kCounterShadowRays
     GLINT_ADDRESS(Dispatch) shadowDispatch;  // 1: over the shadow rays
+    GLINT_ADDRESS(Counter) firstShadowCounts;  // of every pixel of a band: the shadow rays that its surface sends
     GLINT_ADDRESS(Counter) counters;         // kCounterCount
     // The members for rays of a host's own:
     GLINT_ADDRESS(Surface) surfaces;           // the answers, if they are surfaces
@@ -414,6 +419,7 @@ struct PushConstants {
     uint bucket;    // shading passes: which bucket this dispatch shades
     uint geometry;  // G-buffer pass: GeometryRecord index of this draw's first instance
     uint geometryStride;  // and from one instance's GeometryRecord to the next one's
+    uint shadowRound;  // passes over first hits: the number of kFirstShadowRays that are stored and traced
 };
 
 // Descriptor set 0: the scene.

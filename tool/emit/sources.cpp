@@ -126,6 +126,8 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
                         settings.precision == package::ShadingPrecision::Half ? " mediump" : "");
     text += fmt::format("#define GLINT_SHADOWS_DEFERRED {}\n",
                         flag(settings.shadows == package::ShadowPlacement::Deferred));
+    text += fmt::format("#define GLINT_FIRST_SHADOWS_DEFERRED {}\n",
+                        flag(shapeOf(scenes, plan, settings).defersFirstShadows()));
     text += fmt::format("#define GLINT_HIT_RECORD_PACKED {}\n",
                         flag(settings.hitRecord == package::HitRecordFormat::Packed));
     const bool packsSamples = settings.sampleRecord == package::SampleRecordFormat::Packed &&

@@ -15,6 +15,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <interop/frame.h>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -48,7 +49,8 @@ package::PackageShape shapeOf(const gltf::SceneList& scenes, const Plan& plan,
             settings.passes,
             settings.maxBounces,
             settings.plan.fallback,
-            settings.shadowThrough != package::ShadowThrough::Alpha};
+            settings.shadowThrough != package::ShadowThrough::Alpha,
+            settings.firstShadows};
 }
 
 namespace {
@@ -151,6 +153,10 @@ std::vector<std::string> runnableStrategies(const Target& target, std::optional<
     return names.empty() && target.package ? strategyNames(target.package->shape.strategies) : names;
 }
 
+// Surfaces with more shadow rays trace them inline, because each round of kFirstShadowRays shades them once
+// more.
+constexpr std::size_t kMostDeferredRays = std::size_t{4} * gpu::kFirstShadowRays;
+
 // Decides one thing after the other. Each step relies on those before it.
 class Resolver {
 public:
@@ -174,6 +180,7 @@ public:
             GLINT_TRY_DO(checkSettings(compile_, scenes_.path()));
             GLINT_TRY(build_.plan.layers, resolveLayers(build_.plan, compile_, scenes_.path()));
             compile_.shadowThrough = shadowThroughOf(scenes_, build_.plan, compile_);
+            GLINT_TRY_DO(decideFirstShadows());
             warnOfEffects();
         }
         build_.plan.emitters = emitterFeatures(scenes_, build_.plan, compile_.plan.fallback);
@@ -384,6 +391,44 @@ private:
         compile_.sizedLights = light.sized;
         compile_.lightSamples = light.samples;
         return okStatus();
+    }
+
+    // Decides where shadow rays of first hits are traced. A pass of their own leaves the shaders of cases
+    // without the code of a traversal, so that they take fewer registers and less time to compile.
+    Status decideFirstShadows() {
+        const bool showsLight = std::ranges::any_of(build_.plan.layers, [](const package::LayerEntry& entry) {
+            const package::LayerInfo* const radiance = package::findLayer("radiance");
+            return entry.effect == 0 && entry.layer == radiance->number;
+        });
+        const std::string why = showsLight               ? "a layer shows the light of lights by itself"
+                                : !compile_.host.empty() ? "a host may have any number of lights"
+                                                         : "";
+        if (!settings_.choosesFirstShadows) {
+            return why.empty() || compile_.firstShadows == package::ShadowPlacement::Inline
+                       ? okStatus()
+                       : Status(makeError("first-shadows", scenes_.path(),
+                                          "the shadow rays of first hits can't be deferred: " + why,
+                                          "use --first-shadows inline, or leave out the option"));
+        }
+        const bool defers = why.empty() && mostShadowRays() <= kMostDeferredRays;
+        compile_.firstShadows =
+            defers ? package::ShadowPlacement::Deferred : package::ShadowPlacement::Inline;
+        settings_.choosesFirstShadows = false;
+        return okStatus();
+    }
+
+    // Returns the most shadow rays of a surface, apart from those to further points of area lights.
+    std::size_t mostShadowRays() const {
+        std::size_t most = 0;
+        for (std::size_t i = 0; i < scenes_.scenes().size(); ++i) {
+            const LightCounts counts = countLights(scenes_, i, compile_.emissiveLights);
+            const std::size_t punctual = scenes_.scenes()[i].lights.size();
+            const std::size_t apart = counts.areApart ? punctual : punctual - counts.positions;
+            const std::size_t samples = compile_.lightSamples.value_or(0);
+            const std::size_t found = compile_.sizedLights == SizedLights::On ? punctual : 0;
+            most = std::max(most, found + (samples > 0 ? apart + samples : punctual + counts.emitters));
+        }
+        return most;
     }
 
     // Chooses the strategy that should be fastest, and from the strategies the tracers.

@@ -77,6 +77,7 @@ struct CompileSettings {
     std::uint32_t strategies = package::kDefaultStrategies;
     std::uint32_t tracers = package::kTracerRayQuery;
     package::ShadowPlacement shadows = package::ShadowPlacement::Inline;
+    package::ShadowPlacement firstShadows = package::ShadowPlacement::Inline;  // of first hits
     package::ShadowThrough shadowThrough = package::ShadowThrough::Alpha;
     package::HitRecordFormat hitRecord = package::HitRecordFormat::Full;
     package::SampleRecordFormat sampleRecord = package::SampleRecordFormat::Full;
@@ -162,6 +163,7 @@ struct Settings {
     bool advisesStrategy = false;
     // The table of `gpu` decides about the member of `compile`, which has the usual value until then.
     bool choosesShadows = false;
+    bool choosesFirstShadows = true;
     bool choosesPrecision = false;
     double precisionError = 0.0;  // relMSE that the choice of a precision may cost
     // A package that is compiled for pictures has these strategies, too, so that a renderer of one of them

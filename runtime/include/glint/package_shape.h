@@ -66,8 +66,8 @@ enum Tracer : std::uint32_t {
 
 // The pass that traces the shadow rays of hits.
 enum class ShadowPlacement : std::uint32_t {
-    Inline = 0,    // by the shader that shades the hit
-    Deferred = 1,  // by a pass of their own, from a list
+    Inline = 0,    // the shader that shades the hit
+    Deferred = 1,  // a pass of its own, which reads the rays from memory
 };
 
 // The treatment of a material's alpha by rays.

@@ -251,6 +251,7 @@ void fillLists(const FrameResources& frame, const FrameSize& size, gpu::FrameCon
     constants.packedHits = frame.hits.address;
     constants.shadows = frame.shadows.address;
     constants.shadowDispatch = frame.shadowDispatch.address;
+    constants.firstShadowCounts = frame.firstShadowCounts.address;
     constants.orderedHits = frame.orderedHits.address;
     constants.visitedHits = frame.visitedHits.address;
     constants.bucketKeys = frame.bucketKeys.address;

@@ -181,7 +181,11 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
     const VkDeviceSize slots = ordered > 0 ? orderedSlots(size, ordered) : 0;
     // There is one bit for each hit, in whole words.
     const VkDeviceSize visitedWords = size.checksOrder ? (hits + 31) / 32 : 0;
+    // The shadow rays of first hits are traced before there are any others.
+    const VkDeviceSize firstShadows = size.firstShadowBytes > 0 ? size.pixelsOfBand() : 0;
     const VkDeviceSize shadows = size.deferredShadows ? rays : 0;
+    const VkDeviceSize shadowBytes = std::max(shadows * sizeof(gpu::ShadowRecord),
+                                              firstShadows * gpu::kFirstShadowRays * size.firstShadowBytes);
     // The keys end at the end of the last tile that may be read, or block that may be written.
     const VkDeviceSize keys =
         ordered > 0 ? ordered + VkDeviceSize{gpu::kLargeTileThreads} * gpu::kTileHitsOfThread : 0;
@@ -214,8 +218,9 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
         {&Frame::hits, hits * size.hitBytes, kStorage, MemoryUse::Device},
         {&Frame::orderedHits, slots * sizeof(std::uint32_t), kStorage, MemoryUse::Device},
         {&Frame::visitedHits, visitedWords * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
-        {&Frame::shadows, shadows * sizeof(gpu::ShadowRecord), kStorage, MemoryUse::Device},
+        {&Frame::shadows, shadowBytes, kStorage, MemoryUse::Device},
         {&Frame::shadowDispatch, shadowLists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
+        {&Frame::firstShadowCounts, firstShadows * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
         {&Frame::bucketKeys, keys * size.keyBytes, kStorage, MemoryUse::Device},
         {&Frame::bucketCounts, buckets, kCleared, MemoryUse::Device},
         {&Frame::bucketBegins, buckets, kStorage, MemoryUse::Device},

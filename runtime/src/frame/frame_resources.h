@@ -35,7 +35,7 @@ struct FrameResources {
     MemoryPool pool;
     // The memory of buffers that replaceBuffers() has exchanged, in the order of buffers(). The memory of the
     // others is `pool`.
-    static constexpr std::size_t kBufferCount = 26;
+    static constexpr std::size_t kBufferCount = 27;
     std::array<std::shared_ptr<MemoryPool>, kBufferCount> bufferPools{};
     // The images by binding, in the layout GENERAL. Bindings that share an image have it in one place
     // (imageOf()).
@@ -60,9 +60,10 @@ struct FrameResources {
     Buffer hits;         // full or packed records; present if hits are ordered and samples don't hold them
     Buffer orderedHits;  // the numbers of first hits or of `hits`, in the order of the buckets
     Buffer visitedHits;  // one bit for each hit; present if the order is checked
-    Buffer shadows;      // present if shadow rays are deferred
+    Buffer shadows;      // present if shadow rays are deferred, of first hits or of hits of rays
     Buffer shadowDispatch;
-    Buffer bucketKeys;  // one key for each hit; ends at a whole tile
+    Buffer firstShadowCounts;  // present if shadow rays of first hits are deferred
+    Buffer bucketKeys;         // one key for each hit; ends at a whole tile
     Buffer bucketCounts;
     Buffer bucketBegins;
     Buffer bucketCursors;
@@ -94,6 +95,7 @@ struct FrameResources {
                  {"visited hits", &visitedHits},
                  {"shadow rays", &shadows},
                  {"shadow dispatch", &shadowDispatch},
+                 {"first shadow counts", &firstShadowCounts},
                  {"bucket keys", &bucketKeys},
                  {"bucket counts", &bucketCounts},
                  {"bucket begins", &bucketBegins},
@@ -120,6 +122,9 @@ struct FrameSize {
     std::uint32_t hitBytes = sizeof(gpu::HitRecord);  // 0: the samples hold their hits
     std::uint32_t keyBytes = 1;                       // size of the key of a hit's bucket
     bool deferredShadows = false;
+    std::uint32_t lightSamples = 0;  // lights that a surface chooses by the hierarchy; 0: all
+    std::uint32_t firstShadowBytes =
+        0;  // of a shadow ray of a first hit that waits; 0: they are traced inline
     bool environmentMap = false;
     std::uint32_t textureLevels = 0;  // textures whose finest level is noted
     bool hostRays = false;            // the host owns the list of rays and their results

@@ -122,6 +122,8 @@ std::vector<RoleInfo> sharedRoles() {
          .purpose = Purpose::Fallback,
          .over = Over::Misses,
          .pass = "first"},
+        {ModuleRole::FirstShadows, all, "FirstShadows", "first/first_shadows.comp", ShaderKind::Tracing,
+         Purpose::FirstShadows},
     };
 }
 
@@ -167,6 +169,8 @@ bool isNeeded(const RoleInfo& info, const PackageShape& shape) {
             return hits;
         case Purpose::Shadows:
             return hits && shape.effects.lights != 0 && shape.shadows == ShadowPlacement::Deferred;
+        case Purpose::FirstShadows:
+            return shape.defersFirstShadows();
         case Purpose::Walks:
             return frame && shape.effects.walks != 0;
         case Purpose::Paths:
@@ -186,7 +190,7 @@ bool isNeeded(const RoleInfo& info, const PackageShape& shape) {
 // Returns whether a module traces, given that modules of its kind may trace.
 bool traces(const RoleInfo& info, const PackageShape& shape) {
     if (info.shadesFirst()) {
-        return shape.effects.tracesAtSurfaces();
+        return shape.effects.tracesAtSurfaces() && !shape.defersFirstShadows();
     }
     return info.kind == ShaderKind::Tracing ||
            (shape.effects.lights != 0 && shape.shadows == ShadowPlacement::Inline);

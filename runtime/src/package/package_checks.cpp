@@ -94,6 +94,8 @@ Status checkHeader(const Package::State& state, const std::string& where) {
         {"the alpha policy", number(header.alpha), 0, number(package::AlphaPolicy::Stochastic)},
         {"the placement of shadow rays", number(header.shadows), 0,
          number(package::ShadowPlacement::Deferred)},
+        {"the placement of first hits' shadow rays", number(header.firstShadows), 0,
+         number(package::ShadowPlacement::Deferred)},
         {"what shadow rays pass", number(header.shadowThrough), 0, number(package::ShadowThrough::Glass)},
         {"the hit record", number(header.hitRecord), 0, number(package::HitRecordFormat::Packed)},
         {"the record of samples", number(header.sampleRecord), 0,
@@ -412,6 +414,7 @@ package::PackageShape shapeOf(const Package::State& state) {
     shape.maxBounces = header.maxBounces;
     shape.fallback = header.fallback != 0;
     shape.shadowsApart = header.shadowThrough != package::ShadowThrough::Alpha;
+    shape.firstShadows = header.firstShadows;
     return shape;
 }
 

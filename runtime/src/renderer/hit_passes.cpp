@@ -205,6 +205,10 @@ void PassRecorder::setBucket(std::uint32_t bucket) {
     pushed_.bucket = bucket;
 }
 
+void PassRecorder::setShadowRound(std::uint32_t round) {
+    pushed_.shadowRound = round;
+}
+
 using package::ModuleRole;
 
 void HitPasses::dispatchRays(const PassLabel& label, ModuleRole role) {
@@ -234,9 +238,16 @@ void HitPasses::orderFirst() {
     passes_.barrier(dependencies().passToDispatch);
 }
 
-void HitPasses::shadeFirst() {
-    std::ranges::for_each(package::firstRoles(), [&](const package::RoleInfo& info) { dispatch(info); });
-    passes_.barrier(dependencies().passToPass);
+void HitPasses::shadeFirst(std::uint32_t shadowRounds) {
+    for (std::uint32_t round = 0; round < std::max(shadowRounds, 1U); ++round) {
+        passes_.setShadowRound(round);
+        std::ranges::for_each(package::firstRoles(), [&](const package::RoleInfo& info) { dispatch(info); });
+        passes_.barrier(dependencies().passToPass);
+        if (shadowRounds > 0) {
+            passes_.dispatchPixels({"first shadows", Pass::FirstShade}, pass(ModuleRole::FirstShadows));
+            passes_.barrier(dependencies().passToPass);
+        }
+    }
 }
 
 void HitPasses::order() {

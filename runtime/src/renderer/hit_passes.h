@@ -115,6 +115,8 @@ public:
                       std::uint32_t index);
     // Sets the bucket that the next dispatch shades.
     void setBucket(std::uint32_t bucket);
+    // Sets PushConstants::shadowRound of the next dispatches.
+    void setShadowRound(std::uint32_t round);
 
     const PassDependencies& dependencies() const {
         return dependencies_;
@@ -147,7 +149,8 @@ public:
 
     // Orders the pixels of a band by the case of what they see, and shades them.
     void orderFirst();
-    void shadeFirst();
+    // `shadowRounds` is 0 if the shadow rays of first hits are traced inline.
+    void shadeFirst(std::uint32_t shadowRounds);
 
     // Sets the indirect arguments of the list of rays, from its counter.
     void dispatchOfList();

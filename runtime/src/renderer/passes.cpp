@@ -3,6 +3,7 @@
 #include "renderer/hit_passes.h"
 #include "renderer/renderer.h"
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -10,6 +11,23 @@ namespace glint {
 namespace {
 
 using package::ModuleRole;
+
+// Returns the rounds of at most kFirstShadowRays that hold all shadow rays of a pixel (light/direct.glsl), or
+// 0 if they are traced inline.
+std::uint32_t shadowRounds(const FrameSize& size, const gpu::FrameConstants& constants) {
+    if (size.firstShadowBytes == 0) {
+        return 0;
+    }
+    const std::uint32_t all = constants.lightCount + (size.emissiveLights ? constants.emitterCount : 0);
+    const std::uint32_t chosen =
+        size.lightSamples == 0
+            ? all
+            : constants.lightsApart + (constants.lightTreeNodes > 0 ? size.lightSamples : 0);
+    const auto effects = static_cast<std::uint32_t>(std::popcount(size.effects.rays));
+    const std::uint32_t most =
+        chosen * constants.shadowSamples + (size.sizedLights ? effects * all : 0) + (size.skyLight ? 1 : 0);
+    return (most + gpu::kFirstShadowRays - 1) / gpu::kFirstShadowRays;
+}
 
 class FrameRecorder {
 public:
@@ -103,20 +121,20 @@ private:
             passes_.dispatchPixels({"first draft", Pass::FirstShade}, pass(ModuleRole::FirstDraft));
             passes_.barrier(dependencies().passToPass);
         } else {
-            recordFirst(band);
+            recordFirst(band, constants);
             recordEffects(frame.effects & state_.size.effects.rays, constants);
         }
         passes_.dispatchPixels({"compose", Pass::Compose}, pass(ModuleRole::Compose));
     }
 
     // Shades what the camera sees, by the same cases as hits of rays.
-    void recordFirst(std::uint32_t band) {
+    void recordFirst(std::uint32_t band, const gpu::FrameConstants& constants) {
         HitPasses hits(state_, passes_);
         hits.orderFirst();
         passes_.barrier(dependencies().passesToCopy);
         copy(state_.frame.bucketCounts, 0, bucketBytes(state_.size), readbackFirst(state_.size, band));
         state_.orderedBands = band + 1;
-        hits.shadeFirst();
+        hits.shadeFirst(shadowRounds(state_.size, constants));
     }
 
     // Leads the passes to the rows of another band. The band before used the same memory.
@@ -126,14 +144,16 @@ private:
         updateConstant(offsetof(gpu::FrameConstants, firstRow), band_.firstRow);
         updateConstant(offsetof(gpu::FrameConstants, endRow), band_.endRow);
         updateConstant(offsetof(gpu::FrameConstants, bandFirst), band_.bandFirst);
-        clearWalks();
+        clearOfPixels();
         startRound(constants);
         passes_.barrier(dependencies().passToPass);
     }
 
-    // Drafts have no walk, and walks of packs need not store their results.
-    void clearWalks() {
+    // Drafts have no walk, walks of packs need not store their results, and only lit surfaces send shadow
+    // rays.
+    void clearOfPixels() {
         fill(state_.frame.walkedLight, VK_WHOLE_SIZE, 0);
+        fill(state_.frame.firstShadowCounts, VK_WHOLE_SIZE, 0);
     }
 
     void clear(const gpu::FrameConstants& constants) {
@@ -146,7 +166,7 @@ private:
             fill(state_.frame.counters, VK_WHOLE_SIZE, 0, kKept + sizeof(std::uint32_t));
         }
         clearLists();
-        clearWalks();
+        clearOfPixels();
     }
 
     // Clears the lists at the start of a round of rays.

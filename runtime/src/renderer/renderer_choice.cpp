@@ -218,6 +218,10 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.textureLevels = package.textureLevels() ? textures : 0;
     size.deferredShadows =
         size.effects.lights != 0 && package.shape().shadows == package::ShadowPlacement::Deferred;
+    // shaders/effects/shadow/shadow.glsl: SurfaceShadow, with the light past glass where both are known.
+    const bool splitsGlass = size.emissiveLights && package.shadowThrough() == package::ShadowThrough::Glass;
+    size.lightSamples = package.lightSamples();
+    size.firstShadowBytes = !package.shape().defersFirstShadows() ? 0 : splitsGlass ? 44 : 32;
     size.rayPipeline = choice.tracer == package::kTracerRayPipeline;
     size.layers.assign(package.layers().begin(), package.layers().end());
     size.layerRays = (package::demandsOf(size.layers) & package::kLayerRays) != 0;

@@ -26,7 +26,13 @@ bool passesGate(LightSample centre, inout ShadowCounts counts) {
 }
 
 void reportShadows(ShadowCounts counts) {
+#if !GLINT_FIRST_SHADOWS_DEFERRED
     countRays(kEffectShadow, counts.rays, counts.misses);
+#else
+    if (pushed.shadowRound > 0u) {
+        return;
+    }
+#endif
     if (kCountsLight) {
         addToCounter(counterOf(kEffectShadow, kRayFacing), counts.facing);
         addToCounter(counterOf(kEffectShadow, kRayRange), counts.range);
@@ -68,6 +74,8 @@ SurfaceShadow surfaceShadow(vec3 direction, float distance, vec3 light, uint see
 #endif
 }
 
+#if GLINT_TRACER == 1 || GLINT_RAY_GENERATION
+
 // Returns the light that arrives.
 vec3 traceShadow(Hit hit, SurfaceShadow ray, inout ShadowCounts counts) {
 #if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
@@ -82,7 +90,36 @@ vec3 traceShadow(Hit hit, SurfaceShadow ray, inout ShadowCounts counts) {
     return visible ? ray.light : vec3(0.0);
 }
 
-#if GLINT_RAY_GENERATION
+#endif
+
+#if GLINT_FIRST_SHADOWS_DEFERRED
+
+// The rays of a round: first those of all pixels of a band with the lowest numbers, then those with the next ones.
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer FirstShadowArray { SurfaceShadow data[]; };
+
+// Returns the place of a ray of the round.
+uint firstShadowPlace(uint pixelOfBand, uint ray) {
+    return ray * GLINT_FRAME.width * (GLINT_FRAME.endRow - GLINT_FRAME.firstRow) + pixelOfBand;
+}
+
+// All rays wait for a pass of their own (first/first_shadows.comp), so that the code of a material and that of a
+// traversal do not share registers.
+vec3 traceWaiting(Hit hit, ShadowCounts counts) {
+    GLINT_FRAME.firstShadowCounts.data[hit.target - GLINT_FRAME.bandFirst] = counts.rays;
+    return vec3(0.0);
+}
+
+vec3 sendShadow(Hit hit, SurfaceShadow ray, inout ShadowCounts counts) {
+    uint place = counts.rays - kFirstShadowRays * pushed.shadowRound;
+    if (place < kFirstShadowRays) {
+        FirstShadowArray(GLINT_FRAME.shadows)
+            .data[firstShadowPlace(hit.target - GLINT_FRAME.bandFirst, place)] = ray;
+    }
+    counts.rays += 1u;
+    return vec3(0.0);
+}
+
+#elif GLINT_RAY_GENERATION
 
 // With each ray that it sends, a ray generation shader saves all that it needs afterwards. So rays wait until the
 // material is no longer needed.

@@ -80,7 +80,7 @@ constexpr void forEachEffect(std::uint32_t effects, const Visit& visit) {
 // --- The file ---
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 22;
+inline constexpr std::uint32_t kVersion = 23;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -116,10 +116,10 @@ struct PackageHeader {
         lightSamples;        // lights that a surface chooses by the hierarchy; 0: it takes all, without one
     std::uint32_t fallback;  // 1: the package has shaders for every material beside those of its cases
     ShadowThrough shadowThrough;
-    std::uint32_t textureLevels;  // 1: shaders record the finest level that they read of each texture
-    std::uint32_t trustTextures;  // 1: shaders rely on the contents of the scenes' textures
-    std::uint32_t skyLight;       // 1: surfaces sample the sky as a light
-    std::uint32_t reserved;       // 0
+    std::uint32_t textureLevels;   // 1: shaders record the finest level that they read of each texture
+    std::uint32_t trustTextures;   // 1: shaders rely on the contents of the scenes' textures
+    std::uint32_t skyLight;        // 1: surfaces sample the sky as a light
+    ShadowPlacement firstShadows;  // of first hits
     SampleRecordFormat sampleRecord;
     std::uint32_t sizedLights;  // 1: rays of lobes find punctual lights that have a size, too
 };
@@ -177,6 +177,7 @@ enum class ModuleRole : std::uint32_t {
     FirstCopy = 22,      // orders pixels by bucket
     FirstMiss = 23,      // shades pixels without a surface
     FirstFallback = 24,  // shades pixels whose shader ID no case has
+    FirstShadows = 25,   // traces the shadow rays of first hits that are not traced inline
 };
 
 struct ModuleEntry {

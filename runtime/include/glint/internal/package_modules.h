@@ -109,6 +109,13 @@ struct PackageShape {
     std::uint32_t maxBounces = 1;
     bool fallback = false;      // it has shaders for every material beside those of its cases
     bool shadowsApart = false;  // candidates of shadow rays are not treated as those of other rays
+    ShadowPlacement firstShadows = ShadowPlacement::Inline;
+
+    // Returns whether the shadow rays of first hits wait for a pass of their own.
+    bool defersFirstShadows() const {
+        return passes == Passes::Frame && effects.tracesAtSurfaces() &&
+               firstShadows == ShadowPlacement::Deferred;
+    }
 };
 
 // One module of a package. The fields are those of ModuleEntry.
@@ -126,16 +133,17 @@ enum class Repeated : std::uint8_t { Once, ByCase, ByOrdering, ByEffect, ByWalk 
 
 // The packages that have a role.
 enum class Purpose : std::uint8_t {
-    Picture,   // packages that draw a frame
-    Order,     // packages that order hits of rays or, as those that draw a frame do, first hits
-    Hits,      // packages that shade hits: for a host, or with an effect that sends rays
-    Shadows,   // those among them that defer shadow rays
-    Walks,     // packages with effects that follow their rays in a pass of their own
-    Tracing,   // packages in which a ray tracing pipeline traces
-    Paths,     // packages whose paths have several bounces
-    Motion,    // packages with meshes that follow skins or morph targets
-    Fallback,  // packages that shade such hits, with shaders for every material
-    Draft,     // packages that draw a frame and may do so before all pipelines are made
+    Picture,       // packages that draw a frame
+    Order,         // packages that order hits of rays or, as those that draw a frame do, first hits
+    Hits,          // packages that shade hits: for a host, or with an effect that sends rays
+    Shadows,       // those among them that defer shadow rays
+    FirstShadows,  // packages that defer the shadow rays of first hits
+    Walks,         // packages with effects that follow their rays in a pass of their own
+    Tracing,       // packages in which a ray tracing pipeline traces
+    Paths,         // packages whose paths have several bounces
+    Motion,        // packages with meshes that follow skins or morph targets
+    Fallback,      // packages that shade such hits, with shaders for every material
+    Draft,         // packages that draw a frame and may do so before all pipelines are made
 };
 
 struct RoleInfo {
