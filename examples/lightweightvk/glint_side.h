@@ -3,23 +3,22 @@
 
 #include <lvk/vulkan/VulkanClasses.h>  // before Glint's headers, whose Vulkan is older
 //
-#include <glint/context.h>
-#include <glint/package.h>
 #include <glint/steps.h>
 
-#define GLM_FORCE_DEPTH_ZERO_TO_ONE
 #include <glm/glm.hpp>
 
 #include <deque>
 #include <iostream>
 #include <materials/glint_tables.h>
 
-// A material as the engine has it: shaders/frame.glsl.
-struct Material {
+using Place = std::array<float, 12>;
+// An object as the engine has it; shaders/frame.glsl.
+struct Object {
     glm::vec3 color;
     float gloss;
     glm::vec3 mirror;
-    float pad = 0;
+    float moved = 0;  // metres along x
+    std::uint64_t positions = 0, normals = 0, indices = 0, pad = 0;
 };
 
 template <typename T>
@@ -31,10 +30,9 @@ T expect(glint::Result<T> result) {
     return std::move(*result);
 }
 
-class GlintSide {
-public:
-    GlintSide(lvk::VulkanContext& theEngine, std::span<const glint::EngineGeometryView> geometries,
-              std::span<const Material> materials, const glint::LightView& theSun, std::uint32_t maxRays)
+struct GlintSide {
+    GlintSide(lvk::VulkanContext& theEngine, std::span<const Object> objects, std::span<const Place> places,
+              const glint::LightView& theSun, std::uint32_t maxRays)
         : engine(theEngine), sun(theSun) {
         glint::DeviceHandles handles;
         handles.instance = engine.getVkInstance();
@@ -44,26 +42,27 @@ public:
         handles.queueFamily = engine.deviceQueues_.graphicsQueueFamilyIndex;
         handles.getInstanceProcAddr = vkGetInstanceProcAddr;
         handles.debugUtils = vkCmdBeginDebugUtilsLabelEXT != nullptr;
-        glint::HostServices services;
-        services.pipelineCache = engine.pipelineCache_;
-        context = expect(glint::Context::adopt(handles, services));
+        context = expect(glint::Context::adopt(handles, {.pipelineCache = engine.pipelineCache_}));
 
-        // The engine's materials, in records of the package.
-        std::vector<glint::scene_materials::MaterialRecord> records(materials.size());
+        // The package has one material. Each object has values of its own.
+        std::vector<glint::scene_materials::MaterialRecord> records(objects.size());
         std::vector<glint::MaterialView> values;
-        for (std::size_t i = 0; i < records.size(); ++i) {
+        std::vector<glint::EngineGeometryView> geometries(objects.size());
+        for (std::uint32_t i = 0; i < objects.size(); ++i) {
+            const Object& object = objects[i];
             std::memcpy(&records[i], package.scene(0).materials.bytes.data(), sizeof records[i]);
-            const auto& [color, gloss, mirror, pad] = materials[i];
-            records[i].baseColorFactor = {color.x, color.y, color.z, 1};
-            records[i].satinMirror = {mirror.x, mirror.y, mirror.z};
-            records[i].satinGloss = gloss;
+            records[i].baseColorFactor = {object.color.x, object.color.y, object.color.z, 1};
+            records[i].satinMirror = {object.mirror.x, object.mirror.y, object.mirror.z};
+            records[i].satinGloss = object.gloss;
             values.push_back({0, {reinterpret_cast<const std::uint8_t*>(&records[i]), sizeof records[i]}});
+            geometries[i].instance = geometries[i].material = i;
+            geometries[i].indices = object.indices;
+            geometries[i].positions = object.positions;
+            geometries[i].normals = object.normals;
         }
-        const std::vector<std::array<float, 12>> still(geometries.size(),
-                                                       {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
         glint::EngineSceneView view;
         view.geometries = geometries;
-        view.instances = still;
+        view.instances = places;
         view.lights = {&sun, 1};
         view.materials = values;
         lvk::ICommandBuffer& commands = engine.acquireCommandBuffer();
@@ -73,9 +72,8 @@ public:
 
         // The package reads no descriptor, so the layout has no sets.
         const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, glint::RaySteps::kPushBytes};
-        VkPipelineLayoutCreateInfo info{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
-        info.pushConstantRangeCount = 1;
-        info.pPushConstantRanges = &range;
+        const VkPipelineLayoutCreateInfo info{
+            VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO, nullptr, 0, 0, nullptr, 1, &range};
         VK_ASSERT(vkCreatePipelineLayout(handles.device, &info, nullptr, &options.layout));
         options.maxRays = maxRays;
         steps = expect(glint::RaySteps::create(*context, package, *scene, options));
@@ -85,24 +83,8 @@ public:
         steps.reset();
         vkDestroyPipelineLayout(engine.getVkDevice(), options.layout, nullptr);
     }
-
-    // The engine's own ray queries need this. Its barrier after the build is for ray tracing pipelines alone.
-    void waitForStructure(lvk::ICommandBuffer& commands) {
-        VkMemoryBarrier barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
-        barrier.srcAccessMask = VK_ACCESS_ACCELERATION_STRUCTURE_WRITE_BIT_KHR;
-        barrier.dstAccessMask = VK_ACCESS_ACCELERATION_STRUCTURE_READ_BIT_KHR;
-        vkCmdPipelineBarrier(lvk::getVkCommandBuffer(commands),
-                             VK_PIPELINE_STAGE_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
-                             VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 1, &barrier, 0, nullptr, 0, nullptr);
-    }
-
     // Leaves a pipeline bound that the engine does not know of. So it must bind another than its last one.
-    void record(lvk::ICommandBuffer& commands, std::span<const lvk::AccelStructInstance> instances,
-                const glint::RayBatch& batch) {
-        std::vector<std::array<float, 12>> places(instances.size());
-        for (std::size_t i = 0; i < places.size(); ++i) {
-            std::memcpy(&places[i], &instances[i].transform, sizeof places[i]);
-        }
+    void record(lvk::ICommandBuffer& commands, std::span<const Place> places, const glint::RayBatch& batch) {
         expect(scene->update(lvk::getVkCommandBuffer(commands), places, {&sun, 1}, ++frame));
         expect(steps->record(lvk::getVkCommandBuffer(commands), batch));
     }
@@ -113,7 +95,6 @@ public:
         }
     }
 
-private:
     lvk::VulkanContext& engine;
     glint::LightView sun;
     glint::Package package = expect(glint::Package::load(std::filesystem::path(GLINT_PACKAGE_MATERIALS)));
