@@ -359,9 +359,9 @@ Words trim(const ParsedModule& module) {
     return to;
 }
 
-// Says of loads of addresses that these are aligned to 8 bytes, as they are in every layout of Vulkan. glslang
-// says the alignment of what the address points to, which VUID-StandaloneSpirv-PhysicalStorageBuffer64-06314
-// forbids.
+// Says of loads of addresses that these are aligned to 8 bytes, as they are in every layout of Vulkan.
+// glslang says the alignment of what the address points to, which
+// VUID-StandaloneSpirv-PhysicalStorageBuffer64-06314 forbids.
 void alignAddresses(Words& words) {
     constexpr std::uint32_t kAddressBytes = 8;
     constexpr std::size_t kAlignment = 5;  // word of OpLoad

@@ -127,11 +127,11 @@ public:
     EngineScene& operator=(const EngineScene&) = delete;
 
     // Records another content: other geometries, instances, lights, materials, textures and samplers, as many
-    // as there are now. An instance keeps its number, by which its motion is measured from its previous transform; new
-    // ones are still. All places are relative to an origin of the engine's choice, which may follow its
-    // camera: `originMoved` says in metres how far it has moved since the previous transforms, which then
-    // count from the new one. `package` is the present one, or one that RaySteps::replacePackage() gets; then
-    // RaySteps::begin() fails until it has it. It need not outlive the call.
+    // as there are now. An instance keeps its number, by which its motion is measured from its previous
+    // transform; new ones are still. All places are relative to an origin of the engine's choice, which may
+    // follow its camera: `originMoved` says in metres how far it has moved since the previous transforms,
+    // which then count from the new one. `package` is the present one, or one that RaySteps::replacePackage()
+    // gets; then RaySteps::begin() fails until it has it. It need not outlive the call.
     //
     // The call compares all records on the host, and records copies of those that differ. The spans are not
     // kept. Any number of frames may be in flight: buffers that are too small give way to larger ones, so
