@@ -24,38 +24,34 @@ constexpr const char* kMarker = "materialList";
 constexpr double kMost = 1e9;
 constexpr base::FieldTraits kMayBeMissing{.orNull = true, .optional = true};
 
-base::Field readBy(base::Field field, base::FieldReader read) {
-    field.read = read;
-    return field;
-}
-
 base::Field readBy(base::Field field, base::FieldReader read, base::FieldSchema schema) {
+    field.read = read;
     field.schema = schema;
-    return readBy(std::move(field), read);
+    return field;
 }
 
 // Two numbers, which may be missing.
 template <auto Member>
 base::Field pair(const char* name, const char* what) {
-    return readBy(
-        base::output<Member>(
-            name, what,
-            {.least = -kMost, .most = kMost, .optional = true, .leastElements = 2, .mostElements = 2}),
-        [](void* object, base::JsonReader& reader, const base::Json& json, const std::string& place,
-           const base::FieldTraits& traits) {
-            if (json.is_null()) {
-                return;
-            }
-            std::vector<double> numbers;
-            base::detail::read(numbers, reader, json, place, {.least = traits.least, .most = traits.most});
-            if (reader.ok() && numbers.size() != 2) {
-                reader.fail(place, fmt::format("has {} number{}, not 2", numbers.size(),
-                                               numbers.size() == 1 ? "" : "s"));
-            } else if (reader.ok()) {
-                static_cast<base::detail::ObjectOf<Member>*>(object)->*Member =
-                    std::array<double, 2>{numbers[0], numbers[1]};
-            }
-        });
+    base::Field field = base::output<Member>(
+        name, what,
+        {.least = -kMost, .most = kMost, .optional = true, .leastElements = 2, .mostElements = 2});
+    field.read = [](void* object, base::JsonReader& reader, const base::Json& json, const std::string& place,
+                    const base::FieldTraits& traits) {
+        if (json.is_null()) {
+            return;
+        }
+        std::vector<double> numbers;
+        base::detail::read(numbers, reader, json, place, {.least = traits.least, .most = traits.most});
+        if (reader.ok() && numbers.size() != 2) {
+            reader.fail(
+                place, fmt::format("has {} number{}, not 2", numbers.size(), numbers.size() == 1 ? "" : "s"));
+        } else if (reader.ok()) {
+            static_cast<base::detail::ObjectOf<Member>*>(object)->*Member =
+                std::array<double, 2>{numbers[0], numbers[1]};
+        }
+    };
+    return field;
 }
 
 // An object of which most have one member alone: then its text may stand for it.
