@@ -59,7 +59,7 @@ std::vector<Part> parts() {
         outputOf("render", "glint render --json; --stats writes the same without diagnostics",
                  schemaOf<cli::RenderReport>()),
         fileOf("edits", "The file of glint render --edits", schemaOf<session::EditList>()),
-        fileOf("material_list", "A list of materials without a scene", schemaOf<gltf::MaterialList>()),
+        fileOf("material_list", "A list of materials without a scene", schemaOf<gltf::MaterialSet>()),
         fileOf("device", "The device file of glint bench --calibrate", schemaOf<measure::DeviceFile>()),
         fileOf("gpu", "A table of --gpu", schemaOf<compiler::GpuCosts>()),
         fileOf("manifest", "manifest.json of a package", schemaOf<compiler::Manifest>()),
