@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes a scene of spheres on a floor, one with each of the example materials, or several with each of the
-drafts or models.
+drafts, of the models, or of OpenPBR with hair and stone.
 
-usage: make_scene.py [--drafts | --models] OUTPUT.gltf
+usage: make_scene.py [--drafts | --models | --openpbr] OUTPUT.gltf
 """
 
 import math
@@ -102,6 +102,35 @@ MODELS = [
      "pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.25, 0.1, 1], "metallicFactor": 0, "roughnessFactor": 0.4}},
 ]
 
+
+
+def openpbr(name, values, **more):
+    return {"name": name, **more, "extensions": {"EXAMPLE_materials_openpbr": values}}
+
+
+OPENPBR = [
+    openpbr("Car paint", {"base_color": [0.55, 0.02, 0.03, 1], "base_metalness": 0.6, "specular_roughness": 0.4,
+                          "coat_weight": 1, "coat_color": [1, 0.85, 0.8], "coat_roughness": 0.02}),
+    openpbr("Brushed copper", {"base_color": [0.93, 0.62, 0.5, 1], "base_metalness": 1,
+                               "specular_color": [0.98, 0.9, 0.85], "specular_roughness": 0.4,
+                               "specular_roughness_anisotropy": 0.85}),
+    openpbr("Clay", {"base_color": [0.6, 0.33, 0.2, 1], "base_diffuse_roughness": 1, "specular_weight": 0.3,
+                     "specular_roughness": 0.6}),
+    openpbr("Glass", {"transmission_weight": 1, "specular_roughness": 0, "specular_ior": 1.6,
+                      "transmission_color": [0.5, 0.85, 0.75], "transmission_depth": 1.5,
+                      "transmission_dispersion_scale": 1}, doubleSided=True),
+    openpbr("Velvet", {"base_color": [0.08, 0.02, 0.2, 1], "specular_weight": 0, "fuzz_weight": 1,
+                       "fuzz_color": [0.6, 0.5, 0.9], "fuzz_roughness": 0.4}),
+    openpbr("Film on metal", {"base_color": [0.5, 0.5, 0.5, 1], "base_metalness": 1, "specular_roughness": 0.15,
+                              "thin_film_weight": 1, "thin_film_thickness": 0.45, "thin_film_ior": 1.5}),
+    {"name": "Hair", "extensions": {"EXAMPLE_materials_hair": {"hairColor": [0.5, 0.25, 0.08, 1]}}},
+    {"name": "Stone", "pbrMetallicRoughness": {"metallicFactor": 0}, "extensions": {"EXAMPLE_materials_stone": {}}},
+    openpbr("Skin", {"subsurface_weight": 1, "subsurface_color": [0.8, 0.5, 0.4], "specular_roughness": 0.45}),
+    openpbr("Honey", {"transmission_weight": 1, "specular_roughness": 0.05, "transmission_color": [0.9, 0.5, 0.1],
+                      "transmission_depth": 0.8, "transmission_scatter": [0.3, 0.2, 0.05]}, doubleSided=True),
+    openpbr("Lamp", {"base_color": [0.8, 0.8, 0.8, 1], "emission_luminance": 3, "emission_color": [1, 0.8, 0.5]}),
+]
+
 FLOOR = {"name": "Floor",
          "pbrMetallicRoughness": {"baseColorFactor": [0.35, 0.35, 0.35, 1], "metallicFactor": 0,
                                   "roughnessFactor": 0.9}}
@@ -156,7 +185,7 @@ TEXTURES = [
 
 
 def main():
-    others = {"--drafts": DRAFTS, "--models": MODELS}.get(sys.argv[1]) if len(sys.argv) == 3 else None
+    others = {"--drafts": DRAFTS, "--models": MODELS, "--openpbr": OPENPBR}.get(sys.argv[1]) if len(sys.argv) == 3 else None
     if len(sys.argv) != 2 and not others:
         sys.exit(__doc__.strip())
     materials = (others or MATERIALS) + [FLOOR]
