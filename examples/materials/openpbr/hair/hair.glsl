@@ -50,7 +50,7 @@ vec2 hairLobe(Hair hair, int order) {
     float angle = asin(clamp(hair.view.x, -1.0, 1.0)) + turn * hair.tilt;
     float r = hair.roughness;
     float deviation = (0.726 * r + 0.812 * r * r + 3.7 * pow(r, 20.0)) * (order == 0 ? 1.0 : order == 1 ? 0.5 : 2.0);
-    return vec2(-sin(angle), 0.5513 * deviation * max(cos(angle), 0.05));  // the square root of 3, over pi
+    return vec2(-sin(angle), 0.5513 * deviation * max(abs(cos(angle)), 0.2));  // the square root of 3, over pi
 }
 
 // The azimuth at which an order leaves, from the view's.

@@ -6,12 +6,14 @@
 //   - Albedos of microfacets are Glint's fits (bsdf/albedo.glsl), with the Fresnel reflectance at the cosine at which
 //     Schlick's weight has its mean. Light of several bounces between facets is added as by Kulla and Conty (2017) to
 //     the opaque base. Refraction has the first bounce alone.
-//   - A thin film is Glint's (Belcour and Barla 2017, with Schlick's approximation at both of its sides).
+//   - A thin film on metal is Glint's (Belcour and Barla 2017, with Schlick's approximation). That on a dielectric has
+//     the reflectance of dielectrics, of both polarisations together.
 //   - Subsurface light leaves where it enters, by the law of the diffuse lobe with subsurface_color: the limit of
 //     subsurface_radius 0. The light that a large surface sends back is right, its blur is missing.
 //   - A medium that scatters lets the unscattered light through, exp(-mu_t d) over the way d through the object. The
 //     share that scatters and is not absorbed, (1 - exp(-mu_s d)) exp(-mu_a d), leaves at the end of the straight way in
 //     a cosine lobe: (1 + g) / 2 of it outwards, the rest back.
+//   - specular_weight above 1 acts on the dielectric alone.
 //   - Emission is not tinted by coat and fuzz. Coat and base have one normal and one tangent.
 //
 // A ray within an object is one that meets the back of a surface, so objects of glass are closed and double-sided.
@@ -77,31 +79,58 @@ const float kMinFuzzRoughness = 0.07;              // the fits of fuzz hold from
 
 // --- Fresnel
 
-// Unpolarised reflectance of a dielectric from the side of the lower index: Walter et al. (2007), equation 22. eta >= 1.
+// The squared cosine beyond an interface of this relative index. It is at most 0 beyond the critical angle.
+vec3 beyondCosine2(vec3 cosine, vec3 eta) {
+    return 1.0 - (1.0 - cosine) * (1.0 + cosine) / (eta * eta);
+}
+
+// Unpolarised reflectance of a dielectric: Walter et al. (2007), equation 22. Light from the denser side has that of the
+// angle beyond.
 vec3 dielectricFresnel(vec3 cosine, vec3 eta) {
+    bvec3 fromDenser = lessThan(eta, vec3(1.0));
+    vec3 beyond2 = beyondCosine2(cosine, eta);
+    vec3 rarer = sqrt(max(mix(cosine * cosine, beyond2, fromDenser), vec3(0.0)));
+    eta = max(eta, 1.0 / eta);
     vec3 excess = (eta - 1.0) * (eta + 1.0);
-    vec3 g = sqrt(excess + cosine * cosine);
-    vec3 sum = g + cosine;
+    vec3 g = sqrt(excess + rarer * rarer);
+    vec3 sum = g + rarer;
     vec3 a = excess / max(sum * sum, vec3(1e-12));
-    vec3 b = (cosine * sum - 1.0) / (cosine * (g - cosine) + 1.0);
-    return min(0.5 * a * a * (1.0 + b * b), vec3(1.0));
+    vec3 b = (rarer * sum - 1.0) / (rarer * (g - rarer) + 1.0);
+    vec3 fresnel = min(0.5 * a * a * (1.0 + b * b), vec3(1.0));
+    return mix(fresnel, vec3(1.0), lessThanEqual(beyond2, vec3(0.0)));
+}
+
+// A film of an index and a thickness (nanometres) on a dielectric, all relative to the index outside, from there:
+// Belcour and Barla (2017), with two orders of interference and the reflectances of both polarisations together.
+vec3 filmFresnel(float cosine, float ior, float thickness, vec3 eta) {
+    float inFilm2 = beyondCosine2(vec3(cosine), vec3(ior)).x;
+    if (inFilm2 <= 0.0) {
+        return vec3(1.0);
+    }
+    float inFilm = sqrt(inFilm2);
+    float r12 = dielectricFresnel(vec3(cosine), vec3(ior)).x;
+    vec3 r23 = dielectricFresnel(vec3(inFilm), eta / ior);
+    // A reflection off the denser side turns the phase by half a cycle.
+    vec3 turns = vec3(ior < 1.0 ? 0.0 : 0.5) + mix(vec3(0.0), vec3(0.5), lessThan(eta, vec3(ior)));
+    vec3 both = clamp(r12 * r23, vec3(1e-10), vec3(0.9999));
+    vec3 series = (1.0 - r12) * (1.0 - r12) * r23 / (1.0 - both);
+    vec3 order = (series - vec3(1.0 - r12)) * sqrt(both);
+    float path = 2.0 * ior * thickness * inFilm;
+    vec3 reflected = vec3(r12) + series + 2.0 * order * filmSensitivity(path, turns) +
+                     2.0 * order * sqrt(both) * filmSensitivity(2.0 * path, 2.0 * turns);
+    return clamp(reflected, vec3(0.0), vec3(1.0));
 }
 
 // The interface of the base at a facet that is seen under this cosine.
 vec3 openPbrInterface(OpenPbr model, float cosine) {
-    bvec3 fromDenser = lessThan(model.eta, vec3(1.0));
-    vec3 sine2 = vec3((1.0 - cosine) * (1.0 + cosine));
-    vec3 beyond2 = 1.0 - sine2 / (model.eta * model.eta);
-    vec3 rarer = sqrt(max(mix(vec3(cosine * cosine), beyond2, fromDenser), vec3(0.0)));
-    vec3 fresnel = dielectricFresnel(rarer, max(model.eta, 1.0 / model.eta));
+    vec3 fresnel = dielectricFresnel(vec3(cosine), model.eta);
     if (model.filmWeight > 0.0) {
-        vec3 root = (model.eta - 1.0) / (model.eta + 1.0);
-        vec3 film = iridescentFresnel(rarer.y, root * root, model.filmIor, model.filmThickness);
-        fresnel = mix(fresnel, film, model.filmWeight);
+        vec3 outside2 = model.isInside ? beyondCosine2(vec3(cosine), model.eta) : vec3(cosine * cosine);
+        vec3 film = filmFresnel(sqrt(max(outside2.y, 0.0)), model.filmIor, model.filmThickness,
+                                model.isInside ? 1.0 / model.eta : model.eta);
+        fresnel = mix(fresnel, mix(film, vec3(1.0), lessThanEqual(outside2, vec3(0.0))), model.filmWeight);
     }
-    bvec3 all = bvec3(fromDenser.x && beyond2.x <= 0.0, fromDenser.y && beyond2.y <= 0.0,
-                      fromDenser.z && beyond2.z <= 0.0);
-    return mix(fresnel, vec3(1.0), all);
+    return fresnel;
 }
 
 // A sheet of the translucent base: all light that its two sides reflect and, in `passed`, let through.
@@ -131,7 +160,7 @@ vec3 openPbrMetal(OpenPbr model, float cosine) {
         fresnel = mix(fresnel, iridescentFresnel(cosine, model.metalF0, model.filmIor, model.filmThickness),
                       model.filmWeight);
     }
-    return clamp(fresnel * model.metalWeight, vec3(0.0), vec3(1.0));
+    return clamp(fresnel, vec3(0.0), vec3(1.0)) * model.metalWeight;
 }
 
 // --- Diffuse: Portsmouth, Kutz and Hill, "EON: A Practical Energy-Preserving Rough Diffuse BRDF" (2025)
@@ -202,8 +231,7 @@ vec3 openPbrTurned(OpenPbr model, vec3 d) {
 }
 
 float openPbrCoatFresnel(float eta, float cosine) {
-    float above = eta < 1.0 ? 1.0 - (1.0 - cosine * cosine) / (eta * eta) : cosine * cosine;
-    return above <= 0.0 ? 1.0 : dielectricFresnel(vec3(sqrt(above)), vec3(max(eta, 1.0 / eta))).x;
+    return dielectricFresnel(vec3(cosine), vec3(eta)).x;
 }
 
 // The cosine of a direction within the coat.
@@ -276,7 +304,7 @@ void openPbrPrepare(inout OpenPbr model, vec3 view) {
         if (model.isThin) {
             openPbrSheet(model, atView, passed);
         }
-        refracted = dielectricShare * model.transmission * passed * once;
+        refracted = dielectricShare * model.transmission * passed * (model.isThin || !isStraight(model) ? once : 1.0);
     }
     vec3 reflectedByCoat = vec3(0.0);
     vec3 reflectedByFuzz = vec3(0.0);

@@ -11,11 +11,14 @@ void openPbrSurface(Hit hit, Features features, inout SurfaceValues values) {
     metallicRoughnessSurface(hit, features, values);
 }
 
+// Lobes have some width across the tangent.
+const float kMostAnisotropy = 0.99;
+
 // The alphas of a roughness and an anisotropy, along the tangent and across it.
 vec2 openPbrAlphas(float roughness, float anisotropy) {
-    float across = 1.0 - anisotropy;
+    float across = 1.0 - min(anisotropy, kMostAnisotropy);
     float along = roughness * roughness * sqrt(2.0 / (1.0 + across * across));
-    return vec2(clamp(along, kMinAlpha, 1.0), clamp(across * along, kMinAlpha, 1.0));
+    return clamp(vec2(along, across * along), kMinAlpha, 1.0);
 }
 
 // The mean reflectance of a dielectric over the hemisphere: d'Eon (2021), eta in [1, 3].
@@ -129,7 +132,7 @@ void openPbrBsdf(Hit hit, Features features, inout SurfaceValues values, inout S
     model.metalness = values.metallic;
     model.metalF0 = color;
     model.metalDip = openPbrDip(color, model.specularColor);
-    model.metalWeight = weight;
+    model.metalWeight = min(weight, 1.0);
     model.diffuse = color * (1.0 - share);
     model.subsurface = subsurface * share;
     model.diffuseRoughness = GLINT_MATERIAL_BASE_DIFFUSE_ROUGHNESS(hit);
@@ -164,7 +167,7 @@ void openPbrBsdf(Hit hit, Features features, inout SurfaceValues values, inout S
     if (GLINT_HAS_OPEN_PBR_COAT(features)) {
         float f0 = dielectricF0(eta);
         vec3 opaque = mix(color, subsurface, share);
-        vec3 albedo = mix(mix(opaque, vec3(1.0 - f0), model.transmission), min(color * weight, vec3(1.0)),
+        vec3 albedo = mix(mix(opaque, vec3(1.0 - f0), model.transmission), color * model.metalWeight,
                           model.metalness);
         openPbrCoat(hit, albedo, mix(mix(1.0, values.roughness, f0), values.roughness, model.metalness), local.z, model);
     }
