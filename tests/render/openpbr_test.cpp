@@ -379,6 +379,34 @@ TEST(OpenPbr, LobesAreThoseOfDoublePrecision) {
     }
 }
 
+struct Furnace {
+    std::array<gltf::Float3, 3> sky;  // zenith, horizon, below
+    compiler::SkyLight skyLight = compiler::SkyLight::Off;
+};
+
+// A small picture of a scene under a sky, without other lights.
+LinearImage underSky(gltf::Scene scene, const Furnace& furnace) {
+    addDirectionalLight(scene, {0, 0, -1}, 0.0F);  // a scene without lights would get some
+    RenderSetup setup = defaultSetup(scene, 9, 9);
+    setup.frame.sky = {furnace.sky[0], furnace.sky[1], furnace.sky[2]};
+    setup.samples = 16;
+    compiler::CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.maxBounces = 4;
+    settings.skyLight = furnace.skyLight;
+    settings.effects = {false, compiler::builtinEffects({"shadow", "indirect-diffuse"})};
+    RendererOptions options;
+    options.strategy = package::kStrategyUber;
+    options.bounces = 4;
+    const LoadedScene loaded(scene, settings);
+    LinearImage image = loaded.ok() ? loaded.render(options, setup) : LinearImage{};
+    EXPECT_FALSE(image.pixels.empty());
+    image.pixels.resize(81);
+    return image;
+}
+
+const std::array<gltf::Float3, 3> kWhiteSky{{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}};
+
 // Light goes straight through a box without gloss, and loses what Beer and Lambert say on the way.
 TEST(OpenPbr, AMediumAbsorbsOverTheWay) {
     materials::Material medium = openPbrMaterial();
@@ -391,24 +419,34 @@ TEST(OpenPbr, AMediumAbsorbsOverTheWay) {
     addCamera(scene);
     addQuad(scene, medium, {-8, -8, -4}, {16, 0, 0}, {0, 16, 0});
     addQuad(scene, medium, {-8, -8, -7}, {0, 16, 0}, {16, 0, 0});
-    RenderSetup setup = defaultSetup(scene, 9, 9);
-    setup.frame.sky = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}};
-    setup.samples = 4;
-    compiler::CompileSettings settings;
-    settings.strategies = package::kStrategyUber;
-    settings.maxBounces = 4;
-    settings.effects = {false, compiler::builtinEffects({"indirect-diffuse"})};
-    RendererOptions options;
-    options.strategy = package::kStrategyUber;
-    options.bounces = 4;
-    const LoadedScene loaded(scene, settings);
-    ASSERT_TRUE(loaded.ok());
-    const LinearImage image = loaded.render(options, setup);
-    ASSERT_FALSE(image.pixels.empty());
-    const Pixel& middle = at(image, 4, 4);
+    const Pixel middle = at(underSky(scene, {kWhiteSky}), 4, 4);
     const float colors[] = {0.5F, 0.7F, 0.9F};
     for (std::size_t k = 0; k < 3; ++k) {
         EXPECT_NEAR(middle[k], std::pow(colors[k], 1.5), 2e-3);  // three metres of a depth of two
+    }
+    expectNoValidationMessages();
+}
+
+// Rays of primary surfaces follow the samples of a model that has any: a mirror shows what is above it.
+// Samples of the sky share its light with these rays.
+TEST(OpenPbr, PrimarySurfacesFollowTheirOwnSamples) {
+    materials::Material metal = openPbrMaterial();
+    metal["metallicFactor"] = 1.0F;
+    metal["roughnessFactor"] = 0.0F;
+    metal["baseColorFactor"] = {1.0F, 1.0F, 1.0F, 1.0F};
+    gltf::Scene mirror = emptyScene();
+    addCamera(mirror);
+    addQuad(mirror, metal, {-8, -8, 4}, {16, 0, 0}, {0, 16, -16});
+    const Pixel seen = at(underSky(mirror, {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}}), 4, 4);
+    EXPECT_NEAR(seen[0], 1.0, 0.03);
+    EXPECT_NEAR(seen[1], 0.0, 0.03);
+    EXPECT_NEAR(seen[2], 0.0, 1e-3);
+    metal["roughnessFactor"] = 0.6F;
+    gltf::Scene rough = emptyScene();
+    addCamera(rough);
+    addQuad(rough, metal, {-8, -8, -4}, {16, 0, 0}, {0, 16, 0});
+    for (const compiler::SkyLight skyLight : {compiler::SkyLight::Off, compiler::SkyLight::On}) {
+        EXPECT_NEAR(meanOf(underSky(rough, {kWhiteSky, skyLight})), 1.0, 0.02) << static_cast<int>(skyLight);
     }
     expectNoValidationMessages();
 }
