@@ -223,7 +223,8 @@ def hair_nodes(mesh, place, count=64):
 
 
 def main():
-    others = {"--drafts": DRAFTS, "--models": MODELS, "--openpbr": OPENPBR}.get(sys.argv[1]) if len(sys.argv) == 3 else None
+    lists = {"--drafts": DRAFTS, "--models": MODELS, "--openpbr": OPENPBR}
+    others = lists.get(sys.argv[1]) if len(sys.argv) == 3 else None
     if len(sys.argv) != 2 and not others:
         sys.exit(__doc__.strip())
     materials = (others or MATERIALS) + [FLOOR]

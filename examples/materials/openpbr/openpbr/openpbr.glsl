@@ -1,5 +1,5 @@
-// OpenPBR 1.1 (Academy Software Foundation): metal, glossy-diffuse, subsurface and translucent base under a thin film, a
-// coat and fuzz. Layers are mixed by the albedo-scaling of the specification: what lies below gets the share that the
+// OpenPBR 1.1 (Academy Software Foundation): metal, glossy-diffuse, subsurface and translucent base under a thin film,
+// a coat and fuzz. Layers are mixed by the albedo-scaling of the specification: what lies below gets the share that the
 // layer does not reflect of the view's light. So the model is not reciprocal, and its energy is exact.
 //
 // The formulas are those of the specification, but for these approximations:
@@ -11,8 +11,8 @@
 //   - Subsurface light leaves where it enters, by the law of the diffuse lobe with subsurface_color: the limit of
 //     subsurface_radius 0. The light that a large surface sends back is right, its blur is missing.
 //   - A medium that scatters lets the unscattered light through, exp(-mu_t d) over the way d through the object. The
-//     share that scatters and is not absorbed, (1 - exp(-mu_s d)) exp(-mu_a d), leaves at the end of the straight way in
-//     a cosine lobe: (1 + g) / 2 of it outwards, the rest back.
+//     share that scatters and is not absorbed, (1 - exp(-mu_s d)) exp(-mu_a d), leaves at the end of the straight way
+//     in a cosine lobe: (1 + g) / 2 of it outwards, the rest back.
 //   - specular_weight above 1 acts on the dielectric alone.
 //   - Emission is not tinted by coat and fuzz. Coat and base have one normal and one tangent.
 //
@@ -84,8 +84,8 @@ vec3 beyondCosine2(vec3 cosine, vec3 eta) {
     return 1.0 - (1.0 - cosine) * (1.0 + cosine) / (eta * eta);
 }
 
-// Unpolarised reflectance of a dielectric: Walter et al. (2007), equation 22. Light from the denser side has that of the
-// angle beyond.
+// Unpolarised reflectance of a dielectric: Walter et al. (2007), equation 22. Light from the denser side has that of
+// the angle beyond.
 vec3 dielectricFresnel(vec3 cosine, vec3 eta) {
     bvec3 fromDenser = lessThan(eta, vec3(1.0));
     vec3 beyond2 = beyondCosine2(cosine, eta);
@@ -193,8 +193,8 @@ vec3 openPbrDiffuseAlbedo(vec3 color, float roughness, float cosine) {
     return color * single + eonAgain(color, eonMean(roughness)) * max(1.0 - single, 0.0);
 }
 
-// --- Fuzz: Zeltner, Burley and Chiang, "Practical Multiple-Scattering Sheen Using Linearly Transformed Cosines" (2022),
-// with the rational fits that MaterialX has for the coefficients
+// --- Fuzz: Zeltner, Burley and Chiang, "Practical Multiple-Scattering Sheen Using Linearly Transformed Cosines"
+// (2022), with the rational fits that MaterialX has for the coefficients
 
 void openPbrPrepareFuzz(inout OpenPbr model) {
     float x = model.view.z;
@@ -276,7 +276,10 @@ void openPbrPrepare(inout OpenPbr model, vec3 view) {
     vec3 dielectric = openPbrDielectric(model, cosine) * once;
     vec3 metal = openPbrMetal(model, cosine) * once;
     model.metalAgain = laterBounces(openPbrMetal(model, kMeanCosine), model.meanLoss);
-    model.dielectricAgain = model.isInside ? vec3(0.0) : laterBounces(openPbrDielectric(model, kMeanCosine), model.meanLoss);
+    model.dielectricAgain = laterBounces(openPbrDielectric(model, kMeanCosine), model.meanLoss);
+    if (model.isInside) {
+        model.dielectricAgain = vec3(0.0);
+    }
     model.dielectricPassed = max(1.0 - dielectric - model.dielectricAgain * model.loss, vec3(0.0));
     model.coatPassed = 1.0;
     if (model.coat > 0.0) {

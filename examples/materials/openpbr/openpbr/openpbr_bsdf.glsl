@@ -169,7 +169,8 @@ void openPbrBsdf(Hit hit, Features features, inout SurfaceValues values, inout S
         vec3 opaque = mix(color, subsurface, share);
         vec3 albedo = mix(mix(opaque, vec3(1.0 - f0), model.transmission), color * model.metalWeight,
                           model.metalness);
-        openPbrCoat(hit, albedo, mix(mix(1.0, values.roughness, f0), values.roughness, model.metalness), local.z, model);
+        float rough = mix(mix(1.0, values.roughness, f0), values.roughness, model.metalness);
+        openPbrCoat(hit, albedo, rough, local.z, model);
     }
     model.fuzz = 0.0;
     model.fuzzColor = vec3(0.0);

@@ -65,14 +65,15 @@ void stoneSurface(Hit hit, Features features, inout SurfaceValues values) {
     values.color.rgb *= color * (1.0 - 0.8 * crack);
     values.metallic = 0.0;
     float wear = GLINT_MATERIAL_STONE_WEAR(hit);
-    float worn = max(smoothstep(1.0 - wear, 1.2 - wear, stoneNoise(1.7 * p - 11.0, detail, 1.7 * footprint) + 0.1), crack);
+    float patches = stoneNoise(1.7 * p - 11.0, detail, 1.7 * footprint);
+    float worn = max(smoothstep(0.9 - wear, 1.1 - wear, patches), crack);
     values.roughness = mix(GLINT_MATERIAL_STONE_ROUGHNESS(hit), GLINT_MATERIAL_STONE_WORN_ROUGHNESS(hit), worn);
 
     // The slope of the relief, over a step that the footprint does not blur.
     float h = max(0.02, footprint);
     float here = stoneHeight(hit, p, footprint);
-    vec3 slope = vec3(stoneHeight(hit, p + vec3(h, 0.0, 0.0), footprint), stoneHeight(hit, p + vec3(0.0, h, 0.0), footprint),
-                      stoneHeight(hit, p + vec3(0.0, 0.0, h), footprint)) - vec3(here);
-    slope /= h;
+    vec3 slope = (vec3(stoneHeight(hit, p + vec3(h, 0.0, 0.0), footprint),
+                       stoneHeight(hit, p + vec3(0.0, h, 0.0), footprint),
+                       stoneHeight(hit, p + vec3(0.0, 0.0, h), footprint)) - here) / h;
     values.normal = directionOr(values.normal - (slope - values.normal * dot(values.normal, slope)), values.normal);
 }
