@@ -1,6 +1,7 @@
 #include "gltf/document/document.h"
 
 #include "base/json.h"
+#include "gltf/document/materialx.h"
 #include "gltf/document/validate.h"
 
 #include <fmt/format.h>
@@ -305,8 +306,13 @@ Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& pa
 
 Status Document::parse() {
     GLINT_TRY(file_, source_.readScene());
-    GLINT_TRY(const auto container, splitContainer(*this, file_));
+    GLINT_TRY(auto container, splitContainer(*this, file_));
     binary_ = container.binary;
+    base::Bytes listed;
+    if (isMaterialX(container.json)) {
+        GLINT_TRY(listed, listOfMaterialX(container.json, name_, *options_.materialModel));
+        container.json = listed;
+    }
     GLINT_TRY(json_, parseJson(*this, container.json));
     if (isMaterialList(json_)) {
         GLINT_TRY(auto list, expandMaterialList(container.json, name_, *options_.materialModel));
