@@ -390,9 +390,10 @@ private:
 }  // namespace
 
 bool isMaterialX(ByteView text) {
+    constexpr std::string_view kRoot = "<materialx";
     const auto first = std::ranges::find_if(
         text, [](std::uint8_t c) { return c != ' ' && c != '\t' && c != '\r' && c != '\n'; });
-    return first != text.end() && *first == '<';
+    return first != text.end() && *first == '<' && !std::ranges::search(text, kRoot).empty();
 }
 
 Result<base::Bytes> listOfMaterialX(ByteView text, const std::filesystem::path& path,

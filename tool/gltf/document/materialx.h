@@ -11,7 +11,7 @@
 
 namespace glint::gltf {
 
-// JSON never begins with the first character of XML.
+// Returns whether the text is XML with a root of MaterialX.
 bool isMaterialX(ByteView text);
 // Returns the text of the list. `text` is that of the file `path`. Error: "materialx".
 Result<base::Bytes> listOfMaterialX(ByteView text, const std::filesystem::path& path,
