@@ -77,7 +77,7 @@ TEST_F(MaterialX, OpenPbrHasItsConstants) {
     expectNear(material, "geometryThinWalled", {1.0});
     EXPECT_TRUE(material.doubleSided);
     EXPECT_EQ(material.alphaMode, materials::AlphaMode::Blend);
-    // What the file does not say has the specification's default.
+    // Other parameters have the specification's defaults.
     expectNear(material, "roughnessFactor", {0.3});
     expectNear(material, "metallicFactor", {0.0});
     expectNear(material, "emissiveStrength", {0.0});

@@ -27,7 +27,7 @@ constexpr const char* kMaterialXHint = "docs/material_lists.md says which Materi
 
 using Numbers = std::vector<double>;
 
-// What an input of the surface has: numbers, or the file of an image.
+// An input of the surface: numbers, and the file of an image if it has one.
 struct SurfaceInput {
     Numbers numbers;
     std::string file{};

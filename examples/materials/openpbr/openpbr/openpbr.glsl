@@ -141,7 +141,7 @@ vec3 openPbrSheet(OpenPbr model, vec3 fresnel, out vec3 passed) {
     return fresnel + open * again * model.tint;
 }
 
-// What a facet of the dielectric reflects of the light that comes from the viewer's side.
+// The share that a facet of the dielectric reflects of the light from the viewer's side.
 vec3 openPbrDielectric(OpenPbr model, float cosine) {
     vec3 fresnel = openPbrInterface(model, cosine);
     if (model.isThin && model.transmission > 0.0) {

@@ -3,7 +3,7 @@
 #include "materials/metallic_roughness/metallic_roughness.glsl"
 #include "materials/volume/attenuation.glsl"
 
-// What divides by a length or takes a logarithm of a colour stays finite.
+// Quotients by lengths and logarithms of colours stay finite.
 const float kLeastDepth = 1e-9;
 const float kDarkest = 1e-8;
 
@@ -46,13 +46,13 @@ float openPbrIndex(float ior, float coat, float coatIor, float weight) {
     return (1.0 + modulated) / (1.0 - modulated);
 }
 
-// What the tint at 82 degrees takes of Schlick's reflectance, as a factor of cosine (1 - cosine)^6.
+// The reflectance that the tint at 82 degrees takes from Schlick's, as a factor of cosine (1 - cosine)^6.
 vec3 openPbrDip(vec3 f0, vec3 tint) {
     const float kEdge = 1.0 / 7.0;
     return (f0 + (1.0 - f0) * schlickWeight(kEdge)) * (1.0 - tint) / (kEdge * pow(1.0 - kEdge, 6.0));
 }
 
-// Coat, and what it does to the light of the base.
+// Reads the coat, and finds how it darkens the base.
 void openPbrCoat(Hit hit, vec3 baseAlbedo, float baseRoughness, float cosine, inout OpenPbr model) {
     vec3 color = max(GLINT_MATERIAL_COAT_COLOR(hit), vec3(kDarkest));
     model.coatEta = GLINT_MATERIAL_COAT_IOR(hit);
@@ -67,7 +67,7 @@ void openPbrCoat(Hit hit, vec3 baseAlbedo, float baseRoughness, float cosine, in
     model.coatDarkening = mix(vec3(1.0), darkening, GLINT_MATERIAL_COAT_DARKENING(hit));
 }
 
-// What is beyond the interface: glass, or a sheet that scatters.
+// Reads the glass or the scattering sheet beyond the interface.
 void openPbrGlass(Hit hit, Features features, inout OpenPbr model) {
     model.transmission = GLINT_MATERIAL_TRANSMISSION_WEIGHT(hit);
     model.isInside = !model.isThin && model.transmission > 0.0 && showsBack(features) && !hit.frontFace;
