@@ -1,8 +1,8 @@
 // The orders of light that a strand sends back, after Chiang, Bitterli, Tappan and Burley, "A Practical and
 // Controllable Hair and Fur Model for Production Path Tracing" (2016): a reflection, passage, passage with a reflection
-// within, and the rest. A strand is a tube along the tangent, and the normal tells the place across it. The distribution of the
-// sine along the strand is logistic here, as that of the azimuth is. It is not reciprocal. Light through a strand comes by
-// rays that follow its samples: a shadow ray to a light behind it meets the strand's own far side.
+// within, and the rest. A strand is a tube along the tangent, and the normal tells the place across it. The
+// distribution of the sine along the strand is logistic here, as that of the azimuth is. It is not reciprocal. Light
+// through a strand comes by rays that follow its samples: a shadow ray behind it meets the strand's own far side.
 #include "bsdf/model.glsl"
 
 struct Hair {
