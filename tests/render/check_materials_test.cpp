@@ -161,8 +161,8 @@ TEST(CheckMaterials, FindEachPlantedFaultAndNoOther) {
 
 TEST(CheckMaterials, TheExamplePacksPass) {
     std::size_t features = 0;
-    for (const char* const folder :
-         {"/examples/materials", "/examples/materials/drafts", "/examples/materials/models"}) {
+    for (const char* const folder : {"/examples/materials", "/examples/materials/drafts",
+                                     "/examples/materials/models", "/examples/materials/openpbr"}) {
         const Result<measure::MaterialChecksReport> report =
             check(std::string(GLINT_SOURCE_DIR) + folder, true);
         ASSERT_TRUE(report) << toString(report.error());

@@ -2,6 +2,7 @@
 
 #include "base/json.h"
 #include "gltf/document/material_list.h"
+#include "gltf/document/materialx.h"
 #include "gltf/document/validate.h"
 
 #include <fmt/format.h>
@@ -314,8 +315,13 @@ Result<std::unique_ptr<Document>> Document::open(const MaterialSet& set, const I
 
 Status Document::parse() {
     GLINT_TRY(file_, source_.readScene());
-    GLINT_TRY(const auto container, splitContainer(*this, file_));
+    GLINT_TRY(auto container, splitContainer(*this, file_));
     binary_ = container.binary;
+    base::Bytes listed;
+    if (isMaterialX(container.json)) {
+        GLINT_TRY(listed, listOfMaterialX(container.json, name_, *options_.materialModel));
+        container.json = listed;
+    }
     GLINT_TRY(json_, parseJson(*this, container.json));
     if (isMaterialList(json_)) {
         GLINT_TRY(const auto set, readMaterialList(container.json, name_));
