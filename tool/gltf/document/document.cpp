@@ -315,12 +315,12 @@ Result<std::unique_ptr<Document>> Document::open(const MaterialSet& set, const I
 
 Status Document::parse() {
     GLINT_TRY(file_, source_.readScene());
-    GLINT_TRY(auto container, splitContainer(*this, file_));
+    GLINT_TRY(const auto container, splitContainer(*this, file_));
     binary_ = container.binary;
-    base::Bytes listed;
     if (isMaterialX(container.json)) {
-        GLINT_TRY(listed, listOfMaterialX(container.json, name_, *options_.materialModel));
-        container.json = listed;
+        GLINT_TRY(const auto set, readMaterialX(container.json, name_, *options_.materialModel));
+        GLINT_TRY_DO(expand(set));
+        return check();
     }
     GLINT_TRY(json_, parseJson(*this, container.json));
     if (isMaterialList(json_)) {

@@ -1,6 +1,5 @@
 #include "gltf/document/materialx.h"
 
-#include "base/json.h"
 #include "base/text.h"
 
 #include <fmt/format.h>
@@ -152,7 +151,7 @@ public:
     SurfaceReader(const std::filesystem::path& path, const materials::MaterialModel& model)
         : path_(path), model_(model) {}
 
-    Result<base::Bytes> read(ByteView text) {
+    Result<MaterialSet> read(ByteView text) {
         const pugi::xml_parse_result parsed = xml_.load_buffer(text.data(), text.size());
         if (!parsed) {
             return fail("", fmt::format("is no XML: {} at byte {}", parsed.description(), parsed.offset));
@@ -182,7 +181,7 @@ public:
                         "add --materials examples/materials/openpbr");
         }
         object_ = model_.features[static_cast<std::size_t>(feature)].object;
-        return list(inputs);
+        return setOf(inputs);
     }
 
 private:
@@ -321,9 +320,8 @@ private:
                     "specular_roughness take one");
     }
 
-    Result<base::Bytes> list(const SurfaceInputs& inputs) const {
-        base::Json values = base::Json::object();
-        base::Json textures = base::Json::object();
+    Result<MaterialSet> setOf(const SurfaceInputs& inputs) const {
+        MaterialDescription made{.model = std::string(kOpenPbrModel)};
         for (const auto& [name, input] : inputs) {
             const auto parameter = std::ranges::find_if(
                 model_.parameters,
@@ -348,17 +346,15 @@ private:
                             fmt::format("has {} numbers; the input needs {}", input.numbers.size(),
                                         parameter->channels - (name == "base_color" ? 1 : 0)));
             }
-            values[parameter->name] = numbers.size() == 1 ? base::Json(numbers[0]) : base::Json(numbers);
+            made.values[parameter->name] = std::move(numbers);
             if (!input.file.empty()) {
                 GLINT_TRY(const std::string slot, slotOf(name, inputs));
-                textures[slot] = {{"file", input.file}};
+                const Numbers tiling = input.tiling.empty() ? Numbers{1.0, 1.0} : input.tiling;
+                const Numbers offset = input.offset.empty() ? Numbers{0.0, 0.0} : input.offset;
                 // MaterialX has V upwards: v' = 1 - (1 - v) s + o in glTF's coordinates.
-                const double tilingV = input.tiling.empty() ? 1.0 : input.tiling[1];
-                if (!input.tiling.empty() || !input.offset.empty()) {
-                    const Numbers offset = input.offset.empty() ? Numbers{0.0, 0.0} : input.offset;
-                    textures[slot]["scale"] = {input.tiling.empty() ? 1.0 : input.tiling[0], tilingV};
-                    textures[slot]["offset"] = {-offset[0], 1.0 - tilingV + offset[1]};
-                }
+                made.textures[slot] = {.file = input.file,
+                                       .offset = {-offset[0], 1.0 - tiling[1] + offset[1]},
+                                       .scale = {tiling[0], tiling[1]}};
             }
         }
         const auto valueOf = [&](const char* name, double fallback) {
@@ -366,17 +362,12 @@ private:
             return found == inputs.end() ? fallback : found->second.numbers.front();
         };
         const pugi::xml_node material = root_.child("surfacematerial");
-        const base::Json made{{"materialList", 1},
-                              {"materials",
-                               {{{"name", (material ? material : surface_).attribute("name").value()},
-                                 {"model", std::string(kOpenPbrModel)},
-                                 {"values", values},
-                                 {"textures", textures},
-                                 {"alphaMode", valueOf("geometry_opacity", 1.0) < 1.0 ? "BLEND" : "OPAQUE"},
-                                 {"doubleSided", valueOf("transmission_weight", 0.0) > 0.0 ||
-                                                     valueOf("geometry_thin_walled", 0.0) > 0.0}}}}};
-        const std::string text = made.dump(-1, ' ', false, base::Json::error_handler_t::replace);
-        return base::Bytes(text.begin(), text.end());
+        made.name = (material ? material : surface_).attribute("name").value();
+        made.alphaMode = valueOf("geometry_opacity", 1.0) < 1.0 ? materials::AlphaMode::Blend
+                                                                : materials::AlphaMode::Opaque;
+        made.doubleSided =
+            valueOf("transmission_weight", 0.0) > 0.0 || valueOf("geometry_thin_walled", 0.0) > 0.0;
+        return MaterialSet{path_, {std::move(made)}};
     }
 
     const std::filesystem::path& path_;
@@ -396,8 +387,8 @@ bool isMaterialX(ByteView text) {
     return first != text.end() && *first == '<' && !std::ranges::search(text, kRoot).empty();
 }
 
-Result<base::Bytes> listOfMaterialX(ByteView text, const std::filesystem::path& path,
-                                    const materials::MaterialModel& model) {
+Result<MaterialSet> readMaterialX(ByteView text, const std::filesystem::path& path,
+                                  const materials::MaterialModel& model) {
     return SurfaceReader(path, model).read(text);
 }
 

@@ -1,8 +1,9 @@
-// MaterialX files with one surface of OpenPBR or Standard Surface. Such a file becomes a list of materials
-// (material_list.h): docs/material_lists.md.
+// MaterialX files with one surface of OpenPBR or Standard Surface. Such a file becomes a set of one
+// material: docs/material_lists.md.
 #pragma once
 
 #include "gltf/document/files.h"
+#include "gltf/material_set.h"
 #include "materials/material_model.h"
 
 #include <glint/result.h>
@@ -13,8 +14,8 @@ namespace glint::gltf {
 
 // Returns whether the text is XML with a root of MaterialX.
 bool isMaterialX(ByteView text);
-// Returns the text of the list. `text` is that of the file `path`. Error: "materialx".
-Result<base::Bytes> listOfMaterialX(ByteView text, const std::filesystem::path& path,
-                                    const materials::MaterialModel& model);
+// `text` is that of the file `path`. Error: "materialx".
+Result<MaterialSet> readMaterialX(ByteView text, const std::filesystem::path& path,
+                                  const materials::MaterialModel& model);
 
 }  // namespace glint::gltf
