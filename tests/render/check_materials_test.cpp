@@ -242,6 +242,31 @@ TEST(CheckMaterials, ProofsCoverOpacityAndCoordinates) {
     }
 }
 
+// Proofs bounded 53 numbers of a feature once.
+TEST(CheckMaterials, ProofsBoundEveryParameter) {
+    const test::TemporaryFolder folder;
+    std::string parameters;
+    for (char letter = 'A'; letter <= 'N'; ++letter) {
+        parameters +=
+            fmt::format(R"({}{{"name": "many{}", "type": "vec4", "default": [1, 1, 1, 1], "range": [0, 1]}})",
+                        parameters.empty() ? "" : ", ", letter);
+    }
+    ASSERT_TRUE(base::writeFile(
+        folder.path() / "many.json",
+        R"({"name": "many", "stage": "surface", "extension": "TEST_many", "glsl": {"surface": "many.glsl"},
+            "parameters": [)" +
+            parameters + "]}"));
+    ASSERT_TRUE(base::writeFile(folder.path() / "many.glsl", R"(#include "hit/surface_values.glsl"
+void manySurface(Hit hit, Features features, inout SurfaceValues values) {
+    values.color.rgb *= GLINT_MATERIAL_MANY_A(hit).rgb / (GLINT_MATERIAL_MANY_N(hit).x + 0.5);
+}
+)"));
+    const Result<std::vector<verify::FeatureProofOutcome>> outcomes =
+        verify::proveMaterials({{folder.path().string()}, 500}, Silent());
+    ASSERT_TRUE(outcomes) << toString(outcomes.error());
+    EXPECT_EQ(nameOf(outcomes->front().state), "proved") << outcomes->front().message;
+}
+
 TEST(CheckMaterials, AFeatureThatChangesNothingIsAnError) {
     const test::TemporaryFolder folder;
     ASSERT_TRUE(base::writeFile(folder.path() / "mud.json", R"({
