@@ -4,7 +4,9 @@
 #include "fuzz/fuzz_target.h"
 
 #include <algorithm>
+#include <map>
 #include <random>
+#include <regex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,12 +23,19 @@ struct Slot {
 
 class Mutator {
 public:
-    Mutator(unsigned int seed, Json& document) : random_(seed), words_(glint::fuzz::inputSchema().words) {
+    Mutator(unsigned int seed, Json& document)
+        : random_(seed), document_(document), words_(glint::fuzz::inputSchema().words) {
         visit(document, glint::fuzz::inputSchema().schema);
     }
 
+    // A new document of few members reaches what the members of others would hide.
     void mutate() {
-        const Slot slot = slots_[below(slots_.size())];
+        if (oneIn(8)) {
+            share_ = std::size_t{2} << below(4);
+            document_ = makeObject(glint::fuzz::inputSchema().schema, 0);
+            return;
+        }
+        const Slot slot = slots_[oneIn(4) ? 0 : below(slots_.size())];
         if (slot.value->is_object() && slot.schema->contains("properties")) {
             mutateObject(*slot.value, *slot.schema);
         } else if (slot.value->is_array() && slot.schema->contains("items") && !oneIn(4)) {
@@ -151,7 +160,18 @@ private:
             constexpr double kNumbers[] = {0.0, 1.0, 2.0, 0.5, -1.0, 1e6, 1e-30, 1e39, 3.0, 64.0};
             return kNumbers[below(std::size(kNumbers))];
         }
-        return type == "null" || words_.empty() ? Json() : Json(words_[below(words_.size())]);
+        return type == "null" || words_.empty() ? Json() : Json(word(schema.value("pattern", "")));
+    }
+
+    // A word, which mostly fits the pattern.
+    const std::string& word(const std::string& pattern) {
+        static std::map<std::string, std::regex> patterns;
+        const auto [known, isNew] = patterns.try_emplace(pattern, pattern);
+        std::size_t place = below(words_.size());
+        for (std::size_t tries = 0; tries < 16 && !std::regex_search(words_[place], known->second); ++tries) {
+            place = below(words_.size());
+        }
+        return words_[place];
     }
 
     Json makeObject(const Json& schema, int depth) {
@@ -160,7 +180,8 @@ private:
         const Json needed = schema.value("required", Json::array());
         const Json members = schema.value("properties", Json::object());
         for (const auto& [name, member] : members.items()) {
-            if (std::ranges::find(needed, Json(name)) != needed.end() || (depth < kDeepest && oneIn(4))) {
+            if (std::ranges::find(needed, Json(name)) != needed.end() ||
+                (depth < kDeepest && oneIn(share_))) {
                 object[name] = make(member, depth + 1);
             }
         }
@@ -171,7 +192,9 @@ private:
     }
 
     std::minstd_rand random_;
+    Json& document_;
     Json none_ = Json::array();
+    std::size_t share_ = 4;  // one optional member in so many is made
     std::vector<std::string> words_;
     std::vector<Slot> slots_;
 };
