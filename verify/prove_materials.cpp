@@ -381,6 +381,9 @@ Result<std::vector<FeatureProofOutcome>> proveMaterials(const ProveMaterialsOpti
     GLINT_TRY(const auto build, compiler::resolve(std::span(&checked.scene, 1), compiler::CompileSettings()));
     std::vector<FeatureProofOutcome> outcomes;
     for (const measure::CheckedFeature& feature : checked.features) {
+        if (feature.isBase()) {
+            continue;
+        }
         observer.progress(fmt::format("proving {} of {}: {}", outcomes.size() + 1, checked.features.size(),
                                       feature.code->name));
         const Result<FeatureProof> proof = compileFeatureProof(build, *feature.code);

@@ -164,6 +164,10 @@ constexpr MemberRow kRows[] = {
      "True: the layer or the model claims that view and light may change places, which check-materials "
      "checks."},
 
+    {"gainsEnergy", at({Glsl}), text,
+     "Why more light may leave the surface than reaches it; check-materials then reports how much, and no "
+     "failure."},
+
     {"at", at({Parameter}), text, "The place below the object."},
     {"at", at({Attribute}), matching<kAttributePattern>, "Its name in glTF.", at({Attribute})},
     {"type", at({Parameter, Attribute, Derived}), nameOf<kTypes>, "The type of the value.",
@@ -230,11 +234,18 @@ constexpr MemberRule kRules[] = {
 
 // --- The schema of a declaration ---
 
+// Takes the first word from a text of words.
+std::string_view takeWord(std::string_view& words) {
+    const std::string_view word = words.substr(0, words.find(' '));
+    words.remove_prefix(std::min(word.size() + 1, words.size()));
+    return word;
+}
+
 // The condition that one of the members is there.
 Json hasOneOf(std::string_view members) {
     Json any = Json::array();
-    for (const std::string_view member : wordsOf(members)) {
-        any.push_back({{"required", Json::array({member})}});
+    while (!members.empty()) {
+        any.push_back({{"required", Json::array({takeWord(members)})}});
     }
     return {{"anyOf", std::move(any)}};
 }
@@ -254,10 +265,10 @@ Json schemaOfPlace(Place place) {
     }
     Json dependencies = Json::object();
     for (const MemberRule& rule : kRules) {
-        for (const std::string_view member : rule.place == place ? wordsOf(rule.members) : wordsOf("")) {
+        for (std::string_view left = rule.place == place ? rule.members : ""; !left.empty();) {
             const Json condition =
                 rule.with.empty() ? Json{{"not", hasOneOf(rule.without)}} : hasOneOf(rule.with);
-            Json& all = dependencies[std::string(member)];
+            Json& all = dependencies[std::string(takeWord(left))];
             all = all.is_null() ? condition : Json{{"allOf", {all, condition}}};
         }
     }
@@ -275,14 +286,13 @@ Json schemaOfPlace(Place place) {
 
 }  // namespace members
 
-std::vector<std::string_view> wordsOf(std::string_view text) {
-    std::vector<std::string_view> words;
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find(' '), text.size());
-        words.push_back(text.substr(0, end));
-        text.remove_prefix(std::min(end + 1, text.size()));
+bool hasWord(std::string_view words, std::string_view word) {
+    while (!words.empty()) {
+        if (members::takeWord(words) == word) {
+            return true;
+        }
     }
-    return words;
+    return false;
 }
 
 std::span<const MemberRow> memberRows() {
@@ -299,28 +309,41 @@ base::Json declarationSchema() {
 
 Members::Members(const DeclarationJson& json, std::string where, Place place)
     : json_(json), where_(std::move(where)) {
-    std::vector<std::string> known;
-    for (const MemberRow& row : memberRows()) {
-        if (row.standsAt(place)) {
-            known.emplace_back(row.name);
+    if (!json.is_object()) {
+        failAt(where_, "must be an object");
+    }
+    for (const auto& item : json.items()) {
+        const std::string_view name = item.key();
+        if (std::ranges::none_of(memberRows(), [&](const MemberRow& row) {
+                return row.standsAt(place) && row.name == name;
+            })) {
+            std::vector<std::string> known;
+            for (const MemberRow& row : memberRows()) {
+                if (row.standsAt(place)) {
+                    known.emplace_back(row.name);
+                }
+            }
+            refuseOthers(known);
         }
     }
-    refuseOthers(known);
     for (const MemberRow& row : memberRows()) {
         if (row.isNeededAt(place)) {
             static_cast<void>((*this)[row.name]);
         }
     }
-    const auto hasAny = [this](std::string_view members) {
-        return std::ranges::any_of(wordsOf(members), [this](std::string_view member) { return has(member); });
-    };
     for (const MemberRule& rule : memberRules()) {
         if (rule.place != place) {
             continue;
         }
-        for (const std::string_view member : wordsOf(rule.members)) {
-            if (has(member) && ((!rule.with.empty() && !hasAny(rule.with)) || hasAny(rule.without))) {
-                failAt(at(member), std::string(rule.message), std::string(rule.hint));
+        const auto hasAny = [&](std::string_view names) {
+            return std::ranges::any_of(memberRows(), [&](const MemberRow& row) {
+                return hasWord(names, row.name) && has(row.name);
+            });
+        };
+        const bool broken = (!rule.with.empty() && !hasAny(rule.with)) || hasAny(rule.without);
+        for (const auto& item : json.items()) {
+            if (broken && hasWord(rule.members, item.key())) {
+                failAt(at(item.key()), std::string(rule.message), std::string(rule.hint));
             }
         }
     }

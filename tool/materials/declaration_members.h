@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
-#include <vector>
 
 namespace glint::materials {
 
@@ -58,8 +57,8 @@ struct MemberRule {
     std::string_view hint;
 };
 
-// "extension object" becomes its words.
-std::vector<std::string_view> wordsOf(std::string_view text);
+// Returns whether a text of words has the word.
+bool hasWord(std::string_view words, std::string_view word);
 std::span<const MemberRow> memberRows();
 std::span<const MemberRule> memberRules();
 // The JSON schema of a declaration.

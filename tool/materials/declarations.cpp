@@ -229,8 +229,7 @@ constexpr std::string_view kGlslTypes[] = {"vec", "ivec", "uvec", "bvec", "dvec"
 // Names are those of members and functions in GLSL.
 bool isWordOfGlsl(std::string_view name) {
     const std::size_t letters = name.find_first_of("0123456789");
-    const auto words = wordsOf(kGlslWords);
-    return std::ranges::find(words, name) != words.end() ||
+    return hasWord(kGlslWords, name) ||
            (letters != std::string_view::npos &&
             std::ranges::find(kGlslTypes, name.substr(0, letters)) != std::end(kGlslTypes));
 }

@@ -64,7 +64,7 @@ public:
         for (const FeatureCode& one : model.code) {
             add(one.name, one.feature, one.surface, one.bsdf, one.layer, one.model, one.diffuse, one.emission,
                 one.coordinates, one.opacity, one.coversEmission, one.isTraced, one.isReciprocal,
-                one.isSampled);
+                one.isSampled, one.gains);
         }
         for (const Feature& one : model.features) {
             add(one.name, one.shortName, one.bit, one.gltf, one.about, static_cast<int>(one.stage),
@@ -203,6 +203,7 @@ const std::map<std::string_view, std::vector<const char*>> kValues{
     {"traced", {"true"}},
     {"sampled", {"true"}},
     {"reciprocal", {"true"}},
+    {"gainsEnergy", {R"("it is drawn")"}},
     {"at", {R"("moist")", R"("_MOIST")"}},
     {"type", {R"("vec2")", R"("float")", R"("color")"}},
     {"default", {"0.75", "1.75", "[1, 2]"}},
