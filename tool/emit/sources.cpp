@@ -158,7 +158,7 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     text += layerDefines(plan, std::ranges::any_of(scenes.scenes(), hasDeformedMesh), sized);
     text += bindingDefines(settings.bindings);
     text += effectDefines(*plan.model, plan.effects.effects);
-    text += fmt::format("#define GLINT_HAS_MASKED {}\n", flag(hasMasked));
+    text += fmt::format("#define GLINT_MAY_MASK {}\n", flag(hasMasked));
     const materials::FeatureMask maskCode =
         maskCodeFeatures(*plan.model) & (plan.primaryAlways | plan.primarySometimes);
     text += fmt::format("#define GLINT_MASK_STAGES {}\n", flag(hasMasked && maskCode != 0));
