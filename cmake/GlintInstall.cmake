@@ -21,8 +21,9 @@ install(DIRECTORY runtime/include/glint DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} 
 install(DIRECTORY shaders/interop DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/shaders FILES_MATCHING PATTERN "*.h")
 if(GLINT_BUILD_COMPILER)
   # The headers that those of the libraries include. All others are internal.
-  foreach(header base/fields_fwd.h base/files.h base/memo.h emit/compile.h emit/glsl/text.h emit/material_layout.h
-                 emit/package/compiled_package.h gltf/animation.h gltf/import.h gltf/import_options.h
+  foreach(header base/fields_fwd.h base/files.h base/memo.h emit/compile.h emit/glsl/text.h emit/material_compiler.h
+                 emit/material_layout.h
+                 emit/package/compiled_package.h gltf/animation.h gltf/import.h gltf/import_options.h gltf/material_set.h
                  gltf/planning_inputs.h gltf/scene.h gltf/scene_list.h gltf/texels/fit.h gltf/texels/levels.h
                  gltf/texels/texture_use.h image/compare.h image/png.h image/text.h materials/expression.h
                  materials/interval.h materials/material.h materials/material_model.h plan/cost.h plan/effects.h

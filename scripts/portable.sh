@@ -49,6 +49,7 @@ kSources=(
     "fmtlib|-DFMT_TEST=OFF -DFMT_DOC=OFF"
     "mimalloc|-DMI_BUILD_SHARED=OFF -DMI_BUILD_OBJECT=OFF -DMI_BUILD_TESTS=OFF -DMI_INSTALL_TOPLEVEL=ON"
     "meshoptimizer|"
+    "pugixml|"
     "imath|-DPYTHON=OFF"
     "openexr|-DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_TOOLS=OFF -DOPENEXR_INSTALL_EXAMPLES=OFF -DDOCS=OFF -DINSTALL_DOCS=OFF"
 )
@@ -138,7 +139,7 @@ check_program() {
 # --- Archive ---------------------------------------------------------------------------------------
 
 # These are Debian's packages of the linked libraries. Their copyright files are included.
-kLicensed=(glslang-dev spirv-tools libfmt-dev libmimalloc-dev libmeshoptimizer-dev libimath-dev libopenexr-dev
+kLicensed=(glslang-dev spirv-tools libfmt-dev libmimalloc-dev libmeshoptimizer-dev libpugixml-dev libimath-dev libopenexr-dev
     libtinygltf-dev libstb-dev libdraco-dev libwebp-dev libzstd-dev libxxhash-dev zlib1g-dev libstdc++-12-dev nlohmann-json3-dev
     libcli11-dev libkainjow-mustache-dev libglm-dev libvulkan-dev)
 

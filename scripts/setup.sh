@@ -43,6 +43,7 @@ kNeeds=(
     "file /usr/include/tiny_gltf.h|libtinygltf-dev"
     "file /usr/include/draco/compression/decode.h|libdraco-dev"
     "file /usr/include/meshoptimizer.h|libmeshoptimizer-dev"
+    "file /usr/include/pugixml.hpp|libpugixml-dev"
     "file /usr/include/webp/decode.h|libwebp-dev"
     "file /usr/include/zstd.h|libzstd-dev"
     "file /usr/include/vulkan/vulkan.h|libvulkan-dev"

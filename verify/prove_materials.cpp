@@ -4,6 +4,7 @@
 #include "emit/context.h"
 #include "emit/glsl/passes.h"
 #include "emit/material_code.h"
+#include "emit/material_layout.h"
 #include "gltf/scene.h"
 #include "gltf/scene_list.h"
 #include "materials/declarations.h"
@@ -42,13 +43,8 @@ namespace {
 constexpr const char* kProofTemplate = "prove_feature.comp.mustache";
 constexpr const char* kProofName = "prove_feature.comp";
 
-// The inputs of the template: directions, random numbers, the place; then parameters; then four for each
-// texture slot; then the time and alpha before the feature.
+// The inputs of the template begin with directions, random numbers and the place.
 constexpr std::uint32_t kFirstParameter = 11;
-constexpr std::uint32_t kFirstTexel = 64;
-constexpr std::uint32_t kTimeInput = 192;
-constexpr std::uint32_t kAlphaInput = 193;
-constexpr std::uint32_t kProofInputs = 194;
 constexpr std::uint32_t kProofOutputs = 35;
 // The bound of a range without an end.
 constexpr double kFarValue = 1000.0;
@@ -72,23 +68,54 @@ double endOf(double value, double fallback) {
     return isEnd ? value : std::copysign(std::max(kFarValue, kFarValue * std::abs(fallback)), value);
 }
 
+// Parameters of the feature follow; then four inputs for each texture slot; then the time, and alpha before
+// the feature.
+struct ProofInputs {
+    std::uint32_t firstTexel = kFirstParameter;
+    std::uint32_t time = 0;
+    std::uint32_t alpha = 0;
+    std::uint32_t count = 0;
+};
+
+// Returns the parameter whose numbers are in records.
+const materials::Parameter& inRecord(const materials::MaterialModel& model,
+                                     const materials::Parameter& parameter) {
+    const bool isAlias = parameter.aliasOf >= 0;
+    return isAlias ? model.parameters[static_cast<std::size_t>(parameter.aliasOf)] : parameter;
+}
+
+bool isClaimed(const materials::MaterialModel& model, const materials::Parameter& parameter, int feature) {
+    return feature >= 0 && parameter.feature == feature && inRecord(model, parameter).inRecord;
+}
+
+ProofInputs inputsFor(const compiler::Plan& plan, int feature) {
+    ProofInputs inputs;
+    for (const materials::Parameter& parameter : plan.model->parameters) {
+        inputs.firstTexel += isClaimed(*plan.model, parameter, feature) ? parameter.channels : 0U;
+    }
+    const std::size_t slots = materialLayoutOf(plan).textures.size();
+    inputs.time = inputs.firstTexel + 4 * static_cast<std::uint32_t>(std::max<std::size_t>(slots, 1));
+    inputs.alpha = inputs.time + 1;
+    inputs.count = inputs.alpha + 1;
+    return inputs;
+}
+
 InputRange inputOf(std::string name, double low, double high) {
     return {std::move(name), static_cast<float>(low), static_cast<float>(high), Scale::Linear};
 }
 
 // Macros that read parameters from the inputs, and the inputs' ranges.
-std::string claimParameters(const materials::MaterialModel& model, int feature, Claim& claim) {
-    std::string macros = fmt::format("\nfloat glintGiven[{}];\n", kProofInputs);
+std::string claimParameters(const materials::MaterialModel& model, int feature, const ProofInputs& inputs,
+                            Claim& claim) {
+    std::string macros = fmt::format("\nfloat glintGiven[{}];\n", inputs.count);
     std::uint32_t next = kFirstParameter;
     for (const materials::Parameter& parameter : model.parameters) {
-        const auto channels = static_cast<std::uint32_t>(parameter.channels);
-        // GLSL reads what a parameter of another base fills by that one's name.
-        const bool isAlias = parameter.aliasOf >= 0;
-        const materials::Parameter& own =
-            isAlias ? model.parameters[static_cast<std::size_t>(parameter.aliasOf)] : parameter;
-        if (parameter.feature != feature || feature < 0 || !own.inRecord || next + channels > kFirstTexel) {
+        if (!isClaimed(model, parameter, feature)) {
             continue;
         }
+        const auto channels = static_cast<std::uint32_t>(parameter.channels);
+        // GLSL reads what a parameter of another base fills by that one's name.
+        const materials::Parameter& own = inRecord(model, parameter);
         std::string values;
         for (std::uint32_t channel = 0; channel < channels; ++channel) {
             const double usual = parameter.fallback[channel];
@@ -104,8 +131,8 @@ std::string claimParameters(const materials::MaterialModel& model, int feature, 
 }
 
 // hit/texture.glsl with texels that may be any, instead of samples.
-std::string claimTexels(std::string text, const materials::MaterialModel& model, int feature, Claim& claim,
-                        materials::FeatureMask& mask) {
+std::string claimTexels(std::string text, const materials::MaterialModel& model, int feature,
+                        const ProofInputs& inputs, Claim& claim, materials::FeatureMask& mask) {
     const std::size_t begin = text.find("GLINT_RELAXED vec4 sampleSlotAt(");
     const std::size_t end = text.find("// Returns the value of one texture slot of the hit's material.");
     text.replace(
@@ -113,7 +140,7 @@ std::string claimTexels(std::string text, const materials::MaterialModel& model,
         fmt::format("GLINT_RELAXED vec4 sampleSlotAt(Hit hit, uint slot, Features features, vec2 uv, vec4 "
                     "uvEdges) {{\n    uint first = {}u + 4u * slot;\n    return vec4(glintGiven[first], "
                     "glintGiven[first + 1u], glintGiven[first + 2u], glintGiven[first + 3u]);\n}}\n\n",
-                    kFirstTexel));
+                    inputs.firstTexel));
     const std::size_t second = text.find("    return hasInput(features, GLINT_TEX_COORD_1)");
     const std::size_t secondEnd = text.find(";\n", second) + 1;
     text.replace(second, secondEnd - second, "    return false;");
@@ -121,22 +148,22 @@ std::string claimTexels(std::string text, const materials::MaterialModel& model,
         const materials::Feature& bit = model.features[static_cast<std::size_t>(texture.feature)];
         mask |= feature >= 0 && bit.lobe == feature ? bit.mask() : materials::FeatureMask{0};
     }
-    for (std::uint32_t texel = kFirstTexel; texel < kTimeInput; ++texel) {
-        claim.inputs[texel] =
-            inputOf(fmt::format("texel {} of slot {}", texel % 4, (texel - kFirstTexel) / 4), 0.0, 1.0);
+    for (std::uint32_t texel = 0; inputs.firstTexel + texel < inputs.time; ++texel) {
+        claim.inputs[inputs.firstTexel + texel] =
+            inputOf(fmt::format("texel {} of slot {}", texel % 4, texel / 4), 0.0, 1.0);
     }
     return text;
 }
 
 // hit/surface_point.glsl with the same texels.
-std::string claimPointTexels(std::string text) {
+std::string claimPointTexels(std::string text, const ProofInputs& inputs) {
     const std::size_t begin = text.find("vec4 samplePoint(");
     text.replace(
         begin, std::string::npos,
         fmt::format("vec4 samplePoint(SurfacePoint point, uint slot, Features features) {{\n    uint first "
                     "= {}u + 4u * slot;\n    return vec4(glintGiven[first], glintGiven[first + 1u], "
                     "glintGiven[first + 2u], glintGiven[first + 3u]);\n}}\n",
-                    kFirstTexel));
+                    inputs.firstTexel));
     return text;
 }
 
@@ -172,10 +199,10 @@ std::vector<OutputRange> claimedRanges() {
     return ranges;
 }
 
-Claim startClaim() {
+Claim startClaim(const ProofInputs& inputs) {
     constexpr double kTurn = std::numbers::pi;
     Claim claim;
-    claim.inputs.assign(kProofInputs, {"", 0.0, 0.0, Scale::Whole});
+    claim.inputs.assign(inputs.count, {"", 0.0, 0.0, Scale::Whole});
     claim.inputs[0] = {"view.z", 1e-7F, 1.0, Scale::Logarithmic};
     claim.inputs[1] = inputOf("azimuth of the view", -kTurn, kTurn);
     claim.inputs[2] = inputOf("light.z", -1.0, 1.0);
@@ -187,8 +214,8 @@ Claim startClaim() {
     }
     claim.inputs[9] = inputOf("uv[0]", -16.0, 16.0);
     claim.inputs[10] = inputOf("uv[1]", -16.0, 16.0);
-    claim.inputs[kTimeInput] = inputOf("time", 0.0, kFarValue);
-    claim.inputs[kAlphaInput] = inputOf("alpha", 0.0, 1.0);
+    claim.inputs[inputs.time] = inputOf("time", 0.0, kFarValue);
+    claim.inputs[inputs.alpha] = inputOf("alpha", 0.0, 1.0);
     claim.outputs = claimedRanges();
     return claim;
 }
@@ -229,20 +256,21 @@ Result<FeatureProof> compileFeatureProof(const compiler::Build& build, const mat
     const compiler::CompileSettings& settings = build.settings.compile;
     GLINT_TRY(auto sources, compiler::makeSourceSet(*build.scenes, plan, settings));
     FeatureProof proof;
-    proof.claim = startClaim();
+    const ProofInputs inputs = inputsFor(plan, code.feature);
+    proof.claim = startClaim(inputs);
     materials::FeatureMask mask =
         code.feature < 0 ? 0 : plan.model->features[static_cast<std::size_t>(code.feature)].mask();
     sources.add("hit/texture.glsl", claimTexels(std::string(sources.find("hit/texture.glsl").value_or("")),
-                                                *plan.model, code.feature, proof.claim, mask));
+                                                *plan.model, code.feature, inputs, proof.claim, mask));
     sources.add("hit/surface_point.glsl",
-                claimPointTexels(std::string(sources.find("hit/surface_point.glsl").value_or(""))));
+                claimPointTexels(std::string(sources.find("hit/surface_point.glsl").value_or("")), inputs));
     sources.add("hit/frame_time.glsl",
                 fmt::format("#include \"host/material.glsl\"\n\nfloat frameTime() {{\n    return "
                             "glintGiven[{}];\n}}\n",
-                            kTimeInput));
+                            inputs.time));
     const std::string record(sources.find("generated/material_record.glsl").value_or(""));
     sources.add("generated/material_record.glsl",
-                record + claimParameters(*plan.model, code.feature, proof.claim));
+                record + claimParameters(*plan.model, code.feature, inputs, proof.claim));
 
     namespace mustache = kainjow::mustache;
     mustache::data context;
@@ -261,12 +289,12 @@ Result<FeatureProof> compileFeatureProof(const compiler::Build& build, const mat
     section("opacity", code.opacity);
     context.set("coordinatesFile", code.coordinates);
     context.set("opacityFile", code.opacity);
-    context.set("alphaInput", std::to_string(kAlphaInput));
+    context.set("alphaInput", std::to_string(inputs.alpha));
     std::string type = code.name;
     type.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(type.front())));
     context.set("name", code.name);
     context.set("type", type);
-    context.set("inputs", std::to_string(kProofInputs));
+    context.set("inputs", std::to_string(inputs.count));
     context.set("outputs", std::to_string(kProofOutputs));
     context.set("lobes", std::to_string(static_cast<std::uint32_t>(mask)));
     context.set("inputBits", std::to_string(static_cast<std::uint32_t>(mask >> 32U)));
@@ -353,6 +381,9 @@ Result<std::vector<FeatureProofOutcome>> proveMaterials(const ProveMaterialsOpti
     GLINT_TRY(const auto build, compiler::resolve(std::span(&checked.scene, 1), compiler::CompileSettings()));
     std::vector<FeatureProofOutcome> outcomes;
     for (const measure::CheckedFeature& feature : checked.features) {
+        if (feature.isBase()) {
+            continue;
+        }
         observer.progress(fmt::format("proving {} of {}: {}", outcomes.size() + 1, checked.features.size(),
                                       feature.code->name));
         const Result<FeatureProof> proof = compileFeatureProof(build, *feature.code);

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Writes a scene of spheres on a floor, one with each of the example materials, or several with each of the
-drafts or models.
+drafts, of the models, or of OpenPBR with hair and stone.
 
-usage: make_scene.py [--drafts | --models] OUTPUT.gltf
+usage: make_scene.py [--drafts | --models | --openpbr] OUTPUT.gltf
 """
 
 import math
@@ -102,6 +102,35 @@ MODELS = [
      "pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.25, 0.1, 1], "metallicFactor": 0, "roughnessFactor": 0.4}},
 ]
 
+
+
+def openpbr(name, values, **more):
+    return {"name": name, **more, "extensions": {"EXAMPLE_materials_openpbr": values}}
+
+
+OPENPBR = [
+    openpbr("Car paint", {"base_color": [0.55, 0.02, 0.03, 1], "base_metalness": 0.6, "specular_roughness": 0.4,
+                          "coat_weight": 1, "coat_color": [1, 0.85, 0.8], "coat_roughness": 0.02}),
+    openpbr("Brushed copper", {"base_color": [0.93, 0.62, 0.5, 1], "base_metalness": 1,
+                               "specular_color": [0.98, 0.9, 0.85], "specular_roughness": 0.4,
+                               "specular_roughness_anisotropy": 0.85}),
+    openpbr("Glass", {"transmission_weight": 1, "specular_roughness": 0, "specular_ior": 1.6,
+                      "transmission_color": [0.5, 0.85, 0.75], "transmission_depth": 1.5,
+                      "transmission_dispersion_scale": 0.5}, doubleSided=True),
+    openpbr("Film on metal", {"base_color": [0.5, 0.5, 0.5, 1], "base_metalness": 1, "specular_roughness": 0.15,
+                              "thin_film_weight": 1, "thin_film_thickness": 0.45, "thin_film_ior": 1.5}),
+    {"name": "Hair", "extensions": {"EXAMPLE_materials_hair": {"hairColor": [0.5, 0.25, 0.08, 1]}}},
+    {"name": "Stone", "pbrMetallicRoughness": {"metallicFactor": 0}, "extensions": {"EXAMPLE_materials_stone": {}}},
+    openpbr("Clay", {"base_color": [0.6, 0.33, 0.2, 1], "base_diffuse_roughness": 1, "specular_weight": 0.3,
+                     "specular_roughness": 0.6}),
+    openpbr("Velvet", {"base_color": [0.08, 0.02, 0.2, 1], "specular_weight": 0, "fuzz_weight": 1,
+                       "fuzz_color": [0.6, 0.5, 0.9], "fuzz_roughness": 0.4}),
+    openpbr("Skin", {"subsurface_weight": 1, "subsurface_color": [0.8, 0.5, 0.4], "specular_roughness": 0.45}),
+    openpbr("Honey", {"transmission_weight": 1, "specular_roughness": 0.05, "transmission_color": [0.9, 0.5, 0.1],
+                      "transmission_depth": 0.8, "transmission_scatter": [0.3, 0.2, 0.05]}, doubleSided=True),
+    openpbr("Lamp", {"base_color": [0.8, 0.8, 0.8, 1], "emission_luminance": 3, "emission_color": [1, 0.8, 0.5]}),
+]
+
 FLOOR = {"name": "Floor",
          "pbrMetallicRoughness": {"baseColorFactor": [0.35, 0.35, 0.35, 1], "metallicFactor": 0,
                                   "roughnessFactor": 0.9}}
@@ -155,8 +184,47 @@ TEXTURES = [
 ]
 
 
+def strand(sides=6, rings=16, radius=0.035):
+    """Returns positions, normals, tangents, UVs and indices of a tube down a unit sphere, in a wave."""
+    positions, normals, tangents, uvs, indices = [], [], [], [], []
+    for ring in range(rings + 1):
+        theta = 0.03 + 2.4 * ring / rings
+        bend = 0.3 * math.cos(5 * theta)
+        length = math.hypot(1, bend)
+        out = (math.sin(theta), math.cos(theta), 0)
+        along = (math.cos(theta) / length, -math.sin(theta) / length, bend / length)
+        across = (-bend * math.cos(theta) / length, bend * math.sin(theta) / length, 1 / length)
+        width = radius * math.sqrt(math.sin(theta))
+        for side in range(sides + 1):
+            turn = 2 * math.pi * side / sides
+            n = [math.cos(turn) * a + math.sin(turn) * b for a, b in zip(out, across)]
+            positions += [o + w + width * c for o, w, c in zip(out, (0, 0, 0.06 * math.sin(5 * theta)), n)]
+            normals += n
+            tangents += (*along, 1.0)
+            uvs += (side / sides, ring / rings)
+    for ring in range(rings):
+        for side in range(sides):
+            a = ring * (sides + 1) + side
+            b = a + sides + 1
+            indices += (a, a + 1, b, a + 1, b + 1, b)
+    return positions, normals, tangents, uvs, indices
+
+
+def hair_nodes(mesh, place, count=64):
+    """Returns three layers of strands about a place."""
+    nodes = []
+    for layer in range(3):
+        for i in range(count):
+            turn = math.pi * (i + layer / 3 + 0.3 * math.sin(7 * i + layer)) / count
+            size = 0.94 + 0.03 * layer + 0.02 * math.sin(5 * i)
+            nodes.append({"mesh": mesh, "translation": place, "scale": [round(size, 3)] * 3,
+                          "rotation": [0, round(math.sin(turn), 5), 0, round(math.cos(turn), 5)]})
+    return nodes
+
+
 def main():
-    others = {"--drafts": DRAFTS, "--models": MODELS}.get(sys.argv[1]) if len(sys.argv) == 3 else None
+    lists = {"--drafts": DRAFTS, "--models": MODELS, "--openpbr": OPENPBR}
+    others = lists.get(sys.argv[1]) if len(sys.argv) == 3 else None
     if len(sys.argv) != 2 and not others:
         sys.exit(__doc__.strip())
     materials = (others or MATERIALS) + [FLOOR]
@@ -181,6 +249,14 @@ def main():
         return [2.3 * (column - (columns - 1) / 2), 1, 1.2 - 3.2 * row]
 
     nodes = [{"mesh": i, "translation": place(i)} for i in range(count)]
+    hair = next((i for i, m in enumerate(materials) if m["name"] == "Hair"), None)
+    if hair is not None:
+        positions, normals, tangents, uvs, indices = strand()
+        low, high = ([f(positions[k::3]) for k in range(3)] for f in (min, max))
+        tube = {"POSITION": buffer.add(positions, 3, min=low, max=high), "NORMAL": buffer.add(normals, 3),
+                "TANGENT": buffer.add(tangents, 4), "TEXCOORD_0": buffer.add(uvs, 2)}
+        meshes[hair] = {"primitives": [{"attributes": tube, "indices": buffer.add_indices(indices), "material": hair}]}
+        nodes[hair:hair + 1] = hair_nodes(hair, place(hair))
     nodes.append({"mesh": count})
     nodes.append({"extensions": {"KHR_lights_punctual": {"light": 0}},
                   "rotation": [-0.5, 0.2, 0.1, 0.83666]})

@@ -4,7 +4,7 @@
 #define GLINT_FIRST_COUNTERS GLINT_FRAME.bucketCounts
 #include "first/first_order.glsl"
 #include "hit/images.glsl"
-#include "hit/record.glsl"
+#include "order/bucket.glsl"
 
 shared uint blockKeys[kBlock];
 

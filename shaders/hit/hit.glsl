@@ -117,6 +117,7 @@ Hit fetchHitAt(HostGeometry geometry, vec2 barycentrics, vec3 rayDirection, floa
 #if GLINT_PATHS
     hit.inset = edgeInset(weights, hit.edges[0], hit.edges[1], 2.0 * hit.clearance);
     hit.arrival.media = uvec2(0u);
+    hit.arrival.start = hit.position;  // of a primary surface: no way within an object
 #endif
 
     hit.normal = front;

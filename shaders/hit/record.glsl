@@ -1,4 +1,4 @@
-// Hit records in memory, whole or packed, and the bucket of each.
+// Hit records in memory, whole or packed.
 #include "hit/bindings.glsl"
 #include "hit/geometry.glsl"
 #include "host/geometry.glsl"
@@ -77,13 +77,3 @@ uint storedGeometry(uint index) {
 }
 
 #endif
-
-// Returns the bucket of a ray's hit: 0 for a miss, 1 + shader ID otherwise. A hit with an ID that no case has goes to
-// the misses; their pass shows it in an error colour and counts it.
-uint bucketOfGeometry(uint geometry) {
-    if (geometry == kMissGeometry) {
-        return 0u;
-    }
-    uint shaderId = hostShaderId(geometry);
-    return shaderId < GLINT_CASE_COUNT ? 1u + shaderId : 0u;
-}

@@ -1,4 +1,5 @@
 // Keys hold the bucket of each hit in as few bytes as possible, so that the ordering reads little memory.
+#include "generated/case_count.glsl"
 #include "hit/bindings.glsl"
 
 const uint kBuckets = GLINT_CASE_COUNT + 1u;

@@ -6,6 +6,7 @@
 // Threads beyond the list take part with kNoGroup, so no thread may have returned before. Subgroups may have 1 to 128
 // threads. Conditions of loops are equal in all threads of a subgroup, and no subgroup operation stands in a branch
 // that divides one. Only basic, ballot and arithmetic operations are used, because not every device has shuffles.
+#include "generated/case_count.glsl"
 #include "hit/bindings.glsl"
 
 #define GLINT_COUNT_OF(bucket) GLINT_FRAME.GLINT_BUCKET_WORDS.data[bucket]

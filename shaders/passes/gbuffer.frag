@@ -15,14 +15,14 @@ layout(location = 0) flat in uint primitive;
 layout(location = 3) flat in uint geometryIndex;
 #if GLINT_MASK_STAGES
 layout(location = 1) in vec2 barycentrics;
-#elif GLINT_HAS_MASKED
+#elif GLINT_MAY_MASK
 layout(location = 1) in vec2 texCoord;
 layout(location = 2) in float vertexAlpha;
 #endif
 
 layout(location = 0) out uvec2 surface;
 
-#if GLINT_HAS_MASKED
+#if GLINT_MAY_MASK
 // Returns the alpha of the base colour texture. All instances of a draw have one material: the indices are uniform.
 float textureAlpha(MaterialRecord material, vec2 uv) {
     TextureRecord record = GLINT_TEXTURE(material, kBaseColorTexture);
@@ -35,7 +35,7 @@ float textureAlpha(MaterialRecord material, vec2 uv) {
 #endif
 
 void main() {
-#if GLINT_HAS_MASKED
+#if GLINT_MAY_MASK
     HostGeometry geometry = hostGeometry(geometryIndex);
     if ((geometry.flags & kGeometryMasked) != 0u) {
         MaterialRecord material = hostMaterials().data[geometry.materialIndex];

@@ -10,7 +10,7 @@ layout(location = 0) flat out uint primitive;
 layout(location = 3) flat out uint geometryIndex;
 #if GLINT_MASK_STAGES
 layout(location = 1) out vec2 barycentrics;
-#elif GLINT_HAS_MASKED
+#elif GLINT_MAY_MASK
 layout(location = 1) out vec2 texCoord;
 layout(location = 2) out float vertexAlpha;
 #endif
@@ -28,7 +28,7 @@ void main() {
 #if GLINT_MASK_STAGES
     uint number = uint(gl_VertexIndex) % 3u;
     barycentrics = vec2(number == 1u ? 1.0 : 0.0, number == 2u ? 1.0 : 0.0);
-#elif GLINT_HAS_MASKED
+#elif GLINT_MAY_MASK
     texCoord = vec2(0.0);
     vertexAlpha = 1.0;
     if ((geometry.flags & kGeometryMasked) != 0u) {

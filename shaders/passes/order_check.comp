@@ -3,7 +3,7 @@
 // and each of their slots must have a hit of that bucket that no other slot has. Then no hit is lost, because there are
 // no more hits than slots. Any number of threads works: each takes every threadCount-th bucket and slot.
 #include "hit/list.glsl"
-#include "hit/record.glsl"
+#include "order/bucket.glsl"
 #if GLINT_HITS_IN_SAMPLES
 #include "hit/samples.glsl"
 #endif

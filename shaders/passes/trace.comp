@@ -6,7 +6,7 @@
 #define GLINT_MODULE_ANY_INPUTS (GLINT_HIT_ALWAYS_INPUTS | GLINT_HIT_SOMETIMES_INPUTS)
 #include "order/bucket_key.glsl"
 #include "hit/list.glsl"
-#include "hit/record.glsl"
+#include "order/bucket.glsl"
 #include "hit/trace.glsl"
 #include "hit/path_ray.glsl"
 #if GLINT_LAYER_RAYS

@@ -5,6 +5,7 @@
 #include "emit/package/manifest.h"
 #include "gltf/document/material_list.h"
 #include "inspect/pipelines.h"
+#include "materials/declaration_members.h"
 #include "resolve/profile.h"
 
 #include <glint/measure/device_file.h>
@@ -59,9 +60,12 @@ std::vector<Part> parts() {
         outputOf("render", "glint render --json; --stats writes the same without diagnostics",
                  schemaOf<cli::RenderReport>()),
         fileOf("edits", "The file of glint render --edits", schemaOf<session::EditList>()),
-        fileOf("material_list", "A list of materials without a scene", schemaOf<gltf::MaterialList>()),
+        fileOf("material_list", "A list of materials without a scene", schemaOf<gltf::MaterialSet>()),
         fileOf("device", "The device file of glint bench --calibrate", schemaOf<measure::DeviceFile>()),
         fileOf("gpu", "A table of --gpu", schemaOf<compiler::GpuCosts>()),
+        fileOf("material_feature",
+               "The declaration of a material feature; docs/material_features.md explains it",
+               materials::declarationSchema()),
         fileOf("manifest", "manifest.json of a package", schemaOf<compiler::Manifest>()),
         fileOf("profile", "The file of glint render --profile", schemaOf<compiler::Profile>()),
         {"common", "/definitions/pipelineReport", schemaOf<inspect::PipelineReport>()},

@@ -206,6 +206,10 @@ TEST(SchemaFiles, FitTheDeclarationsOfMaterials) {
     EXPECT_FALSE(fits("effect", Json{{"name", "glow"}, {"about", "It glows."}, {"kind", "glowing"}}));
     EXPECT_FALSE(
         fits("material_feature", Json{{"name", "wet"}, {"stage", "layer"}, {"neutrl", Json::array()}}));
+    Json wet{{"name", "wet"}, {"stage", "layer"}, {"short", "Wet"}};
+    EXPECT_FALSE(fits("material_feature", wet));
+    wet["extension"] = "EXT_wet";
+    expectFits("material_feature", wet);
 }
 
 TEST(SchemaFiles, FitTheExamplesOfTheDocuments) {

@@ -1,6 +1,8 @@
 // Fuzzes the declaration of a material feature or an effect of a pack, beside other declarations.
 #include "fuzz/fuzz_target.h"
+#include "fuzz/schema_mutator.h"
 #include "materials/declaration_files.h"
+#include "materials/declaration_members.h"
 #include "materials/declarations.h"
 #include "materials/material.h"
 #include "plan/plan.h"
@@ -68,6 +70,41 @@ const Others& othersFor(const std::uint8_t* data, std::size_t size) {
 }
 
 }  // namespace
+
+const glint::fuzz::InputSchema& glint::fuzz::inputSchema() {
+    static const InputSchema kSchema{materials::declarationSchema(),
+                                     {"wet",
+                                      "wetTexture",
+                                      "normalTexture",
+                                      "normalScale",
+                                      "specularFactor",
+                                      "vertexColor",
+                                      "anisotropy",
+                                      "specular",
+                                      "EXT_wet",
+                                      "KHR_materials_specular",
+                                      "wet.glsl",
+                                      "rgba",
+                                      "normal",
+                                      "1 - a",
+                                      "specularFactor.a",
+                                      "doubleSided",
+                                      "MASK or not BLEND",
+                                      "has(wet)",
+                                      "has(anisotropy)",
+                                      "readable(normalTexture)",
+                                      "wetness == 0",
+                                      "specularFactor == 1",
+                                      "wetness",
+                                      "min(wetness, 0.5)",
+                                      "texel(normalTexture).r == 1",
+                                      "is {} at most",
+                                      "_WEAR",
+                                      "radians",
+                                      "infinity",
+                                      "attribute(wear)"}};
+    return kSchema;
+}
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using glint::fuzz::require;

@@ -1,5 +1,5 @@
-# Builds and runs the program that docs/engine.md prints, against the build folder.
-# Arguments: -DGLINT_BUILD=… -DWORK=… -DPAGE=… -DSCENE=… -DGENERATOR=… [-DFLAGS=…] [-DLAUNCHER=…]
+# Builds and runs the program that a page prints, against the build folder. What it prints must match EXPECTED.
+# Arguments: -DGLINT_BUILD=… -DWORK=… -DPAGE=… -DPROGRAM=… -DEXPECTED=… -DGENERATOR=… [-DSCENE=…] [-DFLAGS=…] [-DLAUNCHER=…]
 cmake_minimum_required(VERSION 3.25)
 include("${CMAKE_CURRENT_LIST_DIR}/run.cmake")
 
@@ -19,13 +19,15 @@ function(write_block language target)
 endfunction()
 write_block(cmake CMakeLists.txt)
 write_block(cpp main.cpp)
-file(COPY_FILE "${SCENE}" "${WORK}/room.gltf")
+if(SCENE)
+  file(COPY_FILE "${SCENE}" "${WORK}/room.gltf")
+endif()
 
 run(${CMAKE_COMMAND} -S "${WORK}" -B "${WORK}/build" -G "${GENERATOR}" "-DGlint_DIR=${GLINT_BUILD}"
     "-DCMAKE_CXX_FLAGS=${FLAGS}" "-DCMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER}")
 run(${CMAKE_COMMAND} --build "${WORK}/build")
-run(${CMAKE_COMMAND} -E chdir "${WORK}" "${WORK}/build/first_hit")
-if(NOT output MATCHES "hit: [0-9.]+ [0-9.]+ [0-9.]+")
+run(${CMAKE_COMMAND} -E chdir "${WORK}" "${WORK}/build/${PROGRAM}")
+if(NOT output MATCHES "${EXPECTED}")
   message(FATAL_ERROR "the program says\n${output}")
 endif()
 message("${output}")

@@ -29,6 +29,8 @@ struct Wax {
     std::string passed = "1.0 - layer.factor";
     std::string sample = "sampleCosine(u)";
     std::string density = "cosineDensity(l)";
+    std::string factor = "1.0";  // of the parameter
+    std::string gains{};         // a member of "glsl"
 };
 
 void writeWax(const fs::path& folder, const Wax& wax) {
@@ -40,11 +42,11 @@ void writeWax(const fs::path& folder, const Wax& wax) {
     fs::create_directories(folder / name);
     ASSERT_TRUE(base::writeFile(folder / name / (name + ".json"), fmt::format(R"({{
     "name": "{0}", "stage": "layer", "extension": "TEST_{0}",
-    "glsl": {{ "bsdf": "{0}_bsdf.glsl", "layer": "{0}.glsl", "reciprocal": true }},
+    "glsl": {{ "bsdf": "{0}_bsdf.glsl", "layer": "{0}.glsl", "reciprocal": true{1} }},
     "parameters": [{{ "name": "{0}Factor", "type": "float", "default": 0, "range": [0, 1] }}],
     "neutral": [{{ "when": "{0}Factor == 0", "because": "{0}Factor is 0" }}]
 }})",
-                                                                              name)));
+                                                                              name, wax.gains)));
     ASSERT_TRUE(base::writeFile(
         folder / name / (name + ".glsl"),
         fmt::format(R"(#include "bsdf/layer.glsl"
@@ -59,10 +61,10 @@ float {0}Density({1} layer, vec3 view, vec3 l) {{ return {6}; }}
     ASSERT_TRUE(base::writeFile(folder / name / (name + "_bsdf.glsl"),
                                 fmt::format(R"(#include "hit/surface_values.glsl"
 void {0}Bsdf(Hit hit, Features features, inout SurfaceValues values, inout Surface surface) {{
-    surface.bsdf.layers.{0} = {1}(GLINT_MATERIAL_{2}_FACTOR(hit));
+    surface.bsdf.layers.{0} = {1}({3} * GLINT_MATERIAL_{2}_FACTOR(hit));
 }}
 )",
-                                            name, capital, macro)));
+                                            name, capital, macro, wax.factor)));
 }
 
 class Silent final : public measure::Observer {
@@ -121,25 +123,40 @@ std::vector<Planted> plantedFaults() {
     Wax albedo{"albedo"};
     albedo.share = "0.25 * layer.factor";
     faults.push_back({albedo, measure::MaterialCheck::Albedo, "check-albedo", "of a white sky, and says"});
+    Wax behind{"behind"};
+    behind.factor = "(hit.frontFace ? 1.0 : -1.0)";
+    behind.share = "max(layer.factor, -0.25 * layer.factor)";
+    behind.reflected = "abs(layer.factor) * cosineDensity(l)";
+    behind.passed = "1.0 - abs(layer.factor)";
+    faults.push_back({behind, measure::MaterialCheck::Albedo, "check-albedo", "double-sided, blended"});
     return faults;
 }
 
 TEST(CheckMaterials, FindEachPlantedFaultAndNoOther) {
     const test::TemporaryFolder folder;
     writeWax(folder.path(), {"sound"});
+    Wax waived{"waived"};
+    waived.passed = "1.0";
+    waived.gains = R"(, "gainsEnergy": "it is drawn")";
+    writeWax(folder.path(), waived);
     const std::vector<Planted> faults = plantedFaults();
     for (const Planted& planted : faults) {
         writeWax(folder.path(), planted.wax);
     }
     const Result<measure::MaterialChecksReport> report = check(folder.path());
     ASSERT_TRUE(report) << toString(report.error());
-    ASSERT_EQ(report->features.size(), faults.size() + 1);
+    ASSERT_EQ(report->features.size(), faults.size() + 3);
+    EXPECT_EQ(report->features.front().feature, "metallicRoughness");
     for (const measure::FeatureChecks& feature : report->features) {
         const auto planted = std::ranges::find(
             faults, feature.feature, [](const Planted& one) -> const std::string& { return one.wax.name; });
         const std::vector<Diagnostic> failures = failuresOf(feature);
         if (planted == faults.end()) {
             EXPECT_TRUE(failures.empty()) << toString(failures.front());
+            EXPECT_EQ(stateOf(feature, measure::MaterialCheck::Samples), measure::CheckState::Passed);
+            const measure::CheckOutcome& energy = feature.outcomes[4];
+            EXPECT_EQ(nameOf(energy.state), feature.feature == "waived" ? "waived" : "passed");
+            EXPECT_EQ(energy.message.ends_with("declared: it is drawn"), feature.feature == "waived");
             continue;
         }
         ASSERT_EQ(failures.size(), 1U) << feature.feature << ": " << toString(failures.back());
@@ -161,8 +178,8 @@ TEST(CheckMaterials, FindEachPlantedFaultAndNoOther) {
 
 TEST(CheckMaterials, TheExamplePacksPass) {
     std::size_t features = 0;
-    for (const char* const folder :
-         {"/examples/materials", "/examples/materials/drafts", "/examples/materials/models"}) {
+    for (const char* const folder : {"/examples/materials", "/examples/materials/drafts",
+                                     "/examples/materials/models", "/examples/materials/openpbr"}) {
         const Result<measure::MaterialChecksReport> report =
             check(std::string(GLINT_SOURCE_DIR) + folder, true);
         ASSERT_TRUE(report) << toString(report.error());
@@ -176,7 +193,8 @@ TEST(CheckMaterials, TheExamplePacksPass) {
             EXPECT_EQ(stateOf(feature, measure::MaterialCheck::Energy), measure::CheckState::Passed)
                 << feature.feature;
             EXPECT_EQ(stateOf(feature, measure::MaterialCheck::Density),
-                      feature.isLobe ? measure::CheckState::Passed : measure::CheckState::Absent)
+                      feature.isLobe || feature.feature == "metallicRoughness" ? measure::CheckState::Passed
+                                                                               : measure::CheckState::Absent)
                 << feature.feature;
         }
         EXPECT_EQ(report->pictures.size(), 2 * report->features.size());
@@ -240,6 +258,31 @@ TEST(CheckMaterials, ProofsCoverOpacityAndCoordinates) {
         EXPECT_EQ(nameOf(outcome.state), isSound ? "proved" : "refuted")
             << outcome.feature << ": " << outcome.message << outcome.place;
     }
+}
+
+// Proofs bounded 53 numbers of a feature once.
+TEST(CheckMaterials, ProofsBoundEveryParameter) {
+    const test::TemporaryFolder folder;
+    std::string parameters;
+    for (char letter = 'A'; letter <= 'N'; ++letter) {
+        parameters +=
+            fmt::format(R"({}{{"name": "many{}", "type": "vec4", "default": [1, 1, 1, 1], "range": [0, 1]}})",
+                        parameters.empty() ? "" : ", ", letter);
+    }
+    ASSERT_TRUE(base::writeFile(
+        folder.path() / "many.json",
+        R"({"name": "many", "stage": "surface", "extension": "TEST_many", "glsl": {"surface": "many.glsl"},
+            "parameters": [)" +
+            parameters + "]}"));
+    ASSERT_TRUE(base::writeFile(folder.path() / "many.glsl", R"(#include "hit/surface_values.glsl"
+void manySurface(Hit hit, Features features, inout SurfaceValues values) {
+    values.color.rgb *= GLINT_MATERIAL_MANY_A(hit).rgb / (GLINT_MATERIAL_MANY_N(hit).x + 0.5);
+}
+)"));
+    const Result<std::vector<verify::FeatureProofOutcome>> outcomes =
+        verify::proveMaterials({{folder.path().string()}, 500}, Silent());
+    ASSERT_TRUE(outcomes) << toString(outcomes.error());
+    EXPECT_EQ(nameOf(outcomes->front().state), "proved") << outcomes->front().message;
 }
 
 TEST(CheckMaterials, AFeatureThatChangesNothingIsAnError) {

@@ -307,6 +307,75 @@ std::pair<gltf::Scene, compiler::CompileSettings> otherCompilation() {
     return {std::move(scene), settings};
 }
 
+// The host's values of a material are those of another scene, whose light is known. They stay in the longer
+// records of another package.
+TEST(EngineSceneContent, MaterialsHaveTheHostsValues) {
+    const auto repaint = [](gltf::Scene scene) {
+        scene.materials[kGlossy]["baseColorFactor"] = {0.1F, 0.9F, 0.3F, 1.0F};
+        return scene;
+    };
+    const gltf::Scene room = texturedRoom();
+    const auto [changed, settings] = otherCompilation();
+    const std::shared_ptr<const Package> original = packageOf(room, roomSteps());
+    const std::shared_ptr<const Package> other = packageOf(changed, settings);
+    const std::shared_ptr<const Package> repainted = packageOf(repaint(room), roomSteps());
+    const std::shared_ptr<const Package> otherRepainted = packageOf(repaint(changed), settings);
+    const Content content = contentOf(*original, room, keepAll);
+    const Content wanted = contentOf(*repainted, repaint(room), keepAll);
+    const Content otherWanted = contentOf(*otherRepainted, repaint(changed), keepAll);
+    ASSERT_TRUE(content.gpu != nullptr && wanted.gpu != nullptr && otherWanted.gpu != nullptr);
+    const std::span<const std::uint8_t> record = repainted->scene(0).materials.part(kGlossy, 1).bytes;
+    const MaterialView values[] = {{0, repainted->scene(0).materials.part(0, 1).bytes}, {kGlossy, record}};
+    std::vector<EngineGeometryView> geometries = content.geometries;
+    std::size_t named = 0;
+    for (EngineGeometryView& geometry : geometries) {
+        if (original->scene(0).findPrimitive(geometry.mesh, geometry.primitive)->materialIndex == kGlossy) {
+            geometry.material = 1;
+            ++named;
+        }
+    }
+    ASSERT_GT(named, 0U);
+    EngineSceneView view = content.view();
+    view.geometries = geometries;
+    view.materials = values;
+
+    constexpr package::Strategy kUber = package::kStrategyUber;
+    Engine engine(*content.gpu);
+    const std::array light{engine.expected(*repainted, *wanted.gpu, kUber),
+                           engine.expected(*otherRepainted, *otherWanted.gpu, kUber),
+                           engine.expected(*original, *content.gpu, kUber)};
+    expectOthers(light[0], light[2]);
+    auto scene = EngineScene::record(sharedContext(), *original, view, engine.begin(), engine.frame());
+    ASSERT_TRUE(scene) << toString(scene.error());
+    const auto steps = engine.makeSteps(*original, **scene, kUber);
+    ASSERT_NE(steps, nullptr);
+    ASSERT_TRUE(engine.ask(*steps, *content.gpu));
+    ASSERT_TRUE(steps->replacePackage(other));
+    ASSERT_TRUE(engine.ask(*steps, *content.gpu));
+    ASSERT_TRUE(steps->replacePackage(original));
+    engine.submit();
+    const VkCommandBuffer commands = engine.begin();
+    ASSERT_TRUE((*scene)->update(commands, *original, content.view(), engine.frame()));
+    ASSERT_TRUE(engine.ask(*steps, *content.gpu));
+    engine.submit();
+    engine.drain();
+    for (std::size_t i = 0; i < light.size(); ++i) {
+        EXPECT_EQ(engine.answers(i), light[i]) << "batch " << i;
+    }
+    const auto refusal = [&](std::span<const MaterialView> materials) {
+        view.materials = materials;
+        return (*scene)->update(VK_NULL_HANDLE, *original, view, engine.frame()).error().id;
+    };
+    const MaterialView unknown[] = {values[1], values[1], {99, record}};
+    EXPECT_EQ(refusal(unknown), "scene-material");
+    const MaterialView shorter[] = {values[1], {kGlossy, record.first(8)}};
+    EXPECT_EQ(refusal(shorter), "scene-material");
+    EXPECT_EQ(refusal(std::span(values).first(1)), "engine-scene") << "a geometry names the second";
+    const MaterialView otherMaterial[] = {values[0], values[0]};
+    EXPECT_EQ(refusal(otherMaterial), "engine-scene");
+    expectNoValidationMessages();
+}
+
 TEST(RayStepsReplacement, BatchesUseTheNewPackageAtOnce) {
     const gltf::Scene room = texturedRoom();
     const auto [changed, settings] = otherCompilation();

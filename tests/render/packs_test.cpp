@@ -38,10 +38,11 @@ const materials::MaterialModel& packs() {
 
 class ExamplePacks : public ::testing::TestWithParam<std::string> {};
 std::string nameOfFolder(const ::testing::TestParamInfo<std::string>& folder) {
-    return std::array{"Examples", "Drafts", "Models"}[folder.index];
+    return std::array{"Examples", "Drafts", "Models", "OpenPbr"}[folder.index];
 }
 INSTANTIATE_TEST_SUITE_P(Folders, ExamplePacks,
-                         ::testing::Values("materials", "materials/drafts", "materials/models"),
+                         ::testing::Values("materials", "materials/drafts", "materials/models",
+                                           "materials/openpbr"),
                          nameOfFolder);
 
 TEST_P(ExamplePacks, StrategiesAndMergePoliciesGiveOneImage) {

@@ -41,6 +41,8 @@ std::string cellOf(const measure::CheckOutcome& outcome) {
             return fmt::format("{:.2g}", outcome.worst);
         case measure::CheckState::Failed:
             return fmt::format("FAILED {:.2g}", outcome.worst);
+        case measure::CheckState::Waived:
+            return fmt::format("waived {:.2g}", outcome.worst);
         case measure::CheckState::Unasked:
             return "not claimed";
         case measure::CheckState::Unsure:
@@ -51,7 +53,8 @@ std::string cellOf(const measure::CheckOutcome& outcome) {
     return "-";
 }
 
-std::string toText(const measure::MaterialChecksReport& report, Detail detail) {
+std::string toText(const measure::MaterialChecksReport& report, const std::vector<std::string>& pictures,
+                   Detail detail) {
     Rows rows{{"feature", "tried"}};
     std::vector<std::string> limits{"limit", "-"};
     for (const measure::MaterialCheck check : measure::kMaterialChecks) {
@@ -70,8 +73,19 @@ std::string toText(const measure::MaterialChecksReport& report, Detail detail) {
         }
         rows.push_back(std::move(limits));
     }
-    return fmt::format("{}, {} samples for each combination and view\n\n{}", report.device, report.samples,
-                       formatTable(rows, detail));
+    std::string notes;
+    for (const measure::FeatureChecks& feature : report.features) {
+        for (const measure::CheckOutcome& outcome : feature.outcomes) {
+            if (outcome.state == measure::CheckState::Waived) {
+                notes += fmt::format("{}: {}: {}\n", feature.feature, nameOf(outcome.check), outcome.message);
+            }
+        }
+    }
+    for (const std::string& picture : pictures) {
+        notes += picture + "\n";
+    }
+    return fmt::format("{}, {} samples for each combination and view\n\n{}{}{}", report.device,
+                       report.samples, formatTable(rows, detail), notes.empty() ? "" : "\n", notes);
 }
 
 // JSON has no infinity, which is what NaN is as far as a range is concerned.
@@ -155,7 +169,7 @@ Result<int> checkMaterialFeatures(const Console& console, const CheckArguments& 
     if (console.isJson()) {
         console.result(toJson(report, pictures));
     } else {
-        console.print(toText(report, console.isVerbose() ? Detail::Whole : Detail::Short));
+        console.print(toText(report, pictures, console.isVerbose() ? Detail::Whole : Detail::Short));
     }
     bool failed = false;
     for (const measure::FeatureChecks& feature : report.features) {

@@ -109,10 +109,10 @@ std::string slotsRead(const Plan& plan) {
     for (std::size_t slot = 0; slot < layout.textures.size(); ++slot) {
         const materials::MaterialTexture& texture =
             plan.model->textures[static_cast<std::size_t>(layout.textures[slot])];
-        const std::string& macro = plan.model->features[static_cast<std::size_t>(texture.feature)].macro;
-        // The macro of a feature begins with GLINT_.
-        bits.push_back(
-            fmt::format("(GLINT_HAS_{}(features) ? {}u : 0u)", macro.substr(6), std::uint64_t{1} << slot));
+        const materials::Feature& feature = plan.model->features[static_cast<std::size_t>(texture.feature)];
+        bits.push_back(fmt::format("({}(features, {}) ? {}u : 0u)",
+                                   feature.bit < materials::kFirstInput ? "hasLobe" : "hasInput",
+                                   feature.macro, std::uint64_t{1} << slot));
     }
     return fmt::format("#define GLINT_SLOTS_READ(features) ({})\n",
                        bits.empty() ? "0u" : fmt::format("{}", fmt::join(bits, " | ")));

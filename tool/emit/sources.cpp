@@ -160,8 +160,7 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     text += layerDefines(plan, std::ranges::any_of(scenes.scenes(), hasDeformedMesh), sized);
     text += bindingDefines(settings.bindings);
     text += effectDefines(*plan.model, plan.effects.effects);
-    text += fmt::format("#define GLINT_CASE_COUNT {}\n", plan.cases.size());
-    text += fmt::format("#define GLINT_HAS_MASKED {}\n", flag(hasMasked));
+    text += fmt::format("#define GLINT_MAY_MASK {}\n", flag(hasMasked));
     const materials::FeatureMask maskCode =
         maskCodeFeatures(*plan.model) & (plan.primaryAlways | plan.primarySometimes);
     text += fmt::format("#define GLINT_MASK_STAGES {}\n", flag(hasMasked && maskCode != 0));
@@ -217,6 +216,8 @@ Result<SourceSet> makeSourceSet(const gltf::SceneList& scenes, const Plan& plan,
     sources.add("generated/shade.glsl",
                 fmt::format("#include \"hit/{}.glsl\"\n", surface ? "shade_surface" : "shade"));
     sources.add("generated/scene.glsl", sceneDefines(scenes, plan, settings));
+    // A file of its own, so that modules that do not count cases stay as they are when there is one more.
+    sources.add("generated/case_count.glsl", fmt::format("#define GLINT_CASE_COUNT {}\n", plan.cases.size()));
     const materials::FeatureMask used =
         plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
     GLINT_TRY_DO(addMaterialCode(sources, *plan.model, used, sources));

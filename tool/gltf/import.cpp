@@ -1,6 +1,7 @@
 #include "gltf/import.h"
 
 #include "gltf/document/document.h"
+#include "gltf/material_set.h"
 #include "gltf/planning_inputs.h"
 #include "gltf/steps.h"
 #include "gltf/trusted_textures.h"
@@ -11,7 +12,6 @@
 #include <exception>
 #include <map>
 #include <new>
-#include <numbers>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -168,26 +168,32 @@ bool usesMaterial(const Scene& scene, std::size_t material) {
 }
 
 // Planning takes the whole range of values that a program may set; pictures show those of the list.
-void addRunTimeValues(const Document& document, Scene& scene) {
-    for (const auto& [material, index] : document.edited()) {
-        const materials::Material& rest = scene.materials[static_cast<std::size_t>(material)];
-        if (scene.animatedMaterials.empty() || scene.animatedMaterials.back().material != material) {
-            scene.animatedMaterials.push_back({material, rest, rest, {}});
+Status addRunTimeValues(const Document& document, Scene& scene) {
+    for (const EditedValue& edited : document.edited()) {
+        const materials::Material& rest = scene.materials[static_cast<std::size_t>(edited.material)];
+        if (scene.animatedMaterials.empty() || scene.animatedMaterials.back().material != edited.material) {
+            scene.animatedMaterials.push_back({edited.material, rest, rest, {}});
             for (const float value : rest.values) {
                 scene.animatedMaterials.back().planned.ranges.push_back({value, value});
             }
         }
         AnimatedMaterial& animated = scene.animatedMaterials.back();
-        const materials::Parameter& parameter = rest.model().parameters[static_cast<std::size_t>(index)];
-        const materials::ValueInterval range =
-            parameter.isAngle
-                ? materials::ValueInterval{-std::numbers::pi, std::numbers::pi}
-                : materials::ValueInterval{parameter.hold(parameter.low), parameter.hold(parameter.high)};
+        const materials::Parameter& parameter =
+            rest.model().parameters[static_cast<std::size_t>(edited.parameter)];
+        const materials::ValueInterval& range = edited.range;
         for (int i = 0; i < parameter.channels; ++i) {
-            animated.planned.ranges[static_cast<std::size_t>(parameter.first + i)] = range;
+            const auto place = static_cast<std::size_t>(parameter.first + i);
+            if (rest.values[place] < range.low || rest.values[place] > range.high) {
+                return document.error("material-list", edited.pointer,
+                                      fmt::format("{} is {}, which is not within {} to {}", parameter.name,
+                                                  rest.values[place], range.low, range.high),
+                                      "give it a value within the range, or widen the range");
+            }
+            animated.planned.ranges[place] = range;
         }
         animated.changes.push_back(fmt::format("{} {:.4g} to {:.4g}", parameter.name, range.low, range.high));
     }
+    return okStatus();
 }
 
 // Pictures show white textures and level normals where a program gives the texels.
@@ -229,7 +235,7 @@ Status fillScene(Document& document, Scene& scene) {
     GLINT_TRY_DO(importSkins(document, scene));
     GLINT_TRY_DO(importInstances(document, scene));
     importAnimations(document, scene);
-    addRunTimeValues(document, scene);
+    GLINT_TRY_DO(addRunTimeValues(document, scene));
     settleColors(document, scene);
     GLINT_TRY_DO(applyVariant(document, scene));
     if (usesMaterial(scene, scene.materials.size())) {
@@ -255,12 +261,13 @@ Status fillScene(Document& document, Scene& scene) {
     return okStatus();
 }
 
-}  // namespace
-
-Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions& options) {
+// `Source` is a path, or a set of materials with one.
+template <typename Source>
+Result<Scene> readScene(const Source& source, const std::filesystem::path& path,
+                        const ImportOptions& options) {
     // The JSON library and the allocator throw exceptions, which must not leave this function.
     try {
-        GLINT_TRY(const auto document, Document::open(path, options));
+        GLINT_TRY(const auto document, Document::open(source, options));
         Scene scene;
         scene.path = path.string();
         GLINT_TRY_DO(fillScene(*document, scene));
@@ -272,6 +279,16 @@ Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions
         return makeError("gltf", path.string(), exception.what(),
                          "export the scene again; the Khronos glTF validator explains the rules");
     }
+}
+
+}  // namespace
+
+Result<Scene> importScene(const std::filesystem::path& path, const ImportOptions& options) {
+    return readScene(path, path, options);
+}
+
+Result<Scene> importMaterials(const MaterialSet& set, const ImportOptions& options) {
+    return readScene(set, set.path, options);
 }
 
 }  // namespace glint::gltf

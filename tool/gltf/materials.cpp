@@ -244,6 +244,12 @@ void readParameters(Document& document, const Json& json, const std::string& poi
         const materials::MaterialObject& owner = model.objects[static_cast<std::size_t>(parameter.object)];
         const Json* const object = objectOf(json, owner);
         if (object != nullptr && material.reads(parameter.object)) {
+            if (parameter.aliasOf >= 0) {
+                // The value is that of an extension whose feature multiplies by it.
+                const auto own = static_cast<std::size_t>(parameter.aliasOf);
+                const auto its = static_cast<std::size_t>(model.parameters[own].object);
+                material.given[its] = model.objects[its].isExtension ? 1 : material.given[its];
+            }
             readParameter({document, *object, pointerOf(pointer, owner)}, parameter, material);
         }
     }

@@ -33,7 +33,8 @@ std::string macroCase(std::string_view name) {
 }  // namespace
 
 int ModelBuilder::addFeature(const Members& members, Feature feature, Light light) {
-    feature.macro = "GLINT" + macroCase("_" + feature.name);
+    // Glint's shaders have many macros of their own, which a name of a pack must not meet.
+    feature.macro = (isOfPack_ ? "GLINT_PACK" : "GLINT") + macroCase("_" + feature.name);
     feature.about = members.text("about", "");
     feature.isInDraft = members.flag("draft", false);
     std::string capital = feature.name;
@@ -41,8 +42,14 @@ int ModelBuilder::addFeature(const Members& members, Feature feature, Light ligh
     feature.shortName = members.text("short", capital);
     readNeeds(members, feature);
     if (members.has("cost")) {
-        const Members cost(members["cost"], members.at("cost"), {"instructions", "fetches"});
+        const Members cost(members["cost"], members.at("cost"), Place::Cost);
         feature.cost = {cost.number("instructions", 0.0), cost.number("fetches", 0.0)};
+        for (const auto& [member, value] : {std::pair("instructions", feature.cost.instructions),
+                                            std::pair("fetches", feature.cost.fetches)}) {
+            if (!(value >= 0.0 && value < kUnlimited)) {
+                failAt(cost.at(member), "must be a finite number from 0");
+            }
+        }
     } else if (isOfPack_) {
         feature.cost = feature.texture >= 0 ? kUsualTexture : isLobe(feature) ? kUsualLobe : kUsualInput;
     }
@@ -57,37 +64,28 @@ void ModelBuilder::readNeeds(const Members& members, Feature& feature) {
     }
     const std::vector<std::string> needs =
         members["needs"].is_array() ? members.texts("needs") : std::vector{members.text("needs")};
+    if (needs.empty()) {
+        failAt(members.at("needs"), "names nothing");
+    }
     for (const std::string& need : needs) {
-        if (need == "tangents") {
-            feature.needsTangents = true;
-        } else if (need == "texCoord0" || need == "texCoord1") {
-            const int set = need == "texCoord1" ? 1 : 0;
-            if (feature.needsTexCoord >= 0 && feature.needsTexCoord != set) {
-                failAt(members.at("needs"), "a feature can read one UV set beyond those of its textures");
-            }
-            feature.needsTexCoord = set;
-        } else {
-            failAt(members.at("needs"),
-                   fmt::format("\"{}\" is none of \"tangents\", \"texCoord0\" and \"texCoord1\"", need));
+        const int set = choose(kNeeds, members, "needs", need).texCoord;
+        if (set >= 0 && feature.needsTexCoord >= 0 && feature.needsTexCoord != set) {
+            failAt(members.at("needs"), "a feature can read one UV set beyond those of its textures");
         }
+        feature.needsTangents = feature.needsTangents || set < 0;
+        feature.needsTexCoord = std::max(feature.needsTexCoord, set);
     }
 }
 
-void ModelBuilder::checkOwn(const Members& members, bool hasOwn) {
-    for (const char* const member :
-         {"short", "light", "given", "needs", "draft", "ofBase", "cost", "order", "gltf", "excludes"}) {
-        if (!hasOwn && members.has(member)) {
-            failAt(members.at(member), "is of a feature of the declaration's own, and it has none",
-                   "give the declaration \"extension\" or \"neutral\"");
-        }
-    }
-    if (hasOwn && !members.has("extension") && members.list("neutral").empty()) {
+void ModelBuilder::checkOwn(const Members& members, const Feature& feature) {
+    if (feature.object < 0 && members.list("neutral").empty()) {
         failAt(members.where(), "every material would have its feature, as no reason leaves it out",
                "give the declaration \"extension\", or a reason in \"neutral\"");
     }
-    if (members.has("replaces") && !members.has("extension") && !members.has("object")) {
-        failAt(members.at("replaces"), "every material would lose what it replaces",
-               "give the declaration \"extension\" or \"object\"");
+    for (const char* const ofLobes : {"light", "ofBase"}) {
+        if (members.has(ofLobes) && !isLobe(feature)) {
+            failAt(members.at(ofLobes), "is for lobes", "make \"stage\" \"layer\" or \"base\"");
+        }
     }
 }
 
@@ -97,41 +95,37 @@ void ModelBuilder::collect(File& file) {
     const std::string name = newName(members);
     const std::string stageName = members.text("stage");
     const Stage stage = choose(kStages, members, "stage", stageName).stage;
-    if (members.has("extension") && members.has("object")) {
-        failAt(members.at("object"), "a feature has an extension or an object of the core, not both");
-    }
     file.object = members.has("extension") ? addObject(members.text("extension"), true)
                   : members.has("object")  ? addObject(members.text("object"), false)
                                            : 0;
-    const bool hasOwn = members.has("neutral") || members.has("extension");
-    checkOwn(members, hasOwn);
-    if (hasOwn) {
+    if (members.has("neutral") || members.has("extension")) {
         Feature feature;
         feature.name = name;
         feature.stage = stage;
         feature.object = members.has("extension") ? file.object : -1;
         feature.gltf = members.text("gltf", gltfPlace(file.object, ""));
         feature.isOfBase = members.flag("ofBase", false);
+        checkOwn(members, feature);
         const Light light = choose(kLights, members, "light", members.text("light", "front")).light;
         file.mainFeature = addFeature(members, std::move(feature), light);
     }
     for (const auto& [json, where] : members.list("parameters")) {
-        const Members parameter(*json, where, kParameterMembers);
+        const Members parameter(*json, where, Place::Parameter);
         if (!parameter.has("is")) {
             addParameter(file, parameter);
         }
     }
     for (const auto& [json, where] : members.list("textures")) {
-        const Members texture(*json, where, kTextureMembers);
+        const Members texture(*json, where, Place::Texture);
         if (!texture.has("is")) {
             addTexture(file, texture);
         }
     }
     for (const auto& [json, where] : members.list("attributes")) {
-        addAttribute(file, Members(*json, where, kAttributeMembers));
+        addAttribute(file, Members(*json, where, Place::Attribute));
     }
     for (const auto& [json, where] : members.list("features")) {
-        const Members further(*json, where, kFeatureMembers);
+        const Members further(*json, where, Place::Feature);
         Feature feature;
         feature.name = newName(further);
         feature.stage = further.has("stage") ? choose(kStages, further, "stage", further.text("stage")).stage
@@ -178,6 +172,9 @@ Parameter ModelBuilder::makeParameter(const File& file, const Members& members, 
             failAt(members.at("also"), "must be one further value");
         }
         parameter.also = Members::toNumber(*also[0].first, also[0].second);
+        if (*parameter.also >= parameter.low && *parameter.also <= parameter.high) {
+            failAt(members.at("also"), "is within the range, so that it is valid anyway", "leave it out");
+        }
     }
     readDefault(members, parameter);
     return parameter;
@@ -226,9 +223,6 @@ void ModelBuilder::addAttribute(const File& file, const Members& members) {
     attribute.type = type.glsl;
     attribute.channels = type.channels;
     attribute.feature = file.mainFeature;
-    if (file.mainFeature < 0) {
-        failAt(members.where(), "needs a feature that reads it: give the declaration \"neutral\"");
-    }
     // Attributes of an application begin with an underscore: glTF 2.0, section 3.7.2.1.
     if (attribute.gltf.size() < 2 || attribute.gltf.front() != '_') {
         failAt(members.at("at"),
@@ -334,16 +328,9 @@ void ModelBuilder::addTexture(const File& file, const Members& members) {
 void ModelBuilder::collectAliases(const File& file) {
     const Members members = membersOf(file);
     for (const auto& [json, where] : members.list("parameters")) {
-        const Members alias(*json, where, kParameterMembers);
+        const Members alias(*json, where, Place::Parameter);
         if (!alias.has("is")) {
             continue;
-        }
-        for (const char* const member : {"range", "also", "type", "unit", "record"}) {
-            if (alias.has(member)) {
-                failAt(alias.at(member),
-                       fmt::format("is that of \"{}\", whose value this is", alias.text("is")),
-                       "leave it out");
-            }
         }
         const std::string name = newName(alias);
         const int target = model_.findParameter(alias.text("is"));
@@ -361,7 +348,7 @@ void ModelBuilder::collectAliases(const File& file) {
         model_.parameters.push_back(std::move(parameter));
     }
     for (const auto& [json, where] : members.list("textures")) {
-        const Members alias(*json, where, kTextureMembers);
+        const Members alias(*json, where, Place::Texture);
         if (alias.has("is")) {
             const std::string name = newName(alias);
             textureNamed(alias, "is")

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/text.h"
+#include "materials/declaration_members.h"
 #include "materials/interval.h"
 
 #include <glint/result.h>
@@ -35,20 +36,13 @@ struct DeclarationFault {
 // One object of a declaration. Unknown members are errors, so that a misspelt one is found.
 class Members {
 public:
+    // An object of a material feature: the table of members says what it may have, and beside what.
+    Members(const DeclarationJson& json, std::string where, Place place);
     Members(const DeclarationJson& json, std::string where, std::initializer_list<std::string_view> known)
         : Members(json, std::move(where), std::span(known.begin(), known.size())) {}
     Members(const DeclarationJson& json, std::string where, std::span<const std::string_view> known)
         : json_(json), where_(std::move(where)) {
-        if (!json.is_object()) {
-            failAt(where_, "must be an object");
-        }
-        const std::vector<std::string> names(known.begin(), known.end());
-        for (const auto& [name, value] : json.items()) {
-            if (std::ranges::find(names, name) == names.end()) {
-                failAt(at(name),
-                       fmt::format("there is no member \"{}\"{}", name, base::suggestion(name, names)));
-            }
-        }
+        refuseOthers({known.begin(), known.end()});
     }
 
     const std::string& where() const {
@@ -126,6 +120,18 @@ public:
     }
 
 private:
+    void refuseOthers(const std::vector<std::string>& known) const {
+        if (!json_.is_object()) {
+            failAt(where_, "must be an object");
+        }
+        for (const auto& [name, value] : json_.items()) {
+            if (std::ranges::find(known, name) == known.end()) {
+                failAt(at(name),
+                       fmt::format("there is no member \"{}\"{}", name, base::suggestion(name, known)));
+            }
+        }
+    }
+
     const DeclarationJson& json_;
     std::string where_;
 };

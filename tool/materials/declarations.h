@@ -32,7 +32,7 @@ Result<std::vector<std::filesystem::path>> packFiles(std::span<const std::string
 // Returns the model of Glint's own features together with those of the packs. It lives as long as the
 // program, as materials refer to it. Without folders it is builtinMaterialModel(). Has the errors of
 // packFiles(), readFile() and readDeclarations(), and "materials-glsl" if a file that a declaration names is
-// not there.
+// not there, or reads a texture without asking whether the key has it.
 Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> folders);
 
 }  // namespace glint::materials

@@ -5,26 +5,20 @@ namespace glint::materials {
 namespace {
 
 // A model stands in place of the base that it replaces, in the keys of its own feature.
-void checkModel(const Members& declaration, const Members& glsl, const FeatureCode& code) {
+void checkModel(const Members& declaration, const Members& glsl) {
     if (declaration.text("stage") != "base") {
         failAt(glsl.at("model"), "needs a declaration whose \"stage\" is \"base\"");
     }
-    if (code.feature < 0 || !declaration.has("extension") || !declaration.has("replaces")) {
+    if (!declaration.has("extension") || !declaration.has("replaces")) {
         failAt(glsl.at("model"), "a model is the base of materials that name it",
                "give the declaration \"extension\", and \"replaces\" with the object of the base");
-    }
-    if (code.bsdf.empty() || !code.layer.empty() || !code.diffuse.empty()) {
-        failAt(glsl.at("model"),
-               "needs \"bsdf\", which sets its parameters; it can be neither a layer nor a diffuse lobe");
     }
 }
 
 }  // namespace
 
 DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, int feature) {
-    const Members members(declaration["glsl"], declaration.at("glsl"),
-                          {"surface", "bsdf", "layer", "model", "diffuse", "emission", "coordinates",
-                           "opacity", "after", "coversEmission", "traced", "reciprocal", "sampled"});
+    const Members members(declaration["glsl"], declaration.at("glsl"), Place::Glsl);
     DeclaredCode declared;
     declared.where = members.where();
     FeatureCode& code = declared.code;
@@ -49,44 +43,27 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
             place = std::string(folder) + name;
         }
     }
+    if (std::ranges::all_of(stages, [](const auto& stage) { return stage.file.empty(); })) {
+        failAt(members.where(), "names no file");
+    }
     declared.after = members.texts("after");
     code.coversEmission = members.flag("coversEmission", false);
     code.isTraced = members.flag("traced", false);
     code.isReciprocal = members.flag("reciprocal", false);
     code.isSampled = members.flag("sampled", false);
-    for (const std::string_view ofLayer : {"coversEmission", "traced"}) {
-        if (members.has(ofLayer) && code.layer.empty()) {
-            failAt(members.at(ofLayer), "is for layers; there is no \"layer\"");
-        }
-    }
-    if (members.has("reciprocal") && code.layer.empty() && code.model.empty()) {
-        failAt(members.at("reciprocal"), "is for layers and models; there is no \"layer\" or \"model\"");
-    }
-    if (members.has("sampled") && code.model.empty()) {
-        failAt(members.at("sampled"), "is for models; there is no \"model\"");
-    }
+    code.gains = members.text("gainsEnergy", "");
     if (!code.model.empty()) {
-        checkModel(declaration, members, code);
+        checkModel(declaration, members);
     }
-    if (!code.layer.empty() && feature < 0) {
-        failAt(members.at("layer"), "a layer needs a feature of its own: give the declaration \"neutral\"");
-    }
-    if (!code.layer.empty() && declaration.text("stage") != "layer") {
-        // Only features that are lobes can be enabled as layers.
-        failAt(members.at("layer"), "needs a declaration whose \"stage\" is \"layer\"");
-    }
-    for (const std::string_view stage : {"coordinates", "opacity"}) {
-        // This code also runs in traversal, for keys that no case of the module has.
+    // The code of coordinates and opacity also runs in traversal, for keys that no case of the module has.
+    for (const std::string_view stage : {"layer", "coordinates", "opacity", "diffuse"}) {
         if (members.has(stage) && feature < 0) {
             failAt(members.at(stage), "needs a feature of its own: give the declaration \"neutral\"");
         }
     }
-    if (!code.diffuse.empty() && (feature < 0 || code.bsdf.empty() || !code.layer.empty())) {
-        failAt(members.at("diffuse"),
-               "needs a feature of its own, and \"bsdf\", which sets its parameters; it can't be a layer");
-    }
-    if (!code.layer.empty() && code.bsdf.empty()) {
-        failAt(members.at("layer"), "a layer needs \"bsdf\", which sets its parameters");
+    if (!code.layer.empty() && declaration.text("stage") != "layer") {
+        // Only features that are lobes can be enabled as layers.
+        failAt(members.at("layer"), "needs a declaration whose \"stage\" is \"layer\"");
     }
     return declared;
 }

@@ -97,8 +97,9 @@ void ModelBuilder::orderByDependence() {
                                        [&](int need) { return placed[static_cast<std::size_t>(need)]; });
         });
         if (next == indices(count).end()) {
-            const auto left = std::ranges::find(placed, false);
-            const Feature& feature = model_.features[static_cast<std::size_t>(left - placed.begin())];
+            // The last one, as features of packs come last.
+            const auto left = std::find(placed.rbegin(), placed.rend(), false);
+            const Feature& feature = model_.features[static_cast<std::size_t>(placed.rend() - left) - 1];
             failAt(named_[feature.name],
                    fmt::format("the conditions of \"{}\" lead back to it", feature.name));
         }
@@ -139,7 +140,7 @@ void ModelBuilder::excludeFromModels() {
                 continue;
             }
             for (const auto& [json, where] : membersOf(file).list("features")) {
-                const Members further(*json, where, kFeatureMembers);
+                const Members further(*json, where, Place::Feature);
                 excluded |= model_.mask(further.text("name"));
             }
         }
@@ -188,16 +189,6 @@ void ModelBuilder::addNeeds(const Expression& expression, std::set<int>& needs) 
 // --- Reads the expressions of declarations, and links the names in them ---
 
 namespace {
-
-constexpr struct {
-    std::string_view name;
-    Behaviour behaviour;
-} kBehaviours[] = {
-    {"reflects", Behaviour::Reflects},
-    {"transmits", Behaviour::Transmits},
-    {"scatters", Behaviour::Scatters},
-    {"emits", Behaviour::Emits},
-};
 
 constexpr struct {
     std::string_view function;
@@ -293,7 +284,7 @@ void ModelBuilder::linkFeature(const Members& members, int index, FeatureMask on
         featureAt(index).given = expression(members["given"], members.at("given"), true);
     }
     for (const auto& [json, where] : members.list("neutral")) {
-        const Members reason(*json, where, {"when", "because"});
+        const Members reason(*json, where, Place::Reason);
         NeutralReason neutral{expression(reason["when"], reason.at("when"), true), reason.text("because")};
         neutral.onlyWith = onlyWith;
         featureAt(index).neutral.push_back(std::move(neutral));
@@ -306,23 +297,22 @@ void ModelBuilder::link(const File& file) {
         linkFeature(members, file.mainFeature, 0);
     }
     for (const auto& [json, where] : members.list("features")) {
-        const Members further(*json, where, kFeatureMembers);
+        const Members further(*json, where, Place::Feature);
         linkFeature(further, model_.findFeature(further.text("name")), 0);
     }
     for (const auto& [json, where] : members.list("textures")) {
-        const Members texture(*json, where, kTextureMembers);
+        const Members texture(*json, where, Place::Texture);
         if (!texture.has("is")) {
             linkTexture(file, texture);
         }
     }
     linkParameters(file, members);
     for (const auto& [json, where] : members.list("derived")) {
-        linkDerived(file, Members(*json, where, {"name", "type", "value", "unit", "about", "of"}));
+        linkDerived(file, Members(*json, where, Place::Derived));
     }
     linkBase(file, members);
     for (const auto& [json, where] : members.list("effects")) {
-        linkBehaviour(file,
-                      Members(*json, where, {"does", "when", "roughness", "value", "text", "textureText"}));
+        linkBehaviour(file, Members(*json, where, Place::Effect));
     }
 }
 
@@ -340,7 +330,7 @@ void ModelBuilder::linkTexture(const File& file, const Members& members) {
 void ModelBuilder::linkAliases(const File& file) {
     const Members members = membersOf(file);
     for (const auto& [json, where] : members.list("textures")) {
-        const Members texture(*json, where, kTextureMembers);
+        const Members texture(*json, where, Place::Texture);
         if (!texture.has("is")) {
             continue;
         }
@@ -356,12 +346,19 @@ void ModelBuilder::linkAliases(const File& file) {
 }
 
 void ModelBuilder::linkScales(const Members& members, int slot) {
+    std::set<std::string> scales;
     for (const std::string& scaled : members.texts("scales")) {
         const std::string name = scaled.substr(0, scaled.find('.'));
-        const int index = model_.findParameter(name);
+        int index = model_.findParameter(name);
         if (index < 0) {
             failAt(members.at("scales"), fmt::format("there is no parameter \"{}\"", name));
         }
+        if (!scales.insert(name).second) {
+            failAt(members.at("scales"), fmt::format("\"{}\" is scaled twice", name));
+        }
+        // The numbers of an alias are those of the parameter that it fills.
+        const int filled = model_.parameters[static_cast<std::size_t>(index)].aliasOf;
+        index = filled < 0 ? index : filled;
         Parameter& parameter = model_.parameters[static_cast<std::size_t>(index)];
         if (parameter.scaledBy >= 0 && parameter.scaledBy != slot) {
             failAt(members.at("scales"),
@@ -391,7 +388,7 @@ void ModelBuilder::linkScales(const Members& members, int slot) {
 
 void ModelBuilder::linkParameters(const File& file, const Members& members) {
     for (const auto& [json, where] : members.list("parameters")) {
-        const Members row(*json, where, kParameterMembers);
+        const Members row(*json, where, Place::Parameter);
         Parameter& parameter =
             model_.parameters[static_cast<std::size_t>(model_.findParameter(row.text("name")))];
         parameter.feature = row.has("of") ? featureNamed(row.text("of"), row.at("of")) : file.mainFeature;
@@ -425,7 +422,7 @@ void ModelBuilder::linkDerived(const File& file, const Members& members) {
 
 void ModelBuilder::linkBase(const File& file, const Members& members) {
     if (members.has("replaces")) {
-        const Members replaces(members["replaces"], members.at("replaces"), {"object", "sets"});
+        const Members replaces(members["replaces"], members.at("replaces"), Place::Replaces);
         const int object = model_.findObject(replaces.text("object"));
         if (object < 0) {
             failAt(replaces.at("object"), "no declaration has this object");
@@ -437,6 +434,10 @@ void ModelBuilder::linkBase(const File& file, const Members& members) {
                    "base models alone can replace the same object");
         }
         MaterialObject& owner = model_.objects[static_cast<std::size_t>(file.object)];
+        if (object == file.object || (owner.replaces >= 0 && owner.replaces != object)) {
+            failAt(replaces.at("object"), object == file.object ? "is the declaration's own object"
+                                                                : "its object replaces another one, too");
+        }
         owner.replaces = object;
         if (replaces.has("sets")) {
             for (const auto& [name, value] : replaces["sets"].items()) {
@@ -444,13 +445,17 @@ void ModelBuilder::linkBase(const File& file, const Members& members) {
                 if (parameter < 0) {
                     failAt(replaces.at("sets"), fmt::format("there is no parameter \"{}\"", name));
                 }
-                owner.settings.push_back(
-                    {parameter, static_cast<float>(Members::toNumber(value, replaces.at("sets")))});
+                const std::string place = replaces.at("sets") + "/" + name;
+                const double number = Members::toNumber(value, place);
+                if (!model_.parameters[static_cast<std::size_t>(parameter)].isValid(number)) {
+                    failAt(place, "is outside of the parameter's range");
+                }
+                owner.settings.push_back({parameter, static_cast<float>(number)});
             }
         }
     }
     if (members.has("excludes")) {
-        const Members excludes(members["excludes"], members.at("excludes"), {"but", "stage", "because"});
+        const Members excludes(members["excludes"], members.at("excludes"), Place::Excludes);
         Exclusion exclusion{file.mainFeature, 0, excludes.text("because")};
         std::set<int> kept{file.mainFeature};
         for (const std::string& name : excludes.texts("but")) {
@@ -469,7 +474,8 @@ void ModelBuilder::linkBase(const File& file, const Members& members) {
 }
 
 void ModelBuilder::linkBehaviour(const File& file, const Members& members) {
-    BehaviourRule rule{choose(kBehaviours, members, "does", members.text("does")).behaviour, file.object,
+    const NamedBehaviour& behaviour = choose(kBehaviours, members, "does", members.text("does"));
+    BehaviourRule rule{behaviour.behaviour, file.object,
                        expression(members["when"], members.at("when"), true)};
     const FeatureMask own = file.mainFeature < 0 ? 0 : featureAt(file.mainFeature).mask();
     if (rule.does == Behaviour::Transmits && (own & model_.bothSides) == 0) {
@@ -490,7 +496,11 @@ void ModelBuilder::linkBehaviour(const File& file, const Members& members) {
     if ((rule.does == Behaviour::Reflects) != rule.roughness.has_value()) {
         failAt(members.where(), "\"roughness\" stands where \"does\" is \"reflects\", and there alone");
     }
-    rule.text = members.text("text", "");
+    // A surface that has no words for what it does would count as one that does not do it.
+    rule.text = members.text("text", std::string(behaviour.text));
+    if (rule.value && rule.text.find("{}") == std::string::npos) {
+        failAt(members.at("value"), "there is no {} in \"text\" where it could stand");
+    }
     rule.textureText = members.text("textureText", "");
     // The base speaks before the layers.
     const bool isLayer = file.mainFeature >= 0 && featureAt(file.mainFeature).stage == Stage::Layer;

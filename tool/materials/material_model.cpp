@@ -109,11 +109,12 @@ std::string MaterialModel::featureDefines() const {
         "#define GLINT_SAMPLED_MODEL_LOBES 0x{:x}u\n",
         lobes, unlit, bothSides, ownModels, sampledModels);
     for (const Feature& feature : features) {
+        const std::string name = feature.macro.substr(feature.macro.starts_with("GLINT_PACK_") ? 11 : 6);
         text += fmt::format("#define {} 0x{:x}u\n", feature.macro,
                             1U << (static_cast<unsigned>(feature.bit) % 32U));
-        text += fmt::format("#define GLINT_HAS_{}(features) {}(features, {})\n", feature.macro.substr(6),
+        text += fmt::format("#define GLINT_HAS_{}(features) {}(features, {})\n", name,
                             feature.bit < kFirstInput ? "hasLobe" : "hasInput", feature.macro);
-        text += fmt::format("#define GLINT_KEY_HAS_{}(features) {}(features, {})\n", feature.macro.substr(6),
+        text += fmt::format("#define GLINT_KEY_HAS_{}(features) {}(features, {})\n", name,
                             feature.bit < kFirstInput ? "lobeOfKey" : "inputOfKey", feature.macro);
     }
     return text;

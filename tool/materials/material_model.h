@@ -290,6 +290,7 @@ struct FeatureCode {
     bool isReciprocal = false;    // the layer or model claims that view and light may change places
     bool isSampled = false;       // the model samples directions itself; otherwise they are cosine-weighted
     bool isOfPack = false;        // of a user's own
+    std::string gains{};          // why more light may leave the surface than reaches it; empty: none may
 };
 
 // The effects of a material on light, by which effects are chosen.

@@ -55,6 +55,25 @@ inline constexpr NamedType kTypes[] = {{"float", "float", 1},
                                        {"color", "vec3", 3},
                                        {"vec4", "vec4", 4}};
 
+struct NamedBehaviour {
+    std::string_view name;
+    Behaviour behaviour;
+    std::string_view text;  // for explain, where the declaration has none
+};
+inline constexpr NamedBehaviour kBehaviours[] = {
+    {"reflects", Behaviour::Reflects, "has the roughness {}"},
+    {"transmits", Behaviour::Transmits, "lets light through"},
+    {"scatters", Behaviour::Scatters, "scatters light diffusely"},
+    {"emits", Behaviour::Emits, "emits light"},
+};
+
+// What a feature may read beyond its own values.
+struct NamedNeed {
+    std::string_view name;
+    int texCoord;  // the UV set; -1: a frame
+};
+inline constexpr NamedNeed kNeeds[] = {{"tangents", -1}, {"texCoord0", 0}, {"texCoord1", 1}};
+
 // Builds the model in two passes over the files: the first collects the names, the second reads the
 // expressions, which may use any of the names.
 class ModelBuilder {
@@ -79,21 +98,6 @@ private:
         bool isOfPack = false;
     };
 
-    // Members of the objects of a declaration.
-    static constexpr std::string_view kFileMembers[] = {
-        "$schema",  "name",  "about",      "extension", "object",   "stage",      "short",
-        "order",    "needs", "light",      "replaces",  "excludes", "parameters", "derived",
-        "textures", "given", "neutral",    "features",  "effects",  "gltf",       "cost",
-        "ofBase",   "glsl",  "attributes", "draft"};
-    static constexpr std::string_view kAttributeMembers[] = {"name", "at", "type", "default", "about"};
-    static constexpr std::string_view kFeatureMembers[] = {
-        "name", "about", "stage", "short", "order", "needs", "gltf", "given", "neutral", "cost", "draft"};
-    static constexpr std::string_view kTextureMembers[] = {
-        "name", "about",   "short", "order",       "needs", "color", "scales",   "of",
-        "is",   "neutral", "cost",  "coordinates", "reads", "draft", "roughness"};
-    static constexpr std::string_view kParameterMembers[] = {"name", "at", "type", "default", "range", "also",
-                                                             "unit", "of", "is",   "about",   "record"};
-
     // declarations.cpp
 
     // Returns the features whose objects a material may have in place of this one.
@@ -113,9 +117,8 @@ private:
 
     int addFeature(const Members& members, Feature feature, Light light);
     static void readNeeds(const Members& members, Feature& feature);
-    // Refuses members that would have no effect, or one on every material. `hasOwn`: the declaration has a
-    // feature of its own.
-    static void checkOwn(const Members& members, bool hasOwn);
+    // Refuses a feature that every material would have, and what is for lobes where it is none.
+    static void checkOwn(const Members& members, const Feature& feature);
     void collect(File& file);
     Parameter makeParameter(const File& file, const Members& members, const std::string& name, int channels);
     static void readDefault(const Members& members, Parameter& parameter);

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <deque>
 #include <mutex>
+#include <regex>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -106,6 +107,33 @@ Status checkCode(const MaterialModel& model) {
     return okStatus();
 }
 
+// Refuses a read of a texture in a file that never asks whether the key has it: the record of a material
+// without the texture would give another one.
+Status checkReads(const MaterialModel& model) {
+    for (const ModelSource& source : model.sources) {
+        for (const MaterialTexture& texture : model.textures) {
+            std::string constant = "k" + texture.name;
+            constant[1] = static_cast<char>(constant[1] - 'a' + 'A');
+            if (source.text.find(constant) == std::string::npos) {
+                continue;
+            }
+            const std::regex read(
+                fmt::format("sample(Slot|SlotAt|Point)\\s*\\(\\s*\\w+\\s*,\\s*{}\\b", constant));
+            const std::string macro = model.features[static_cast<std::size_t>(texture.feature)].macro;
+            const std::string asked = "HAS_" + macro.substr(macro.starts_with("GLINT_PACK_") ? 11 : 6);
+            std::smatch found;
+            if (source.text.find(asked) == std::string::npos && std::regex_search(source.text, found, read)) {
+                const auto line = 1 + std::count(source.text.begin(), found[0].first, '\n');
+                return makeError(
+                    "materials-glsl", fmt::format("{}:{}", source.name, line),
+                    fmt::format("reads {}, but the file never asks whether the key has it", constant),
+                    fmt::format("read it where GLINT_{}(features) is true", asked));
+            }
+        }
+    }
+    return okStatus();
+}
+
 // Keeps a model for as long as the program runs.
 const MaterialModel& keep(MaterialModel model) {
     static std::mutex mutex;
@@ -151,6 +179,7 @@ Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> fold
     GLINT_TRY(auto model, readDeclarations(declarations));
     model.sources = std::move(sources);
     GLINT_TRY_DO(checkCode(model));
+    GLINT_TRY_DO(checkReads(model));
     return &keep(std::move(model));
 }
 

@@ -81,7 +81,7 @@ public:
             }
             if (!rule.roughness) {
                 const double value = rule.value ? rule.value->number(factors_).of[0].high : 0.0;
-                return rule.text.empty() ? std::string(kDefaultText) : filledIn(rule.text, "{}", value);
+                return filledIn(rule.text, "{}", value);
             }
             const double factor = rule.roughness->number(factors_).of[0].low;
             if (rule.roughness->number(facts_).of[0].low <= limit) {
@@ -121,8 +121,6 @@ public:
     }
 
 private:
-    static constexpr std::string_view kDefaultText = "scatters light diffusely";
-
     bool holds(const materials::BehaviourRule& rule) const {
         return material_.reads(rule.object) && rule.when.holds(facts_) != materials::Certainty::False;
     }

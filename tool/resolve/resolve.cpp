@@ -2,6 +2,8 @@
 
 #include "base/clock.h"
 #include "base/text.h"
+#include "cache/action.h"
+#include "materials/declarations.h"
 #include "plan/frame_time.h"
 #include "resolve/build.h"
 #include "resolve/light.h"
@@ -543,6 +545,32 @@ private:
 };
 
 }  // namespace
+
+Result<gltf::ImportOptions> importOptions(const Settings& settings, base::Memo* texels) {
+    GLINT_TRY(const auto model, materials::loadMaterialModel(settings.materials));
+    for (const std::string& name : settings.compile.effects.ofPacks) {
+        if (findEffect(model->effects, name) == 0) {
+            std::vector<std::string> names;
+            for (const materials::EffectDeclaration& effect : model->effects) {
+                names.push_back(effect.name);
+            }
+            return makeError("effect-unknown", "",
+                             fmt::format("neither Glint nor a pack has an effect \"{}\"{}", name,
+                                         base::suggestion(name, names)),
+                             "correct --effects, or add the pack by --materials");
+        }
+    }
+    gltf::ImportOptions options;
+    options.trustTextures = trustsTextures(settings);
+    options.memo = texels;
+    options.memoScope = texels != nullptr ? programIdentity() : "";
+    options.scene = settings.sceneInFile;
+    options.variant = settings.variant;
+    options.strictPaths = settings.strictPaths;
+    options.jobs = settings.compile.jobs;
+    options.materialModel = model;
+    return options;
+}
 
 Result<Build> resolve(std::shared_ptr<const gltf::SceneList> scenes, const Settings& settings,
                       const Target& target) {

@@ -2,6 +2,7 @@
 // the meaning of `auto`.
 #pragma once
 
+#include "gltf/import_options.h"
 #include "gltf/scene_list.h"
 #include "resolve/build.h"
 #include "settings/settings.h"
@@ -15,6 +16,10 @@
 #include <vector>
 
 namespace glint::compiler {
+
+// Returns how the scenes of a package are read. `texels` keeps what was found in images; null: nothing is
+// kept. Errors "effect-unknown" and those of loadMaterialModel().
+Result<gltf::ImportOptions> importOptions(const Settings& settings, base::Memo* texels);
 
 // The scenes of `scenes` must outlive the result. Errors: those of reading a profile and a lock;
 // "lock-outdated"; "hit-lobe-unknown"; "calibration-strategies" if there are constants for no strategy that

@@ -1,9 +1,6 @@
-#include "base/text.h"
-#include "cache/action.h"
 #include "cache/store.h"
 #include "emit/compile.h"
 #include "gltf/import.h"
-#include "materials/declarations.h"
 #include "resolve/light.h"
 #include "resolve/resolve.h"
 #include "scene/deformed.h"
@@ -77,29 +74,9 @@ materials::FeatureMask maskOf(const package::PrimitiveEntry& entry) {
 
 Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, ImageReading images,
                                           base::Memo* texels, const Package* package) {
-    GLINT_TRY(const auto model, materials::loadMaterialModel(settings.materials));
-    for (const std::string& name : settings.compile.effects.ofPacks) {
-        if (findEffect(model->effects, name) == 0) {
-            std::vector<std::string> names;
-            for (const materials::EffectDeclaration& effect : model->effects) {
-                names.push_back(effect.name);
-            }
-            return makeError("effect-unknown", "",
-                             fmt::format("neither Glint nor a pack has an effect \"{}\"{}", name,
-                                         base::suggestion(name, names)),
-                             "correct --effects, or add the pack by --materials");
-        }
-    }
-    gltf::ImportOptions options;
+    GLINT_TRY(auto options, compiler::importOptions(settings, texels));
     options.keepImageFiles = images == ImageReading::Files;
-    options.trustTextures = package != nullptr ? package->trustTextures() : trustsTextures(settings);
-    options.memo = texels;
-    options.memoScope = texels != nullptr ? compiler::programIdentity() : "";
-    options.scene = settings.sceneInFile;
-    options.variant = settings.variant;
-    options.strictPaths = settings.strictPaths;
-    options.jobs = settings.compile.jobs;
-    options.materialModel = model;
+    options.trustTextures = package != nullptr ? package->trustTextures() : options.trustTextures;
     return options;
 }
 

@@ -359,10 +359,30 @@ Words trim(const ParsedModule& module) {
     return to;
 }
 
+// Says of loads of addresses that these are aligned to 8 bytes, as they are in every layout of Vulkan.
+// glslang says the alignment of what the address points to, which
+// VUID-StandaloneSpirv-PhysicalStorageBuffer64-06314 forbids.
+void alignAddresses(Words& words) {
+    constexpr std::uint32_t kAddressBytes = 8;
+    constexpr std::size_t kAlignment = 5;  // word of OpLoad
+    std::set<std::uint32_t> addresses;     // types
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
+        if (it.opcode == spv::OpTypePointer && it.operands[1] == spv::StorageClassPhysicalStorageBuffer) {
+            addresses.insert(it.operands[0]);
+        }
+        if (it.opcode == spv::OpLoad && it.operands.size() >= kAlignment &&
+            (it.operands[kAlignment - 2] & spv::MemoryAccessAlignedMask) != 0 &&
+            addresses.contains(it.operands[0])) {
+            words[it.at + kAlignment] = std::max(words[it.at + kAlignment], kAddressBytes);
+        }
+    }
+}
+
 }  // namespace
 
 Status finishSpirv(std::vector<std::uint32_t>& words, const std::string& name) {
     GLINT_TRY_DO(widenLoads(words, name));
+    alignAddresses(words);
     GLINT_TRY(ParsedModule module, parseModule(words, name));
     if (std::ranges::any_of(module.functions, [](const ParsedFunction& function) {
             return std::ranges::any_of(function.body, [](const ParsedInstruction& it) {

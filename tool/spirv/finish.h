@@ -20,6 +20,8 @@ namespace glint::compiler {
 // everything that the source declares, even if no remaining code uses it, and a device that lacks one must
 // refuse the module.
 //
+// Loads of addresses get the alignment of 8 bytes, which Vulkan demands of them.
+//
 // `name` is for messages. Error "spirv-join" if `words` is no module.
 Status finishSpirv(std::vector<std::uint32_t>& words, const std::string& name);
 

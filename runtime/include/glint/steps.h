@@ -50,6 +50,10 @@ struct EngineGeometryView {
     // Bits for a host's own functions (`glint compile --host`), such as the format of its vertices. They are
     // the upper half of GeometryRecord::flags.
     std::uint16_t hostFlags = 0;
+    // Index into EngineSceneView::materials, whose entry must be of the primitive's material. kOfPackage: the
+    // values that the package has.
+    std::uint32_t material = kOfPackage;
+    static constexpr std::uint32_t kOfPackage = 0xFFFFFFFF;
 };
 
 // A texture of the package's scene (PackageScene::textures) as the host has it.
@@ -86,6 +90,9 @@ struct EngineSceneView {
     // number of the geometry that it is for. A hit's record is instanceShaderBindingTableRecordOffset plus
     // the index of the geometry in its BLAS. If empty, record i is for geometry i.
     std::span<const std::uint32_t> hitRecords{};
+    // Values of the host's own for materials of the package, any number for each, in any order. Geometries
+    // name them. MaterialView::material is the material whose shader and textures they go with.
+    std::span<const MaterialView> materials{};
 };
 
 // The tables that Glint's shaders read of such a scene: a record for each geometry, instance, material and
@@ -97,7 +104,8 @@ public:
     // spans are not kept. Errors: "position-fetch" and "half-precision" (the device was created without what
     // the package needs), "scene-package" (the package has no such scene or primitive), "engine-scene" (a
     // number is out of range, an attribute that a key needs is missing, or a transform is not finite),
-    // "scene-light", and those of memory and Vulkan's calls.
+    // "scene-light", "scene-material" (the package has no such material, or records of another size), and
+    // those of memory and Vulkan's calls.
     static Result<std::unique_ptr<EngineScene>> record(Context& context, const Package& package,
                                                        const EngineSceneView& scene, VkCommandBuffer commands,
                                                        std::uint64_t frame);
@@ -118,12 +126,12 @@ public:
     EngineScene(const EngineScene&) = delete;
     EngineScene& operator=(const EngineScene&) = delete;
 
-    // Records another content: other geometries, instances, lights, textures and samplers, as many as there
-    // are now. An instance keeps its number, by which its motion is measured from its previous transform; new
-    // ones are still. All places are relative to an origin of the engine's choice, which may follow its
-    // camera: `originMoved` says in metres how far it has moved since the previous transforms, which then
-    // count from the new one. `package` is the present one, or one that RaySteps::replacePackage() gets; then
-    // RaySteps::begin() fails until it has it. It need not outlive the call.
+    // Records another content: other geometries, instances, lights, materials, textures and samplers, as many
+    // as there are now. An instance keeps its number, by which its motion is measured from its previous
+    // transform; new ones are still. All places are relative to an origin of the engine's choice, which may
+    // follow its camera: `originMoved` says in metres how far it has moved since the previous transforms,
+    // which then count from the new one. `package` is the present one, or one that RaySteps::replacePackage()
+    // gets; then RaySteps::begin() fails until it has it. It need not outlive the call.
     //
     // The call compares all records on the host, and records copies of those that differ. The spans are not
     // kept. Any number of frames may be in flight: buffers that are too small give way to larger ones, so
@@ -187,7 +195,8 @@ struct EngineSurface {
     float transmission = 0.0F;        // share of the light that passes, specularly or diffusely
     std::array<float, 3> motion{};  // since the transforms before EngineScene::update(), metres; docs/host.md
                                     // says how it follows vertices that move
-    std::uint32_t material = 0;     // index of the material in its file
+    std::uint32_t material = 0;     // index of the material in its file; of values of the host's, their index
+                                    // after the package's materials
 
     static constexpr std::uint32_t kMiss = 0xFFFFFFFF;
     static constexpr std::uint32_t kUnknown = 0xFFFFFFFE;  // no case has the shader ID of what it hit

@@ -3,7 +3,6 @@
 #include "context/commands.h"
 #include "context/upload.h"
 #include "data/instance_math.h"
-#include "data/materials.h"
 #include "data/scene_checks.h"
 #include "interop/frame.h"
 #include "package/package.h"
@@ -50,13 +49,13 @@ constexpr NamedAddress kAddresses[] = {{"indices", &gpu::GeometryRecord::indices
 
 // Finds the entry of a geometry, and checks that its record has the addresses that the key reads.
 Result<const package::PrimitiveEntry*> entryOf(const PackageScene& known, std::size_t index,
-                                               const std::pair<std::uint32_t, std::uint32_t>& primitive,
+                                               const EngineScene::State::Primitive& primitive,
                                                const gpu::GeometryRecord& record) {
-    const package::PrimitiveEntry* const entry = known.findPrimitive(primitive.first, primitive.second);
+    const package::PrimitiveEntry* const entry = known.findPrimitive(primitive.mesh, primitive.primitive);
     if (entry == nullptr) {
         return makeError("scene-package", geometryPlace(index),
-                         "the package does not know primitive " + std::to_string(primitive.second) +
-                             " of mesh " + std::to_string(primitive.first),
+                         "the package does not know primitive " + std::to_string(primitive.primitive) +
+                             " of mesh " + std::to_string(primitive.mesh),
                          "compile the package from the scene that is traced");
     }
     for (const NamedAddress& one : kAddresses) {
@@ -155,6 +154,44 @@ Result<std::vector<std::uint8_t>> makeMaterials(const Context::State& context, c
     return bytes;
 }
 
+// Appends records with the host's values. Their textures are those of the package's material.
+Status appendValues(const PackageScene& known, std::span<const ChangingMaterial> values,
+                    std::vector<std::uint8_t>& bytes) {
+    const std::size_t size = known.materials.recordBytes;
+    for (const ChangingMaterial& one : values) {
+        if (one.material >= known.materials.size() || one.record.size() != size) {
+            return makeError("scene-material", "material " + std::to_string(one.material),
+                             one.record.size() != size ? "the record has another size than the package's"
+                                                       : "the package has no such material",
+                             "give records of the package's materials, in its layout");
+        }
+        const auto own = bytes.begin() + static_cast<std::ptrdiff_t>(one.material * size);
+        std::vector<std::uint8_t> record(own, own + static_cast<std::ptrdiff_t>(size));
+        takeValues(one.record, known.materials, record);
+        bytes.insert(bytes.end(), record.begin(), record.end());
+    }
+    return okStatus();
+}
+
+// Gives a geometry the values that the host has named for it.
+Status takeMaterial(std::size_t index, std::uint32_t material, std::size_t packageMaterials,
+                    std::span<const ChangingMaterial> values, gpu::GeometryRecord& geometry) {
+    if (material == EngineGeometryView::kOfPackage) {
+        return okStatus();
+    }
+    if (material >= values.size()) {
+        return outOfRange(geometryPlace(index), "material", material, values.size());
+    }
+    if (values[material].material != geometry.materialIndex) {
+        return makeError("engine-scene", geometryPlace(index),
+                         "its values are of material " + std::to_string(values[material].material) +
+                             ", and the primitive has material " + std::to_string(geometry.materialIndex),
+                         "name values of the primitive's material");
+    }
+    geometry.materialIndex = static_cast<std::uint32_t>(packageMaterials) + material;
+    return okStatus();
+}
+
 Result<std::vector<std::uint32_t>> findShaderIds(std::span<const gpu::GeometryRecord> geometries,
                                                  std::span<const std::uint32_t> hitRecords) {
     std::vector<std::uint32_t> shaderIds;
@@ -171,8 +208,9 @@ Result<std::vector<std::uint32_t>> findShaderIds(std::span<const gpu::GeometryRe
     return shaderIds;
 }
 
-// The content of a scene that a package decides.
+// The content of a scene by a package.
 struct PackageContent {
+    EngineScene::State::Host host;
     std::vector<gpu::GeometryRecord> geometries;
     std::vector<std::uint8_t> materials;
     std::uint32_t materialBytes = 0;  // of a record
@@ -183,23 +221,41 @@ struct PackageContent {
 // Gives geometries what a package says of their primitives, and makes the other records.
 Result<PackageContent> makeContent(const Context::State& context, const Package& package, std::uint32_t index,
                                    std::vector<gpu::GeometryRecord> geometries,
-                                   std::span<const std::pair<std::uint32_t, std::uint32_t>> primitives,
-                                   std::span<const EngineTextureView> textures,
-                                   std::span<const EngineSamplerView> samplers,
-                                   std::span<const std::uint32_t> hitRecords) {
+                                   EngineScene::State::Host host) {
     GLINT_TRY_DO(checkDevice(package, context.handles));
     const PackageScene known = package.scene(index);
     for (std::size_t i = 0; i < geometries.size(); ++i) {
-        GLINT_TRY(const auto entry, entryOf(known, i, primitives[i], geometries[i]));
+        GLINT_TRY(const auto entry, entryOf(known, i, host.primitives[i], geometries[i]));
         takeEntry(*entry, geometries[i]);
+        GLINT_TRY_DO(takeMaterial(i, host.primitives[i].material, known.materials.size(), host.materials,
+                                  geometries[i]));
     }
     PackageContent content;
-    GLINT_TRY(content.materials, makeMaterials(context, known, textures, samplers));
+    GLINT_TRY(content.materials, makeMaterials(context, known, host.textures, host.samplers));
+    GLINT_TRY_DO(appendValues(known, host.materials, content.materials));
     content.materialBytes = known.materials.recordBytes;
-    GLINT_TRY(content.shaderIds, findShaderIds(geometries, hitRecords));
+    GLINT_TRY(content.shaderIds, findShaderIds(geometries, host.hitRecords));
+    content.host = std::move(host);
     content.geometries = std::move(geometries);
     content.records = recordsHash(package, known);
     return content;
+}
+
+// Carries the host's values into records of a package. What these have beside is the package's.
+Status carryValues(const Package& package, const PackageScene& known, EngineScene::State::Host& host) {
+    std::vector<RecordField> fields = recordFields(package);
+    for (ChangingMaterial& one : host.materials) {
+        if (one.material >= known.materials.size()) {
+            return makeError("scene-package", "material " + std::to_string(one.material),
+                             "the host has given values of this material, which the package lacks",
+                             "compile the package with the same materials");
+        }
+        const std::span<const std::uint8_t> own = known.materials.part(one.material, 1).bytes;
+        const std::vector<std::uint8_t> given = std::exchange(one.record, {own.begin(), own.end()});
+        carryFields(host.fields, given, fields, one.record);
+    }
+    host.fields = std::move(fields);
+    return okStatus();
 }
 
 // The content by a package of what the host has given before.
@@ -210,8 +266,9 @@ Result<PackageContent> contentBy(const EngineScene::State& state, const Package&
     for (std::uint32_t i = 0; i < geometries.count(); ++i) {
         records.push_back(geometries.read<gpu::GeometryRecord>(i));
     }
-    return makeContent(state.context, package, index, std::move(records), state.primitives, state.textures,
-                       state.samplers, state.hitRecords);
+    EngineScene::State::Host host = state.host;
+    GLINT_TRY_DO(carryValues(package, package.scene(index), host));
+    return makeContent(state.context, package, index, std::move(records), std::move(host));
 }
 
 void take(EngineScene::State& state, const PackageContent& content) {
@@ -222,6 +279,7 @@ void take(EngineScene::State& state, const PackageContent& content) {
     }
     materials.replaceBytes(content.materials);
     state.arrays[State::Geometries].store.replace(std::span<const gpu::GeometryRecord>(content.geometries));
+    state.host = content.host;
     state.records = content.records;
     state.shaderIds = content.shaderIds;
 }
@@ -271,16 +329,23 @@ Status recordContent(EngineScene::State& state, VkCommandBuffer commands, const 
                          "the package has no scene " + std::to_string(scene.packageScene),
                          "give an index below Package::sceneCount()");
     }
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> primitives;
+    State::Host host{{},
+                     {scene.textures.begin(), scene.textures.end()},
+                     {scene.samplers.begin(), scene.samplers.end()},
+                     {scene.hitRecords.begin(), scene.hitRecords.end()},
+                     {},
+                     recordFields(package)};
     std::uint32_t leastInstances = 0;
     for (const EngineGeometryView& view : scene.geometries) {
-        primitives.emplace_back(view.mesh, view.primitive);
+        host.primitives.push_back({view.mesh, view.primitive, view.material});
         leastInstances = std::max(leastInstances, view.instance + 1);
     }
+    for (const MaterialView& view : scene.materials) {
+        host.materials.push_back({view.material, {view.record.begin(), view.record.end()}});
+    }
     GLINT_TRY(auto geometries, makeGeometries(scene));
-    GLINT_TRY(const auto content,
-              makeContent(state.context, package, scene.packageScene, std::move(geometries), primitives,
-                          scene.textures, scene.samplers, scene.hitRecords));
+    GLINT_TRY(const auto content, makeContent(state.context, package, scene.packageScene,
+                                              std::move(geometries), std::move(host)));
     for (std::size_t i = 0; i < scene.firstRecords.size(); ++i) {
         if (scene.firstRecords[i] >= std::max<std::size_t>(content.geometries.size(), 1)) {
             return outOfRange("entry " + std::to_string(i) + " of firstRecords", "geometry",
@@ -292,11 +357,7 @@ Status recordContent(EngineScene::State& state, VkCommandBuffer commands, const 
     take(state, content);
     state.arrays[State::FirstRecords].store.replace(scene.firstRecords);
     state.name = package.scene(scene.packageScene).name;
-    state.primitives = std::move(primitives);
     state.leastInstances = leastInstances;
-    state.textures.assign(scene.textures.begin(), scene.textures.end());
-    state.samplers.assign(scene.samplers.begin(), scene.samplers.end());
-    state.hitRecords.assign(scene.hitRecords.begin(), scene.hitRecords.end());
     state.recordsBy = scene.recordsBy;
     return state.recordChanges(commands, frame);
 }
@@ -354,6 +415,7 @@ Result<RetiredLot> EngineScene::State::recordReplacement(const std::shared_ptr<c
     GLINT_TRY(const auto content, contentBy(*this, *package, index));
     const RecordStore materials = arrays[Materials].store;
     const RecordStore geometries = arrays[Geometries].store;
+    const Host hostBefore = host;
     const std::uint64_t recordsBefore = records;
     const std::vector<std::uint32_t> idsBefore = shaderIds;
     take(*this, content);
@@ -361,6 +423,7 @@ Result<RetiredLot> EngineScene::State::recordReplacement(const std::shared_ptr<c
     if (Status status = recordChanges(commands, lastFrame, &leftovers); !status) {
         arrays[Materials].store = materials;
         arrays[Geometries].store = geometries;
+        host = hostBefore;
         records = recordsBefore;
         shaderIds = idsBefore;
         return status.error();

@@ -3,6 +3,7 @@
 
 #include "context/context.h"
 #include "context/resources.h"
+#include "data/materials.h"
 #include "data/retired.h"
 #include "scene/drawn_scene.h"
 #include "scene/gpu_scene_state.h"
@@ -15,7 +16,6 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace glint {
@@ -73,11 +73,21 @@ struct EngineScene::State final : DrawnScene {
     std::uint32_t leastInstances = 0;           // that the geometries name
 
     // The host's content, from which another package makes its records.
-    std::string name;                                                 // of the scene in the package
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> primitives;  // mesh and primitive of each geometry
-    std::vector<EngineTextureView> textures;
-    std::vector<EngineSamplerView> samplers;
-    std::vector<std::uint32_t> hitRecords;
+    struct Primitive {
+        std::uint32_t mesh = 0;
+        std::uint32_t primitive = 0;
+        std::uint32_t material = EngineGeometryView::kOfPackage;
+    };
+    struct Host {
+        std::vector<Primitive> primitives;  // of each geometry
+        std::vector<EngineTextureView> textures;
+        std::vector<EngineSamplerView> samplers;
+        std::vector<std::uint32_t> hitRecords;
+        std::vector<ChangingMaterial> materials;  // in records with these fields
+        std::vector<RecordField> fields;
+    };
+    Host host;
+    std::string name;  // of the scene in the package
 };
 
 }  // namespace glint

@@ -19,6 +19,28 @@ const float kIndirectSpread = 0.125;
 float indirectFarChance = 0.0;
 #endif
 
+#if GLINT_MODELS
+
+// Sends a ray in a direction that a model samples itself, so that its mirrors and its glass show what is around them.
+EffectSample sampleOfModel(Hit hit, Surface surface, Features features) {
+    Bsdf b = surface.bsdf;
+    vec3 local = sampleModel(b.layers, features, b.view, hostRandomPair(hit.target, kPairIndirect));
+    float density = local != vec3(0.0) ? modelDensity(b.layers, features, b.view, local) : 0.0;
+    if (density <= 0.0 || (local.z < 0.0 && !transmits(features))) {
+        return noSample(kRayBlack);
+    }
+#if GLINT_SHARED_LIGHTS
+    vec3 light = evaluateDiffuse(b, features, local) * (abs(local.z) * kInversePi);
+#else
+    vec3 light = evaluateBase(b, features, local) * baseShare(surface, features);
+#endif
+    vec3 direction = onSide(toWorld(surface, local), local.z < 0.0 ? -hit.geometricNormal : hit.geometricNormal);
+    return sentSample(hit, direction, light / density,
+                      max(min(kIndirectSpread, inversesqrt(density)), GLINT_FRAME.pixelSpread));
+}
+
+#endif
+
 // Sends one cosine-weighted ray on the viewer's side, or on the far side through a surface that scatters light to it.
 // The weights are those of the sky's light (effects/ambient.glsl), so that an empty scene looks the same; or those of
 // the BSDF, where samples of lights bring a part of the same light.
@@ -35,6 +57,11 @@ EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, 
     if (total <= 0.0) {
         return noSample(kRayAbsent);
     }
+#if GLINT_MODELS
+    if (samplesModel(features)) {
+        return sampleOfModel(hit, surface, features);
+    }
+#endif
     float chance = luminance(back) / total;
 #if GLINT_SHARED_LIGHTS
     indirectFarChance = chance;
@@ -56,6 +83,11 @@ EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, 
 
 // The density of the ray that was sent, by solid angle.
 float densityIndirectDiffuse(Surface surface, Features features, vec3 l) {
+#if GLINT_MODELS
+    if (samplesModel(features)) {
+        return modelDensity(surface.bsdf.layers, features, surface.bsdf.view, l);
+    }
+#endif
     return (l.z > 0.0 ? 1.0 - indirectFarChance : indirectFarChance) * abs(l.z) * kInversePi;
 }
 

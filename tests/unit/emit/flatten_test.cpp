@@ -95,6 +95,17 @@ TEST(Flatten, TakesCarriageReturnsAndAMissingLastNewline) {
     EXPECT_TRUE(text->ends_with("int a;\n#line 3 \"root.comp\"\nint b;\n")) << *text;
 }
 
+TEST(Flatten, FindsFilesBesideTheOneThatIncludesThem) {
+    const Files files{{"pack/a.glsl", "#include \"b.glsl\"\n#include \"c.glsl\"\n"},
+                      {"pack/b.glsl", "int b;\n"},
+                      {"pack/c.glsl", "int other;\n"},
+                      {"c.glsl", "int c;\n"}};
+    const auto text = flattenRoot(files, "#version 460\n#include \"pack/a.glsl\"\n");
+    ASSERT_TRUE(text) << toString(text.error());
+    EXPECT_NE(text->find("#line 1 \"pack/b.glsl\"\nint b;"), std::string::npos) << *text;
+    EXPECT_NE(text->find("int c;"), std::string::npos) << "Glint's files come first: " << *text;
+}
+
 struct BadSource {
     const char* text;
     const char* id;

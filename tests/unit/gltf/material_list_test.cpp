@@ -1,5 +1,6 @@
 // Lists of materials without a scene.
 #include "gltf/import.h"
+#include "gltf/material_set.h"
 #include "plan/key.h"
 #include "support/temporary_folder.h"
 
@@ -7,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -88,6 +91,109 @@ TEST_F(MaterialLists, KeepFeaturesForEditedValues) {
     }
 }
 
+// A feature is left out where no value of the range needs it.
+TEST_F(MaterialLists, EditedValuesHaveRanges) {
+    const auto edited = [](const char* range) {
+        return fmt::format(
+            R"({{"name": "a", "values": {{"clearcoatFactor": 0.5, "sheenColorFactor": [0, 0, 0]}},
+                               "edited": ["roughnessFactor", {{"parameter": "clearcoatFactor"{}}}]}})",
+            range);
+    };
+    const Result<gltf::Scene> scene = read(edited(R"(, "range": [0.25, 0.75])"));
+    ASSERT_TRUE(scene) << toString(scene.error());
+    ASSERT_EQ(scene->animatedMaterials.size(), 1U);
+    const materials::Material& planned = scene->animatedMaterials[0].planned;
+    const auto rangeOf = [&](const char* parameter) {
+        const int index = planned.model().findParameter(parameter);
+        return planned.ranges[static_cast<std::size_t>(
+            planned.model().parameters[static_cast<std::size_t>(index)].first)];
+    };
+    EXPECT_EQ(rangeOf("clearcoatFactor"), (materials::ValueInterval{0.25, 0.75}));
+    EXPECT_EQ(rangeOf("roughnessFactor"), (materials::ValueInterval{0.0, 1.0}));
+    const Result<gltf::Scene> metal = read(R"({"name": "a", "values": {"metallicFactor": 1},
+                 "edited": [{"parameter": "metallicFactor", "range": [1, 1]}]})");
+    ASSERT_TRUE(metal) << toString(metal.error());
+    EXPECT_FALSE(hasFeature(*metal, "partialMetal"));
+    EXPECT_NE(refusal(edited(R"(, "range": [0.75, 0.25])"))
+                  .find("/materials/0/edited/1: 0.75 to 0.25 is no range within that of clearcoatFactor"),
+              std::string::npos);
+    EXPECT_NE(refusal(edited(R"(, "range": [0, 2])")).find("which is 0 to 1"), std::string::npos);
+    EXPECT_NE(refusal(edited(R"(, "range": [1])")).find("has 1 number, not 2"), std::string::npos);
+    EXPECT_NE(refusal(edited(R"(, "range": [0.6, 1])"))
+                  .find("/materials/0/edited/1: clearcoatFactor is 0.5, which is not within 0.6 to 1"),
+              std::string::npos);
+    EXPECT_NE(refusal(edited(R"(, "ranges": 1)")).find("/edited/1/ranges: is no member"), std::string::npos);
+}
+
+// A set that a program makes is the scene of the list that says the same.
+TEST_F(MaterialLists, AreSetsOfPrograms) {
+    const Result<gltf::Scene> list = read(R"(
+        {"name": "paint", "values": {"roughnessFactor": 0.25, "sheenColorFactor": [0, 0.5, 1], "normalScale": 2},
+         "textures": {"baseColorTexture": {"name": "colours", "scale": [2, 3], "rotation": 0.5},
+                      "normalTexture": "bumps.png"},
+         "alphaMode": "BLEND", "doubleSided": true, "weight": 4, "attributes": ["NORMAL", "TANGENT", "TEXCOORD_0"],
+         "edited": [{"parameter": "clearcoatFactor", "range": [0, 0.5]}, "metallicFactor"]},
+        {"name": "old", "model": "specularGlossiness", "features": ["unlit"], "alphaMode": "MASK"})");
+    ASSERT_TRUE(list) << toString(list.error());
+    gltf::MaterialSet set;
+    set.path = folder_.path() / "list";
+    gltf::MaterialDescription paint;
+    paint.name = "paint";
+    paint.values = {{"roughnessFactor", {0.25}}, {"sheenColorFactor", {0, 0.5, 1}}, {"normalScale", {2}}};
+    paint.textures["baseColorTexture"] = {.name = "colours", .scale = {2, 3}, .rotation = 0.5};
+    paint.textures["normalTexture"].file = "bumps.png";
+    paint.alphaMode = materials::AlphaMode::Blend;
+    paint.doubleSided = true;
+    paint.weight = 4;
+    paint.attributes = {"NORMAL", "TANGENT", "TEXCOORD_0"};
+    paint.edited = {{"clearcoatFactor", {{0, 0.5}}}, {"metallicFactor", {}}};
+    gltf::MaterialDescription old;
+    old.name = "old";
+    old.model = "specularGlossiness";
+    old.features = {"unlit"};
+    old.alphaMode = materials::AlphaMode::Mask;
+    set.materials = {paint, old};
+    const Result<gltf::Scene> scene = gltf::importMaterials(set);
+    ASSERT_TRUE(scene) << toString(scene.error());
+    ASSERT_EQ(scene->materials.size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const materials::Material& one = scene->materials[i];
+        const materials::Material& other = list->materials[i];
+        EXPECT_EQ(one.name, other.name);
+        EXPECT_EQ(one.values, other.values);
+        EXPECT_EQ(one.alphaMode, other.alphaMode);
+        EXPECT_EQ(one.doubleSided, other.doubleSided);
+        EXPECT_EQ(compiler::makeKey(gltf::planningMaterials(*scene)[i], gltf::planningInputs(*scene)[i], {}),
+                  compiler::makeKey(gltf::planningMaterials(*list)[i], gltf::planningInputs(*list)[i], {}));
+        EXPECT_EQ(scene->nodes[i].rest.scale, list->nodes[i].rest.scale);
+    }
+    ASSERT_EQ(scene->images.size(), 2U);
+    EXPECT_EQ(scene->images[0].name, "colours");
+    EXPECT_TRUE(scene->images[0].isAtRunTime);
+    EXPECT_EQ(scene->images[1].name, "bumps.png");
+    ASSERT_EQ(scene->animatedMaterials.size(), 1U);
+    EXPECT_EQ(scene->animatedMaterials[0].planned.ranges, list->animatedMaterials[0].planned.ranges);
+    EXPECT_EQ(std::filesystem::path(scene->path).stem(), std::filesystem::path(list->path).stem());
+}
+
+TEST_F(MaterialLists, RefuseSetsThatNoListCouldSay) {
+    const auto refusalOf = [](const gltf::MaterialDescription& material) {
+        const Result<gltf::Scene> scene = gltf::importMaterials({"set", {material}});
+        EXPECT_FALSE(scene);
+        return scene ? "" : toString(scene.error());
+    };
+    EXPECT_FALSE(gltf::importMaterials({}));
+    EXPECT_NE(refusalOf({.weight = 0}).find("set#/materials/0/weight: error: is no number from"),
+              std::string::npos)
+        << refusalOf({.weight = 0});
+    EXPECT_NE(refusalOf({.values = {{"roughnessFactor", {std::nan("")}}}}).find("/values/roughnessFactor"),
+              std::string::npos);
+    EXPECT_NE(refusalOf({.values = {{"roughnessFactor", {}}}}).find("must be a number"), std::string::npos);
+    EXPECT_NE(refusalOf({.textures = {{"baseColorTexture", {.texCoord = 2}}}}).find("texCoord"),
+              std::string::npos);
+    EXPECT_NE(refusalOf({.features = {"unlitt"}}).find("did you mean unlit?"), std::string::npos);
+}
+
 TEST_F(MaterialLists, TrustNoTextureThatComesAtRunTime) {
     gltf::ImportOptions options;
     options.trustTextures = true;
@@ -121,7 +227,8 @@ TEST_F(MaterialLists, RefuseWhatNoDeclarationHas) {
               std::string::npos);
     EXPECT_NE(material(R"("values": {"roughnessFactor": [1, 2]})").find("must be a number"),
               std::string::npos);
-    EXPECT_NE(material(R"("values": {"sheenColorFactor": [1, "a", 0]})").find("a list of 3 numbers"),
+    EXPECT_NE(material(R"("values": {"sheenColorFactor": [1, "a", 0]})")
+                  .find("/values/sheenColorFactor/1: is no number"),
               std::string::npos);
     EXPECT_NE(
         material(R"("values": {"glossinessFactor": 1})")

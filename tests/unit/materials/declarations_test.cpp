@@ -8,6 +8,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -249,9 +253,9 @@ TEST(Declarations, AliasesHaveNoRangeOfTheirOwn) {
                members + "}]}";
     };
     EXPECT_TRUE(modelWith(alias("")).ok());
-    for (const std::string member : {R"("range": [0, 2])", R"("also": [3])", R"("type": "vec2")",
-                                     R"("unit": "radians")", R"("record": false)"}) {
-        EXPECT_NE(refusal(alias(", " + member)).find("is that of \"metallicFactor\""), std::string::npos)
+    for (const std::string member : {R"("range": [0, 2])", R"("also": [3])", R"("of": "clearcoat")",
+                                     R"("type": "vec2")", R"("unit": "radians")", R"("record": false)"}) {
+        EXPECT_NE(refusal(alias(", " + member)).find("is that of the parameter"), std::string::npos)
             << member;
     }
 }
@@ -264,6 +268,116 @@ TEST(Declarations, OneTextureScalesAParameter) {
                          {"name": "dampTexture", "scales": ["wetness.g"]}]})")
                   .find("#/textures/1/scales: wetTexture scales \"wetness\", too"),
               std::string::npos);
+}
+
+// An alias has the numbers of the parameter that it fills, and no channel counts twice.
+TEST(Declarations, ScaledParametersAreThoseThatAliasesFill) {
+    const auto scaling = [](const std::string& scales) {
+        return R"({"name": "wet", "stage": "surface", "object": "wetness",
+            "parameters": [{"name": "wetRoughness", "is": "roughnessFactor", "default": 1},
+                           {"name": "wetIor", "is": "ior", "default": 1.5}],
+            "textures": [{"name": "wetTexture", "scales": )" +
+               scales + "}]}";
+    };
+    EXPECT_NE(refusal(scaling(R"(["wetRoughness.r"])")).find("metallicRoughnessTexture scales"),
+              std::string::npos);
+    EXPECT_NE(refusal(scaling(R"(["wetIor.r", "wetIor.g"])")).find("\"wetIor\" is scaled twice"),
+              std::string::npos);
+    const Result<materials::MaterialModel> model = modelWith(scaling(R"(["wetIor.r"])"));
+    ASSERT_TRUE(model.ok()) << toString(model.error());
+    for (const char* const name : {"ior", "wetIor"}) {
+        EXPECT_EQ(model->parameters[static_cast<std::size_t>(model->findParameter(name))].scaledBy,
+                  model->findTexture("wetTexture"))
+            << name;
+    }
+}
+
+// What lobes alone can say was lost where inputs said it, or was no GLSL.
+TEST(Declarations, LightIsOfLobes) {
+    for (const std::string member : {R"("light": "both")", R"("ofBase": true)"}) {
+        const std::string text =
+            R"({"name": "wet", "extension": "EXT_wet", "stage": "surface", )" + member + "}";
+        EXPECT_NE(refusal(text).find("is for lobes"), std::string::npos) << member;
+    }
+}
+
+TEST(Declarations, NumbersAreInTheirRanges) {
+    const auto wet = [](const std::string& members) {
+        return R"({"name": "wet", "extension": "EXT_wet", "stage": "layer", )" + members + "}";
+    };
+    EXPECT_NE(
+        refusal(wet(R"("cost": {"instructions": -1, "fetches": 0})")).find("#/cost/instructions: must be"),
+        std::string::npos);
+    EXPECT_NE(
+        refusal(wet(R"("replaces": {"object": "KHR_materials_sheen", "sets": {"sheenRoughnessFactor": 2}})"))
+            .find("#/replaces/sets/sheenRoughnessFactor: is outside"),
+        std::string::npos);
+    EXPECT_NE(refusal(wet(R"("replaces": {"object": "EXT_wet"})")).find("is the declaration's own object"),
+              std::string::npos);
+    EXPECT_NE(refusal(wet(R"("needs": [])")).find("#/needs: names nothing"), std::string::npos);
+    EXPECT_NE(refusal(wet(R"("glsl": {"after": ["sheen"]})")).find("#/glsl: names no file"),
+              std::string::npos);
+    EXPECT_NE(
+        refusal(wet(R"("parameters": [{"name": "wetness", "type": "float", "default": 0, "range": [0, 1],
+                                             "also": [0.5]}])"))
+            .find("#/parameters/0/also: is within the range"),
+        std::string::npos);
+    EXPECT_NE(refusal(wet(R"("effects": [{"does": "emits", "when": "MASK", "value": "1", "text": "glows"}])"))
+                  .find("#/effects/0/value: there is no {}"),
+              std::string::npos);
+}
+
+// Without words for explain, a reflection counted as none.
+TEST(Declarations, ReflectionsNeedNoWords) {
+    const Result<materials::MaterialModel> model =
+        modelWith(R"({"name": "wet", "extension": "EXT_wet", "stage": "layer",
+            "effects": [{"does": "reflects", "when": "raysBlend or not raysBlend", "roughness": "0.02"}]})");
+    ASSERT_TRUE(model.ok()) << toString(model.error());
+    materials::Material material(*model);
+    material["metallicFactor"] = 0.0F;
+    EXPECT_TRUE(compiler::sendsRays(materials::builtinMaterialModel().effects[2], material, {}, 0.3F));
+}
+
+TEST(Declarations, NamesAreNoWordsOfGlsl) {
+    for (const std::string name : {"precision", "sample", "vec3", "mat2x3"}) {
+        EXPECT_NE(refusal(R"({"name": ")" + name + R"(", "stage": "layer"})").find("is a word of GLSL"),
+                  std::string::npos)
+            << name;
+    }
+    EXPECT_TRUE(modelWith(R"({"name": "vec", "stage": "layer"})").ok());
+}
+
+// Glint's shaders have macros such as GLINT_PATHS and GLINT_FRAME. The bits of packs have a prefix, and no
+// macro of Glint's has one of the prefixes of those that follow from names.
+TEST(Declarations, MacrosOfPacksMeetNoneOfGlints) {
+    const materials::DeclarationFile file{
+        "wet.json",
+        R"({"name": "paths", "extension": "EXT_paths", "stage": "layer", "textures": [{"name": "frame"}]})",
+        true};
+    const Result<materials::MaterialModel> model = materials::readDeclarations({&file, 1});
+    ASSERT_TRUE(model.ok()) << toString(model.error());
+    const std::string defines = model->featureDefines();
+    EXPECT_NE(defines.find("#define GLINT_PACK_PATHS 0x1u\n#define GLINT_HAS_PATHS(features) hasLobe("),
+              std::string::npos)
+        << defines;
+    EXPECT_NE(defines.find("#define GLINT_KEY_HAS_FRAME(features) inputOfKey(features, GLINT_PACK_FRAME)"),
+              std::string::npos);
+    std::set<std::string> known;
+    for (const materials::Feature& feature : materials::builtinMaterialModel().features) {
+        known.insert(feature.macro.substr(6));
+    }
+    const std::regex macro("GLINT_(PACK|HAS|KEY_HAS)_([A-Z0-9_]+)");
+    for (const char* const folder : {"shaders", "templates"}) {
+        for (const auto& entry :
+             std::filesystem::recursive_directory_iterator(std::string(GLINT_SOURCE_DIR "/") + folder)) {
+            std::ifstream stream(entry.is_regular_file() ? entry.path() : std::filesystem::path());
+            const std::string text(std::istreambuf_iterator<char>(stream), {});
+            for (std::sregex_iterator found(text.begin(), text.end(), macro); found != std::sregex_iterator();
+                 ++found) {
+                EXPECT_TRUE(known.contains((*found)[2])) << entry.path() << ": " << (*found)[0];
+            }
+        }
+    }
 }
 
 TEST(Declarations, FeaturesOfPacksCostSomething) {

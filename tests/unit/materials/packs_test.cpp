@@ -86,6 +86,20 @@ TEST_F(MaterialPacks, DeclaredGlslMustBeThere) {
     expectError("materials-glsl", "mud/mud.glsl", "is not there");
 }
 
+// The record of a material without the texture would give another one.
+TEST_F(MaterialPacks, TexturesAreReadWhereTheKeyHasThem) {
+    std::string mud(kMud);
+    mud.insert(mud.find("\"parameters\""), R"("textures": [{"name": "mudTexture"}], )");
+    write("mud/mud.json", mud);
+    write("mud/mud.glsl", "// mud\nfloat mud() { return sampleSlot(hit, kMudTexture, features).r; }\n");
+    expectError("materials-glsl", "mud/mud.glsl:2", "reads kMudTexture, but the file never asks");
+    write("mud/mud.glsl",
+          "float mud() { return GLINT_HAS_MUD_TEXTURE(features) ? sampleSlot(hit, kMudTexture, features).r : "
+          "1.0; }\n");
+    const Result<const materials::MaterialModel*> model = load();
+    EXPECT_TRUE(model) << toString(model.error());
+}
+
 TEST_F(MaterialPacks, NamesMustNotCollide) {
     write("mud.json", R"({"name": "sheen", "object": "extras", "stage": "surface",
                           "neutral": [{"when": "doubleSided", "because": "both sides are clean"}]})");

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -308,6 +309,25 @@ TEST(WideLoads, LeaveWhatIsApartOrMayHaveChanged) {
         pushed.results.data[i + 9u] = float(first + pushed.words.data[i + 1u]);
     )"),
               (std::vector<std::uint32_t>{1, 1}));
+}
+
+// glslang takes the alignment of the words that the address points to.
+TEST(CompileShader, LoadsAddressesWithTheirAlignment) {
+    const auto words = compiler::compileShader(
+        {"records.comp", compiler::ShaderStage::Compute,
+         kRecords + std::string("pushed.results.data[i] = pushed.records.data[i].words.data[0]; }\n")},
+        {});
+    ASSERT_TRUE(words) << toString(words.error());
+    std::set<std::uint32_t> pointers;
+    std::vector<std::uint32_t> alignments;
+    ASSERT_TRUE(compiler::visitSpirv(*words, [&](const compiler::SpirvInstruction& it) {
+        if (it.opcode == spv::OpTypePointer) {
+            pointers.insert(it.operands[0]);
+        } else if (it.opcode == spv::OpLoad && it.operands.size() == 5 && pointers.contains(it.operands[0])) {
+            alignments.push_back(it.operands[4]);
+        }
+    }));
+    EXPECT_EQ(alignments, std::vector<std::uint32_t>{8});
 }
 
 TEST(WideLoads, LeaveOtherTypes) {

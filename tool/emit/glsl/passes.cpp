@@ -154,7 +154,12 @@ private:
             return errorAt("source-include", file.name, line, "#include without a name in quotes",
                            "write #include \"folder/file.glsl\"");
         }
-        const std::string_view name = argument.substr(1, argument.size() - 2);
+        std::string name(argument.substr(1, argument.size() - 2));
+        // Files of packs may include those beside them.
+        const std::string beside = file.name.substr(0, file.name.rfind('/') + 1) + name;
+        if (!lookup_(name) && lookup_(beside)) {
+            name = beside;
+        }
         if (std::ranges::find(open_, name) != open_.end()) {
             return errorAt("source-include", file.name, line, fmt::format("\"{}\" includes itself", name),
                            "break the cycle");
@@ -165,7 +170,7 @@ private:
         const std::optional<std::string_view> text = lookup_(name);
         if (!text) {
             return errorAt("source-include", file.name, line, fmt::format("there is no \"{}\"", name),
-                           "names are relative to the shader folder");
+                           "names are relative to the shader folder, or to the file that includes them");
         }
         return addFile(name, *text);
     }

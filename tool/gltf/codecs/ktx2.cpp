@@ -103,7 +103,7 @@ Status checkShape(const FileReader& file, Header& header, BlockFile& image) {
                                                                : imageFault("it ends within its header");
 }
 
-std::string nameOf(Model model) {
+std::string modelName(Model model) {
     switch (model) {
         case Model::UastcHdr4x4:
         case Model::UastcHdr6x6:
@@ -157,7 +157,7 @@ Status checkFormat(const FileReader& file, Header& header, BlockFile& image) {
     if (!isEtc1s && header.model != Model::Uastc) {
         return imageFault(
             fmt::format("it holds {}, which Glint does not read; KHR_texture_basisu allows ETC1S and UASTC",
-                        nameOf(header.model)));
+                        modelName(header.model)));
     }
     const bool schemeFits = isEtc1s ? header.scheme == Scheme::BasisLz
                                     : header.scheme == Scheme::None || header.scheme == Scheme::Zstandard;

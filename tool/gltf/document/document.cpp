@@ -1,6 +1,8 @@
 #include "gltf/document/document.h"
 
 #include "base/json.h"
+#include "gltf/document/material_list.h"
+#include "gltf/document/materialx.h"
 #include "gltf/document/validate.h"
 
 #include <fmt/format.h>
@@ -303,19 +305,42 @@ Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& pa
     return document;
 }
 
+Result<std::unique_ptr<Document>> Document::open(const MaterialSet& set, const ImportOptions& options) {
+    std::unique_ptr<Document> document(new Document(set.path, options));
+    GLINT_TRY_DO(checkMaterialSet(set));
+    GLINT_TRY_DO(document->expand(set));
+    GLINT_TRY_DO(document->check());
+    return document;
+}
+
 Status Document::parse() {
     GLINT_TRY(file_, source_.readScene());
     GLINT_TRY(const auto container, splitContainer(*this, file_));
     binary_ = container.binary;
+    if (isMaterialX(container.json)) {
+        GLINT_TRY(const auto set, readMaterialX(container.json, name_, *options_.materialModel));
+        GLINT_TRY_DO(expand(set));
+        return check();
+    }
     GLINT_TRY(json_, parseJson(*this, container.json));
     if (isMaterialList(json_)) {
-        GLINT_TRY(auto list, expandMaterialList(container.json, name_, *options_.materialModel));
-        json_ = std::move(list.document);
-        file_ = std::move(list.buffer);
-        binary_ = file_;
-        places_ = std::move(list.places);
-        edited_ = std::move(list.edited);
+        GLINT_TRY(const auto set, readMaterialList(container.json, name_));
+        GLINT_TRY_DO(expand(set));
     }
+    return check();
+}
+
+Status Document::expand(const MaterialSet& set) {
+    GLINT_TRY(auto expanded, expandMaterials(set, *options_.materialModel));
+    json_ = std::move(expanded.document);
+    file_ = std::move(expanded.buffer);
+    binary_ = file_;
+    places_ = std::move(expanded.places);
+    edited_ = std::move(expanded.edited);
+    return okStatus();
+}
+
+Status Document::check() {
     GLINT_TRY_DO(checkVersion(*this, json_));
     GLINT_TRY_DO(checkExtensions(*this, json_));
     if (const Status status = checkDocument(json_, *options_.materialModel); !status) {

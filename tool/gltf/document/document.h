@@ -3,7 +3,7 @@
 #pragma once
 
 #include "gltf/document/files.h"
-#include "gltf/document/material_list.h"
+#include "gltf/document/material_expansion.h"
 #include "gltf/document/model.h"
 #include "gltf/import_options.h"
 
@@ -43,6 +43,8 @@ public:
     // Reads, parses and checks the file. It opens no other file.
     static Result<std::unique_ptr<Document>> open(const std::filesystem::path& path,
                                                   const ImportOptions& options);
+    // Makes the document of a set of materials, and checks it. It opens no file.
+    static Result<std::unique_ptr<Document>> open(const MaterialSet& set, const ImportOptions& options);
 
     const ImportOptions& options() const {
         return options_;
@@ -77,8 +79,8 @@ public:
         return source_.files();
     }
 
-    // The parameters of a material list that may be anything in their range.
-    const std::vector<std::pair<int, int>>& edited() const {
+    // The parameters of a set of materials that a program may set.
+    const std::vector<EditedValue>& edited() const {
         return edited_;
     }
 
@@ -115,6 +117,8 @@ private:
     Document(const std::filesystem::path& path, const ImportOptions& options);
 
     Status parse();
+    Status expand(const MaterialSet& set);
+    Status check();
     Result<ByteView> buffer(int index);
     Result<ByteView> bufferRange(int buffer, std::uint64_t offset, std::uint64_t length,
                                  const std::string& pointer);
@@ -132,8 +136,8 @@ private:
     base::Bytes file_;
     std::optional<ByteView> binary_;  // views file_
     Json json_;
-    std::map<std::string, std::string, std::less<>> places_;  // ExpandedList
-    std::vector<std::pair<int, int>> edited_;
+    std::map<std::string, std::string, std::less<>> places_;  // ExpandedMaterials
+    std::vector<EditedValue> edited_;
     tinygltf::Model model_;
     std::vector<std::optional<base::Bytes>> buffers_;
     std::vector<std::optional<base::Bytes>> unpackedViews_;

@@ -1,602 +1,236 @@
 #include "gltf/document/material_list.h"
 
 #include "base/fields.h"
-#include "base/text.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstring>
-#include <numbers>
-#include <optional>
-#include <set>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace glint::gltf {
 
 using base::field;
-using materials::MaterialModel;
 
 namespace {
 
 constexpr const char* kMarker = "materialList";
-constexpr std::string_view kCoreModel = "metallicRoughness";
-constexpr std::string_view kAlphaModes[] = {"OPAQUE", "MASK", "BLEND"};
-constexpr std::uint32_t kSegments = 24;
-constexpr std::uint32_t kRings = 12;
-constexpr double kGap = 2.3;  // of the centres of spheres, in largest radii
 constexpr double kMost = 1e9;
+constexpr base::FieldTraits kMayBeMissing{.orNull = true, .optional = true};
 
-base::FieldTraits listTraits(std::size_t most = 0) {
-    return {.least = -kMost, .most = kMost, .optional = true, .mostElements = most};
-}
-
-// A list that may be missing.
-template <auto Member>
-base::Field listed(const char* name, const char* what, base::FieldTraits traits) {
-    using Object = base::detail::ObjectOf<Member>;
-    using Value = base::detail::ValueOf<Member>;
-    return field(
-        name, what,
-        [](const Object& it) { return (it.*Member).empty() ? std::nullopt : std::optional(it.*Member); },
-        [](Object& it, std::optional<Value> value) { it.*Member = std::move(value).value_or(Value()); },
-        std::move(traits));
-}
-
-// The same with a schema that says more than the type.
-base::Field described(base::Field field, base::FieldSchema schema) {
+base::Field readBy(base::Field field, base::FieldReader read, base::FieldSchema schema) {
+    field.read = read;
     field.schema = schema;
     return field;
 }
 
-base::Json mapOf(std::vector<base::Json> values) {
-    return {{"type", "object"}, {"additionalProperties", base::schemaOfAny(std::move(values))}};
+// Two numbers, which may be missing.
+template <auto Member>
+base::Field pair(const char* name, const char* what) {
+    base::Field field = base::output<Member>(
+        name, what,
+        {.least = -kMost, .most = kMost, .optional = true, .leastElements = 2, .mostElements = 2});
+    field.read = [](void* object, base::JsonReader& reader, const base::Json& json, const std::string& place,
+                    const base::FieldTraits& traits) {
+        if (json.is_null()) {
+            return;
+        }
+        std::vector<double> numbers;
+        base::detail::read(numbers, reader, json, place, {.least = traits.least, .most = traits.most});
+        if (reader.ok() && numbers.size() != 2) {
+            reader.fail(
+                place, fmt::format("has {} number{}, not 2", numbers.size(), numbers.size() == 1 ? "" : "s"));
+        } else if (reader.ok()) {
+            static_cast<base::detail::ObjectOf<Member>*>(object)->*Member =
+                std::array<double, 2>{numbers[0], numbers[1]};
+        }
+    };
+    return field;
+}
+
+// An object of which most have one member alone: then its text may stand for it.
+template <typename T, auto Member>
+T readShort(base::JsonReader& reader, const base::Json& json, const std::string& place) {
+    if (!json.is_string()) {
+        T value = base::readAs<T>(reader, json, place);
+        if (reader.ok()) {
+            base::refuseOthers(base::fields<T>(), reader, json, place);
+        }
+        return value;
+    }
+    T value;
+    value.*Member = json.get<std::string>();
+    return value;
+}
+
+template <typename T>
+base::Json schemaOfShort() {
+    return base::schemaOfAny({base::schemaOfText({}), base::schemaOf<T>()});
+}
+
+base::Json mapOf(base::Json values) {
+    return {{"type", "object"}, {"additionalProperties", std::move(values)}};
+}
+
+// ---- The members of a material with a short form ----
+
+using M = MaterialDescription;
+
+void readValues(void* object, base::JsonReader& reader, const base::Json& json, const std::string& place,
+                const base::FieldTraits& /*traits*/) {
+    reader.eachMember(json, place, [&](const std::string& name, const base::Json& one, const auto& there) {
+        std::vector<double>& numbers = static_cast<M*>(object)->values[name];
+        const auto add = [&](const base::Json& number, const std::string& at) {
+            numbers.push_back(reader.number(number, at, -kMost, std::numeric_limits<float>::max()));
+        };
+        if (one.is_array()) {
+            reader.each(one, there, add);
+        } else {
+            add(one, there);
+        }
+    });
 }
 
 base::Json schemaOfValues(const base::FieldTraits& /*traits*/) {
     base::Json number = base::schemaOfNumber(false, {.least = -kMost});
-    return mapOf({number, base::schemaOfList(number, {.leastElements = 1, .mostElements = 4})});
+    return mapOf(
+        base::schemaOfAny({number, base::schemaOfList(number, {.leastElements = 1, .mostElements = 4})}));
+}
+
+void readTextures(void* object, base::JsonReader& reader, const base::Json& json, const std::string& place,
+                  const base::FieldTraits& /*traits*/) {
+    reader.eachMember(json, place, [&](const std::string& name, const base::Json& one, const auto& there) {
+        static_cast<M*>(object)->textures[name] =
+            readShort<TextureDescription, &TextureDescription::file>(reader, one, there);
+    });
 }
 
 base::Json schemaOfTextures(const base::FieldTraits& /*traits*/) {
-    return mapOf({base::schemaOfText({}), base::schemaOf<ListedTexture>()});
+    return mapOf(schemaOfShort<TextureDescription>());
+}
+
+void readEdited(void* object, base::JsonReader& reader, const base::Json& json, const std::string& place,
+                const base::FieldTraits& /*traits*/) {
+    reader.each(json, place, [&](const base::Json& one, const auto& there) {
+        static_cast<M*>(object)->edited.push_back(
+            readShort<EditedParameter, &EditedParameter::parameter>(reader, one, there));
+    });
+}
+
+base::Json schemaOfEdited(const base::FieldTraits& /*traits*/) {
+    return base::schemaOfList(schemaOfShort<EditedParameter>(), {});
 }
 
 }  // namespace
 
-base::Fields fieldsOf(const ListedTexture*) {
-    using T = ListedTexture;
+base::Fields fieldsOf(const TextureDescription*) {
+    using T = TextureDescription;
     return {
         field<&T::file>(
             "file", "The image, relative to the list. Without it, a program gives the texture at run time.",
-            {.orNull = true, .optional = true}),
+            kMayBeMissing),
         field<&T::name>("name", "A name for programs that give it; that of the texture without it.",
-                        {.orNull = true, .optional = true}),
+                        kMayBeMissing),
         field<&T::texCoord>("texCoord", "The UV set.", {.most = 1, .optional = true}),
-        listed<&T::offset>("offset", "Of the UVs.", listTraits(2)),
-        listed<&T::scale>("scale", "Of the UVs.", listTraits(2)),
+        pair<&T::offset>("offset", "Of the UVs."),
+        pair<&T::scale>("scale", "Of the UVs."),
         field<&T::rotation>("rotation", "Of the UVs, radians.",
                             {.least = -kMost, .most = kMost, .optional = true}),
     };
 }
 
-base::Fields fieldsOf(const ListedMaterial*) {
-    using T = ListedMaterial;
+base::Fields fieldsOf(const EditedParameter*) {
+    using T = EditedParameter;
     return {
-        field<&T::name>("name", "Of the material, for people and programs."),
-        field<&T::model>("model",
+        field<&T::parameter>("parameter", "Its name."),
+        pair<&T::range>("range", "Its least and its greatest value; those of the declaration without it.")};
+}
+
+base::Fields fieldsOf(const MaterialDescription*) {
+    return {
+        field<&M::name>("name", "Of the material, for people and programs."),
+        field<&M::model>("model",
                          "Name of the declaration of its base; without it, glTF's metallic-roughness.",
-                         {.orNull = true, .optional = true}),
-        listed<&T::features>("features", "Names of features that it asks for and gives no value of.",
-                             {.optional = true}),
-        described(listed<&T::values>("values", "A number, or a list of them, by the names of parameters.",
-                                     {.optional = true}),
-                  schemaOfValues),
-        described(
-            listed<&T::textures>(
+                         kMayBeMissing),
+        field<&M::features>("features", "Names of features that it asks for and gives no value of.",
+                            kMayBeMissing),
+        readBy(base::output<&M::values>("values", "A number, or a list of them, by the names of parameters.",
+                                        kMayBeMissing),
+               readValues, schemaOfValues),
+        readBy(
+            base::output<&M::textures>(
                 "textures", "An image's file relative to the list, or an object, by the names of textures.",
-                {.optional = true}),
-            schemaOfTextures),
-        listed<&T::edited>("edited", "Names of parameters that a program may set to anything in their range.",
-                           {.optional = true}),
-        listed<&T::attributes>(
+                kMayBeMissing),
+            readTextures, schemaOfTextures),
+        readBy(base::output<&M::edited>(
+                   "edited",
+                   "Parameters that a program may set to anything in their range: the name of one, or an "
+                   "object.",
+                   kMayBeMissing),
+               readEdited, schemaOfEdited),
+        field<&M::attributes>(
             "attributes",
             "Attributes of vertices that all its surfaces have; NORMAL and TEXCOORD_0 without it.",
-            {.optional = true}),
-        field<&T::alphaMode>("alphaMode", "As in glTF.",
-                             {.optional = true, .names = {std::begin(kAlphaModes), std::end(kAlphaModes)}}),
-        field<&T::doubleSided>("doubleSided", "Whether both sides of its triangles are seen.",
+            kMayBeMissing),
+        field(
+            "alphaMode", "As in glTF.",
+            [](const M& it) { return std::string(kAlphaModes[static_cast<std::size_t>(it.alphaMode)]); },
+            [](M& it, const std::string& name) {
+                it.alphaMode = static_cast<materials::AlphaMode>(std::ranges::find(kAlphaModes, name) -
+                                                                 std::begin(kAlphaModes));
+            },
+            {.optional = true, .names = {std::begin(kAlphaModes), std::end(kAlphaModes)}}),
+        field<&M::doubleSided>("doubleSided", "Whether both sides of its triangles are seen.",
                                {.optional = true}),
-        field<&T::weight>("weight",
+        field<&M::weight>("weight",
                           "Share of the hits in pictures, relative to that of others; 1 without it.",
                           {.least = 1e-6, .most = 1e6, .optional = true}),
     };
 }
 
-base::Fields fieldsOf(const MaterialList*) {
-    return {field<&MaterialList::schema>("$schema", "This schema, for editors.",
-                                         {.orNull = true, .optional = true}),
-            base::constant(kMarker, "Version of the format.", 1),
-            field<&MaterialList::materials>("materials", "The materials.", {.leastElements = 1})};
+base::Fields fieldsOf(const MaterialSet*) {
+    base::Field schema{"$schema", "This schema, for editors.", {.orNull = true, .optional = true}};
+    schema.write = [](const void*) { return base::Json(nullptr); };
+    schema.read = [](void*, base::JsonReader&, const base::Json&, const std::string&,
+                     const base::FieldTraits&) {};
+    schema.schema = base::schemaOfText;
+    return {schema, base::constant(kMarker, "Version of the format.", 1),
+            field<&MaterialSet::materials>("materials", "The materials.", {.leastElements = 1})};
 }
-
-namespace {
-
-// ---- The sphere ----
-
-// Arrays of floats of one buffer, and their accessors.
-class Arrays {
-public:
-    // Adds a value of `channels` numbers for each vertex of a unit sphere. `value` takes the normal and the
-    // UV.
-    template <typename Value>
-    int add(const char* type, Value value) {
-        const std::size_t first = bytes_.size();
-        std::size_t count = 0;
-        for (std::uint32_t ring = 0; ring <= kRings; ++ring) {
-            const double theta = std::numbers::pi * ring / kRings;
-            for (std::uint32_t segment = 0; segment <= kSegments; ++segment, ++count) {
-                const double phi = 2.0 * std::numbers::pi * segment / kSegments;
-                const std::array<double, 3> normal{std::sin(theta) * std::cos(phi), std::cos(theta),
-                                                   -std::sin(theta) * std::sin(phi)};
-                for (const double number : value(normal, phi, theta)) {
-                    append(static_cast<float>(number));
-                }
-            }
-        }
-        return accessor(first, count, 5126, type);
-    }
-    int addIndices() {
-        const std::size_t first = bytes_.size();
-        std::size_t count = 0;
-        for (std::uint32_t ring = 0; ring < kRings; ++ring) {
-            for (std::uint32_t segment = 0; segment < kSegments; ++segment) {
-                const std::uint32_t a = ring * (kSegments + 1) + segment;
-                const std::uint32_t b = a + kSegments + 1;
-                // One of the two triangles at a pole has no area.
-                const std::array<std::uint32_t, 6> corners{a, b, a + 1, a + 1, b, b + 1};
-                for (std::size_t i = ring > 0 ? 0 : 3; i < (ring + 1 < kRings ? 6U : 3U); ++i, ++count) {
-                    append(corners[i]);
-                }
-            }
-        }
-        return accessor(first, count, 5125, "SCALAR");
-    }
-    // glTF wants the bounds of positions.
-    void setBounds(int accessor, const std::array<double, 3>& least, const std::array<double, 3>& most) {
-        accessors_[static_cast<std::size_t>(accessor)]["min"] = least;
-        accessors_[static_cast<std::size_t>(accessor)]["max"] = most;
-    }
-    Json accessors() const {
-        return accessors_;
-    }
-    Json views() const {
-        return views_;
-    }
-    base::Bytes take() {
-        return std::move(bytes_);
-    }
-
-private:
-    template <typename Number>
-    void append(Number number) {
-        const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&number);
-        bytes_.insert(bytes_.end(), bytes, bytes + sizeof number);
-    }
-    int accessor(std::size_t first, std::size_t count, int component, const char* type) {
-        views_.push_back({{"buffer", 0}, {"byteOffset", first}, {"byteLength", bytes_.size() - first}});
-        accessors_.push_back({{"bufferView", accessors_.size()},
-                              {"componentType", component},
-                              {"count", count},
-                              {"type", type}});
-        return static_cast<int>(accessors_.size()) - 1;
-    }
-
-    base::Bytes bytes_;
-    Json accessors_ = Json::array();
-    Json views_ = Json::array();
-};
-
-// ---- From names to places ----
-
-class Expander {
-public:
-    Expander(const MaterialModel& model, base::JsonReader& reader) : model_(model), reader_(reader) {}
-
-    ExpandedList expand(const MaterialList& list) {
-        addSphere();
-        double largest = 0.0;
-        for (const ListedMaterial& material : list.materials) {
-            largest = std::max(largest, std::sqrt(material.weight));
-        }
-        const auto columns =
-            static_cast<std::size_t>(std::ceil(std::sqrt(1.5 * static_cast<double>(list.materials.size()))));
-        for (std::size_t i = 0; i < list.materials.size() && reader_.ok(); ++i) {
-            addMaterial(list.materials[i], i);
-            const double radius = std::sqrt(list.materials[i].weight);
-            const double step = kGap * largest;
-            const std::size_t column = i % columns;
-            const std::size_t row = i / columns;
-            nodes_.push_back(
-                {{"name", list.materials[i].name},
-                 {"mesh", i},
-                 {"translation", {step * static_cast<double>(column), -step * static_cast<double>(row), 0.0}},
-                 {"scale", {radius, radius, radius}}});
-            shown_.push_back(i);
-        }
-        finish();
-        return std::move(expanded_);
-    }
-
-private:
-    using Place = std::string;
-
-    void fail(const Place& place, const std::string& message) {
-        reader_.fail(place, message);
-    }
-
-    void addSphere() {
-        using Normal = std::array<double, 3>;
-        sphere_["POSITION"] = arrays_.add("VEC3", [](const Normal& n, double, double) { return n; });
-        arrays_.setBounds(sphere_["POSITION"], {-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0});
-        sphere_["NORMAL"] = sphere_["POSITION"];
-        sphere_["TANGENT"] = arrays_.add("VEC4", [](const Normal&, double phi, double) {
-            return std::array{-std::sin(phi), 0.0, -std::cos(phi), 1.0};
-        });
-        sphere_["TEXCOORD_0"] = arrays_.add("VEC2", [](const Normal&, double phi, double theta) {
-            return std::array{phi / std::numbers::pi, theta / std::numbers::pi};
-        });
-        sphere_["TEXCOORD_1"] = sphere_["TEXCOORD_0"];
-        const auto half = [](const Normal& n, double, double) {
-            return std::array{0.5 + 0.5 * n[0], 0.5 + 0.5 * n[1], 0.5 + 0.5 * n[2], 1.0};
-        };
-        sphere_["COLOR_0"] = arrays_.add("VEC4", half);
-        const std::array<int, 4> ofChannels{
-            arrays_.add("SCALAR",
-                        [](const Normal& n, double, double) { return std::array{0.5 + 0.5 * n[1]}; }),
-            sphere_["TEXCOORD_0"], sphere_["POSITION"], sphere_["COLOR_0"]};
-        for (const materials::VertexAttribute& attribute : model_.attributes) {
-            sphere_[attribute.gltf] = ofChannels[static_cast<std::size_t>(attribute.channels - 1)];
-        }
-        indices_ = arrays_.addIndices();
-    }
-
-    std::vector<std::string> attributeNames() const {
-        std::vector<std::string> names;
-        for (const auto& [name, accessor] : sphere_) {
-            names.push_back(name);
-        }
-        return names;
-    }
-
-    void addMesh(const ListedMaterial& material, std::size_t index) {
-        Json attributes{{"POSITION", sphere_.at("POSITION")}};
-        const std::vector<std::string> usual{"NORMAL", "TEXCOORD_0"};
-        const std::vector<std::string>& names = material.attributes.empty() ? usual : material.attributes;
-        for (std::size_t i = 0; i < names.size(); ++i) {
-            const auto found = sphere_.find(names[i]);
-            if (found == sphere_.end()) {
-                fail(fmt::format("/materials/{}/attributes/{}", index, i),
-                     fmt::format("no material reads an attribute \"{}\"{}", names[i],
-                                 base::suggestion(names[i], attributeNames())));
-                return;
-            }
-            attributes[names[i]] = found->second;
-        }
-        meshes_.push_back(
-            {{"name", material.name},
-             {"primitives", {{{"attributes", attributes}, {"indices", indices_}, {"material", index}}}}});
-    }
-
-    // Returns the JSON of an object of a material, which exists from then on.
-    Json& objectOf(Json& material, int number) {
-        const materials::MaterialObject& object = model_.objects[static_cast<std::size_t>(number)];
-        if (object.name.empty()) {
-            return material;
-        }
-        if (!object.isExtension) {
-            return material[object.name].is_null() ? material[object.name] = Json::object()
-                                                   : material[object.name];
-        }
-        extensions_.insert(object.name);
-        Json& extension = material["extensions"][object.name];
-        return extension.is_null() ? extension = Json::object() : extension;
-    }
-
-    std::string pointerOf(std::size_t index, int number, const std::string& member) const {
-        const materials::MaterialObject& object = model_.objects[static_cast<std::size_t>(number)];
-        return fmt::format("/materials/{}{}{}{}/{}", index, object.isExtension ? "/extensions" : "",
-                           object.name.empty() ? "" : "/", object.name, member);
-    }
-
-    // Returns the name of the base in place of the object, or an empty text.
-    std::string replacedBy(int object) const {
-        const bool isOther = base_ >= 0 && model_.objects[static_cast<std::size_t>(base_)].replaces == object;
-        const bool isBaseOfOthers =
-            base_ != object && model_.objects[static_cast<std::size_t>(object)].replaces >= 0;
-        return isOther || isBaseOfOthers ? baseName_ : std::string();
-    }
-
-    void readModel(const ListedMaterial& listed, std::size_t index, Json& material) {
-        base_ = -1;
-        baseName_ = listed.model.empty() ? std::string(kCoreModel) : listed.model;
-        if (baseName_ == kCoreModel) {
-            return;
-        }
-        std::vector<std::string> names{std::string(kCoreModel)};
-        for (const materials::Feature& feature : model_.features) {
-            if (feature.stage == materials::Stage::Base && feature.object >= 0) {
-                names.push_back(feature.name);
-            }
-        }
-        const int found = model_.findFeature(baseName_);
-        if (found < 0 || std::ranges::find(names, baseName_) == names.end()) {
-            fail(fmt::format("/materials/{}/model", index),
-                 fmt::format("no declaration of a base is called \"{}\"{}", baseName_,
-                             base::suggestion(baseName_, names)));
-            return;
-        }
-        base_ = model_.features[static_cast<std::size_t>(found)].object;
-        objectOf(material, base_);
-    }
-
-    void readFeatures(const ListedMaterial& listed, std::size_t index, Json& material) {
-        for (std::size_t i = 0; i < listed.features.size(); ++i) {
-            const int found = model_.findFeature(listed.features[i]);
-            const int object = found < 0 ? -1 : model_.features[static_cast<std::size_t>(found)].object;
-            if (object < 0) {
-                std::vector<std::string> names;
-                for (const materials::Feature& feature : model_.features) {
-                    if (feature.object >= 0) {
-                        names.push_back(feature.name);
-                    }
-                }
-                fail(fmt::format("/materials/{}/features/{}", index, i),
-                     fmt::format("no feature that a material can ask for is called \"{}\"{}",
-                                 listed.features[i], base::suggestion(listed.features[i], names)));
-                return;
-            }
-            if (model_.objects[static_cast<std::size_t>(object)].replaces >= 0) {
-                fail(fmt::format("/materials/{}/features/{}", index, i),
-                     fmt::format("{} is a base: name it as the material's \"model\"", listed.features[i]));
-                return;
-            }
-            objectOf(material, object);
-        }
-    }
-
-    const materials::Parameter* parameterNamed(const std::string& name, const Place& place) {
-        const int found = model_.findParameter(name);
-        if (found < 0) {
-            std::vector<std::string> names;
-            for (const materials::Parameter& parameter : model_.parameters) {
-                names.push_back(parameter.name);
-            }
-            fail(place, fmt::format("no parameter is called \"{}\"{}", name, base::suggestion(name, names)));
-            return nullptr;
-        }
-        const materials::Parameter& parameter = model_.parameters[static_cast<std::size_t>(found)];
-        if (const std::string model = replacedBy(parameter.object); !model.empty()) {
-            fail(place, fmt::format("{} is of another base: the model of the material is {}", name, model));
-            return nullptr;
-        }
-        return &parameter;
-    }
-
-    void readTextures(const ListedMaterial& listed, std::size_t index, Json& material) {
-        for (const auto& [name, json] : listed.textures) {
-            const Place place = fmt::format("/materials/{}/textures/{}", index, name);
-            const auto texture = json.is_string() ? ListedTexture{.file = json.get<std::string>()}
-                                                  : base::readAs<ListedTexture>(reader_, json, place);
-            if (json.is_object()) {
-                base::refuseOthers(base::fields<ListedTexture>(), reader_, json, place);
-            }
-            if (!reader_.ok()) {
-                return;
-            }
-            std::vector<std::string> names;
-            const materials::MaterialTexture::Place* found = nullptr;
-            for (const materials::MaterialTexture& slot : model_.textures) {
-                for (const materials::MaterialTexture::Place& one : slot.places) {
-                    if (replacedBy(one.object).empty()) {
-                        names.push_back(one.member);
-                        found = one.member == name ? &one : found;
-                    }
-                }
-            }
-            if (found == nullptr) {
-                fail(place, fmt::format("no texture of such a material is called \"{}\"{}", name,
-                                        base::suggestion(name, names)));
-                return;
-            }
-            objectOf(material, found->object)[found->member] = textureInfo(texture, name, place);
-            const std::string pointer = pointerOf(index, found->object, found->member);
-            expanded_.places[pointer] = place;
-        }
-    }
-
-    Json textureInfo(const ListedTexture& texture, const std::string& name, const Place& place) {
-        Json info{{"index", textures_.size()}, {"texCoord", texture.texCoord}};
-        Json transform = Json::object();
-        for (const auto& [member, values] :
-             {std::pair{"offset", &texture.offset}, {"scale", &texture.scale}}) {
-            if (!values->empty()) {
-                transform[member] = *values;
-            }
-            if (values->size() == 1) {
-                fail(fmt::format("{}/{}", place, member), "has 1 number, not 2");
-            }
-        }
-        if (texture.rotation != 0.0) {
-            transform["rotation"] = texture.rotation;
-        }
-        if (!transform.empty()) {
-            info["extensions"]["KHR_texture_transform"] = transform;
-            extensions_.insert("KHR_texture_transform");
-        }
-        // Every texture has an image of its own if its texels come at run time, since others may be given to
-        // each.
-        const auto known = texture.file.empty() ? images_.end() : images_.find(texture.file);
-        std::size_t image = imageJson_.size();
-        if (known != images_.end()) {
-            image = known->second;
-        } else {
-            expanded_.places[fmt::format("/images/{}", image)] = place;
-            if (texture.file.empty()) {
-                imageJson_.push_back(
-                    {{"name", texture.name.empty() ? name : texture.name}, {kAtRunTime, true}});
-            } else {
-                images_[texture.file] = image;
-                imageJson_.push_back({{"uri", texture.file}});
-            }
-        }
-        textures_.push_back({{"source", image}});
-        return info;
-    }
-
-    bool isTexture(int object, const std::string& member) const {
-        return std::ranges::any_of(model_.textures, [&](const materials::MaterialTexture& texture) {
-            return std::ranges::any_of(texture.places, [&](const materials::MaterialTexture::Place& place) {
-                return place.object == object && place.member == member;
-            });
-        });
-    }
-
-    void readValues(const ListedMaterial& listed, std::size_t index, Json& material) {
-        for (const auto& [name, json] : listed.values) {
-            const Place place = fmt::format("/materials/{}/values/{}", index, name);
-            const materials::Parameter* const parameter = parameterNamed(name, place);
-            if (parameter == nullptr) {
-                return;
-            }
-            const auto count = static_cast<std::size_t>(parameter->channels);
-            const bool isList = json.is_array();
-            const bool fits = isList ? json.size() == count : count == 1;
-            if (!fits || !std::ranges::all_of(isList ? json : base::Json::array({json}),
-                                              [](const base::Json& one) { return one.is_number(); })) {
-                fail(place,
-                     count == 1 ? "must be a number" : fmt::format("must be a list of {} numbers", count));
-                return;
-            }
-            Json* target = &objectOf(material, parameter->object);
-            expanded_.places[pointerOf(index, parameter->object, parameter->place)] = place;
-            std::string_view rest = parameter->place;
-            for (std::size_t slash = rest.find('/'); slash != std::string_view::npos;
-                 slash = rest.find('/')) {
-                const std::string member(rest.substr(0, slash));
-                if (isTexture(parameter->object, member) && !target->contains(member)) {
-                    fail(place, fmt::format("changes nothing without the texture {}", member));
-                    return;
-                }
-                target = &(*target)[member];
-                rest.remove_prefix(slash + 1);
-            }
-            Json value = Json::parse(json.dump());
-            (*target)[std::string(rest)] = isList && count == 1 ? value[0] : std::move(value);
-        }
-        for (std::size_t i = 0; i < listed.edited.size(); ++i) {
-            const materials::Parameter* const parameter =
-                parameterNamed(listed.edited[i], fmt::format("/materials/{}/edited/{}", index, i));
-            if (parameter == nullptr) {
-                return;
-            }
-            objectOf(material, parameter->object);
-            expanded_.edited.emplace_back(static_cast<int>(index),
-                                          static_cast<int>(parameter - model_.parameters.data()));
-        }
-    }
-
-    void addMaterial(const ListedMaterial& listed, std::size_t index) {
-        Json material{
-            {"name", listed.name}, {"alphaMode", listed.alphaMode}, {"doubleSided", listed.doubleSided}};
-        readModel(listed, index, material);
-        readFeatures(listed, index, material);
-        readTextures(listed, index, material);
-        readValues(listed, index, material);
-        addMesh(listed, index);
-        materials_.push_back(std::move(material));
-        for (const char* const made : {"/meshes/{}/primitives/0", "/meshes/{}", "/nodes/{}"}) {
-            expanded_.places[fmt::format(fmt::runtime(made), index)] = fmt::format("/materials/{}", index);
-        }
-    }
-
-    // The engine brings the lights; one here stands for them in the choice of effects, and in pictures.
-    void addLight() {
-        constexpr const char* kLights = "KHR_lights_punctual";
-        extensions_.insert(kLights);
-        expanded_.document["extensions"][kLights]["lights"] = {{{"type", "directional"}, {"intensity", 3.0}}};
-        shown_.push_back(nodes_.size());
-        nodes_.push_back({{"name", "light"},
-                          {"rotation", {-0.5, 0.2, 0.1, std::sqrt(0.7)}},
-                          {"extensions", {{kLights, {{"light", 0}}}}}});
-    }
-
-    void finish() {
-        addLight();
-        Json& document = expanded_.document;
-        document.update({{"asset", {{"version", "2.0"}, {"generator", "glint"}}},
-                         {"extensionsUsed", Json(extensions_)},
-                         {"scene", 0},
-                         {"scenes", {{{"nodes", shown_}}}},
-                         {"nodes", nodes_},
-                         {"meshes", meshes_},
-                         {"materials", materials_},
-                         {"accessors", arrays_.accessors()},
-                         {"bufferViews", arrays_.views()}});
-        if (!textures_.empty()) {
-            document["textures"] = textures_;
-            document["images"] = imageJson_;
-        }
-        expanded_.buffer = arrays_.take();
-        document["buffers"] = {{{"byteLength", expanded_.buffer.size()}}};
-    }
-
-    const MaterialModel& model_;
-    base::JsonReader& reader_;
-    ExpandedList expanded_;
-    Arrays arrays_;
-    std::map<std::string, int> sphere_;  // accessors by attribute
-    int indices_ = 0;
-    int base_ = -1;  // the object of the material's model, or -1
-    std::string baseName_;
-    std::set<std::string> extensions_;
-    std::map<std::string, std::size_t> images_;  // by file
-    Json imageJson_ = Json::array();
-    Json textures_ = Json::array();
-    Json materials_ = Json::array();
-    Json meshes_ = Json::array();
-    Json nodes_ = Json::array();
-    Json shown_ = Json::array();
-};
-
-}  // namespace
 
 bool isMaterialList(const Json& json) {
     return json.is_object() && json.contains(kMarker);
 }
 
-Result<ExpandedList> expandMaterialList(ByteView text, const std::filesystem::path& path,
-                                        const MaterialModel& model) {
-    base::JsonReader reader(path, "material-list", "docs/material_lists.md describes the file");
+base::JsonReader materialListReader(const std::filesystem::path& path) {
+    return {path, "material-list", "docs/material_lists.md describes materials without a scene"};
+}
+
+Result<MaterialSet> readMaterialList(ByteView text, const std::filesystem::path& path) {
+    base::JsonReader reader = materialListReader(path);
     const base::Json json = base::Json::parse(text.begin(), text.end(), nullptr, false);
-    const auto list = base::readAs<MaterialList>(reader, json);
-    ExpandedList expanded;
+    auto set = base::readAs<MaterialSet>(reader, json);
+    set.path = path;
     if (reader.ok()) {
-        base::refuseOthers(base::fields<MaterialList>(), reader, json, "");
-        for (std::size_t i = 0; i < list.materials.size(); ++i) {
-            base::refuseOthers(base::fields<ListedMaterial>(), reader, json["materials"][i],
+        base::refuseOthers(base::fields<MaterialSet>(), reader, json, "");
+        for (std::size_t i = 0; i < set.materials.size(); ++i) {
+            base::refuseOthers(base::fields<MaterialDescription>(), reader, json["materials"][i],
                                fmt::format("/materials/{}", i));
         }
     }
-    if (reader.ok()) {
-        expanded = Expander(model, reader).expand(list);
-    }
-    if (!reader.ok()) {
-        return reader.error();
-    }
-    return expanded;
+    return reader.ok() ? Result<MaterialSet>(std::move(set)) : reader.error();
+}
+
+Status checkMaterialSet(const MaterialSet& set) {
+    base::JsonReader reader = materialListReader(set.path);
+    base::readAs<MaterialSet>(reader, base::jsonOf(set));
+    return reader.ok() ? okStatus() : Status(reader.error());
 }
 
 }  // namespace glint::gltf

@@ -95,6 +95,7 @@ std::vector<Direction> adverseViews() {
         views.push_back(tiltedDirection(angle, 0.7));
     }
     views.push_back(tiltedDirection(kGrazing - 1e-4, std::numbers::pi));
+    views.push_back(tiltedDirection(std::numbers::pi - 1.0, 0.7));
     return views;
 }
 
@@ -185,14 +186,19 @@ struct SeenMaterial {
     Direction surfaceView{};  // in the frame of the surface
 };
 
-// Every combination from two views: one from the side, and one that changes from normal to grazing incidence.
+// Every combination from two views: one from the side, and one that changes from normal to grazing incidence;
+// and from behind where it has two sides.
 Result<std::vector<SeenMaterial>> seenMaterials(const FeatureOnDevice& on) {
     const std::vector<Direction> views{tiltedDirection(0.6, 0.4), tiltedDirection(0.0, 0.0),
-                                       tiltedDirection(1.2, 2.0), tiltedDirection(1.52, 4.0)};
+                                       tiltedDirection(1.2, 2.0), tiltedDirection(1.52, 4.0),
+                                       tiltedDirection(std::numbers::pi - 0.6, 0.4)};
     GLINT_TRY(const auto found, surfaceViews(on, views));
     std::vector<SeenMaterial> seen;
     for (std::size_t i = 0; i < on.feature.materials.size(); ++i) {
-        for (const std::size_t view : {std::size_t{0}, 1 + i % (views.size() - 1)}) {
+        for (const std::size_t view : {std::size_t{0}, 1 + i % 3, views.size() - 1}) {
+            if (view == views.size() - 1 && !on.feature.materials[i].isTwoSided) {
+                continue;
+            }
             seen.push_back({&on.feature.materials[i], views[view], found[i * views.size() + view]});
         }
     }
@@ -243,7 +249,7 @@ Result<std::vector<double>> baseEnergies(const FeatureOnDevice& on, const std::v
     std::vector<CheckedMaterial> bases(seen.size());
     for (std::size_t i = 0; i < seen.size(); ++i) {
         const int base = seen[i].material->base;
-        bases[i] = {on.scene.bases[static_cast<std::size_t>(base)], base, {}};
+        bases[i] = {on.scene.bases[static_cast<std::size_t>(base)], base, true, {}};
     }
     const FeatureOnDevice whole{on.evaluator, on.scene, on.feature, 0, on.samples};
     const std::vector<std::vector<Direction>> none(seen.size());
@@ -279,15 +285,14 @@ CheckOutcome outcomeOf(MaterialCheck check, double limit) {
 
 // Judges one combination and view by each of the checks.
 void judgeIntegrals(const LobeIntegrals& integrals, const compiler::FeatureKernelOutput& shares,
-                    double baseEnergy, std::uint32_t samples, const CheckPlace& place, bool isLobe,
+                    double baseEnergy, const CheckPlace& place, const FeatureOnDevice& on,
                     IntegralOutcomes& outcomes) {
-    bool isNormalised = true;
-    if (isLobe) {
+    if (on.lobe != 0 || on.feature.isBase()) {
         const double total = integrals.density + integrals.lost;
-        const double noise = 4.0 * std::sqrt(integrals.lost * (1.0 - integrals.lost) / samples);
+        const double noise = 4.0 * std::sqrt(integrals.lost * (1.0 - integrals.lost) / on.samples);
         // A distance that noise and the quadrature's own error explain is no fault.
         const double distance = std::max(std::abs(total - 1.0) - noise - integrals.densityError, 0.0);
-        isNormalised = distance <= kDensityLimit;
+        const bool isNormalised = distance <= kDensityLimit;
         keepWorst(outcomes.density, distance, distance > outcomes.density.worst, !isNormalised,
                   fmt::format("integrates to {:.4f} and {:.4f} of the samples have no direction; the sum "
                               "should be 1",
@@ -304,6 +309,8 @@ void judgeIntegrals(const LobeIntegrals& integrals, const compiler::FeatureKerne
         } else if (outcomes.samples.state == CheckState::Absent) {
             outcomes.samples.state = CheckState::Unsure;
         }
+    }
+    if (on.lobe != 0) {
         double off = 0.0;
         for (std::size_t channel = 0; channel < 3; ++channel) {
             off = std::max(
@@ -368,7 +375,7 @@ Result<CheckOutcome> checkRanges(const FeatureOnDevice& on) {
     std::vector<CheckPlace> places;
     for (std::size_t i = 0; i < on.feature.materials.size(); ++i) {
         const CheckedMaterial& material = on.feature.materials[i];
-        for (std::size_t k = 0; k < views.size(); ++k) {
+        for (std::size_t k = 0; k + (material.isTwoSided ? 0 : 1) < views.size(); ++k) {
             const Direction& seen = surfaceView[i * views.size() + k];
             for (const Direction& light : adverseLights(seen)) {
                 compiler::FeatureKernelInput input = inputOf(on, material, views[k], light);
@@ -464,7 +471,6 @@ Result<IntegralOutcomes> checkIntegrals(const FeatureOnDevice& on) {
     outcomes.samples.worst = 1.0;
     GLINT_TRY(const auto seen, seenMaterials(on));
     GLINT_TRY(const auto samples, sampleAll(on, seen));
-    const bool isLobe = on.lobe != 0;
     const Result<std::vector<LobeIntegrals>> integrals =
         integrateLobes(samples, [&](std::span<const LobeQuery> queries) -> Result<std::vector<LobeValues>> {
             std::vector<compiler::FeatureKernelInput> inputs;
@@ -492,16 +498,15 @@ Result<IntegralOutcomes> checkIntegrals(const FeatureOnDevice& on) {
     GLINT_TRY(const auto bases, baseEnergies(on, seen));
     std::uint64_t evaluations = 0;
     for (std::size_t i = 0; i < seen.size(); ++i) {
-        judgeIntegrals((*integrals)[i], shares[i], bases[i], on.samples,
-                       placeOf(*seen[i].material, seen[i].surfaceView, nullptr), isLobe, outcomes);
+        judgeIntegrals((*integrals)[i], shares[i], bases[i],
+                       placeOf(*seen[i].material, seen[i].surfaceView, nullptr), on, outcomes);
         evaluations += (*integrals)[i].evaluations;
     }
     outcomes.energy.evaluations = evaluations;
-    if (isLobe) {
-        outcomes.density.evaluations = evaluations;
-        outcomes.albedo.evaluations = evaluations;
-        outcomes.samples.evaluations = seen.size() * on.samples;
+    for (CheckOutcome* const outcome : {&outcomes.density, &outcomes.albedo}) {
+        outcome->evaluations = outcome->place ? evaluations : 0;
     }
+    outcomes.samples.evaluations = outcomes.density.place ? seen.size() * on.samples : 0;
     return outcomes;
 }
 

@@ -24,12 +24,18 @@ namespace glint::measure {
 struct CheckedMaterial {
     std::uint32_t geometry = 0;  // number of its square, and of its material
     int base = 0;                // index into kCheckedBases
+    bool isTwoSided = false;     // It is seen from behind, too.
     CheckPlace place;            // parameters and base
 };
 
 struct CheckedFeature {
     const materials::FeatureCode* code = nullptr;
     std::vector<CheckedMaterial> materials;
+
+    // Glint's own base, whose samples are checked like those of a lobe.
+    bool isBase() const {
+        return !code->isOfPack;
+    }
 };
 
 // The materials below the features. Their colour is white, so that a gain of energy is visible.
@@ -48,8 +54,9 @@ struct CheckedScene {
 };
 
 // Makes a square with normals, tangents, UVs and all declared attributes for up to `combinations`
-// combinations of the parameters of each feature of a pack. Combinations for which the feature changes
-// nothing are left out. Error "check-unreachable" if none is left.
+// combinations of the parameters of each feature of a pack, and for some of Glint's own base. Every third one
+// is double-sided and blended, and has vertex colours and textures that read the second UV set. Combinations
+// for which the feature changes nothing are left out. Error "check-unreachable" if none is left.
 Result<CheckedScene> makeCheckedScene(const materials::MaterialModel& model, std::uint32_t combinations);
 
 // The values at which a parameter is checked: a usual one, the least and the greatest.

@@ -26,15 +26,42 @@ std::uint32_t scrambled(std::uint32_t number) {
     return number ^ number >> 16U;
 }
 
-// The usual values, then each parameter at its ends, then corners of all ranges.
-std::vector<Choice> choicesOf(const std::vector<std::vector<float>>& values, std::uint32_t most) {
+// The numbers of a parameter: one value for all channels, first the usual one, then the ends; then each
+// channel at the greatest with the others at the least.
+struct CheckedNumbers {
+    std::vector<std::array<float, 4>> of;
+    std::size_t ends = 0;  // those before the channels
+};
+
+CheckedNumbers numbersOf(const materials::Parameter& parameter) {
+    CheckedNumbers numbers;
+    const std::vector<float> values = checkedValues(parameter);
+    for (const float value : values) {
+        numbers.of.push_back({value, value, value, value});
+    }
+    numbers.ends = values.size();
+    for (int channel = 0; parameter.channels > 1 && channel < parameter.channels; ++channel) {
+        const float least = *std::ranges::min_element(values);
+        numbers.of.push_back({least, least, least, least});
+        numbers.of.back()[static_cast<std::size_t>(channel)] = *std::ranges::max_element(values);
+    }
+    return numbers;
+}
+
+// The usual values, then each parameter at its ends and each of its channels by itself, then corners of all
+// ranges.
+std::vector<Choice> choicesOf(const std::vector<CheckedNumbers>& values, std::uint32_t most) {
     const std::size_t count = values.size();
     std::vector<Choice> choices{Choice(count, 0)};
-    for (std::size_t parameter = 0; parameter < count; ++parameter) {
-        for (std::size_t value = 1; value < values[parameter].size(); ++value) {
-            Choice choice(count, 0);
-            choice[parameter] = value;
-            choices.push_back(std::move(choice));
+    for (const bool channels : {false, true}) {
+        for (std::size_t parameter = 0; parameter < count; ++parameter) {
+            const CheckedNumbers& numbers = values[parameter];
+            const std::size_t end = channels ? numbers.of.size() : numbers.ends;
+            for (std::size_t value = channels ? numbers.ends : 1; value < end; ++value) {
+                Choice choice(count, 0);
+                choice[parameter] = value;
+                choices.push_back(std::move(choice));
+            }
         }
     }
     for (std::uint32_t corner = 0; corner < most; ++corner) {
@@ -42,7 +69,7 @@ std::vector<Choice> choicesOf(const std::vector<std::vector<float>>& values, std
         const std::uint32_t bits = corner == 0 ? ~0U : corner == 1 ? 0U : scrambled(corner);
         Choice choice;
         for (std::size_t parameter = 0; parameter < count; ++parameter) {
-            const std::size_t ends = values[parameter].size() - 1;
+            const std::size_t ends = values[parameter].ends - 1;
             choice.push_back(ends == 0 ? 0 : 1 + (bits >> parameter % 32 & 1U) % ends);
         }
         choices.push_back(std::move(choice));
@@ -53,7 +80,7 @@ std::vector<Choice> choicesOf(const std::vector<std::vector<float>>& values, std
 // The parts of one feature's combinations.
 struct Ingredients {
     std::vector<const materials::Parameter*> parameters;
-    std::vector<std::vector<float>> values;
+    std::vector<CheckedNumbers> values;
     std::vector<const materials::MaterialTexture*> textures;
 };
 
@@ -62,7 +89,7 @@ Ingredients ingredientsOf(const materials::MaterialModel& model, const materials
     for (const materials::Parameter& parameter : model.parameters) {
         if (parameter.feature == code.feature && code.feature >= 0 && parameter.aliasOf < 0) {
             found.parameters.push_back(&parameter);
-            found.values.push_back(checkedValues(parameter));
+            found.values.push_back(numbersOf(parameter));
         }
     }
     for (const materials::MaterialTexture& texture : model.textures) {
@@ -103,8 +130,12 @@ void addCheckedTexture(gltf::Scene& scene) {
 }
 
 // A square of two metres in the plane z = 0, whose front faces +Z.
-gltf::Primitive squareOf(int material, const materials::MaterialModel& model) {
+gltf::Primitive squareOf(int material, const materials::MaterialModel& model, bool isRich) {
     gltf::Primitive square;
+    if (isRich) {
+        square.texCoords1 = {{0.25F, 0.5F}, {0.75F, 0.5F}, {0.75F, 0.25F}, {0.25F, 0.25F}};
+        square.colors = {{1, 1, 1, 1}, {0.5F, 1, 1, 1}, {1, 0.5F, 1, 1}, {1, 1, 0.5F, 1}};
+    }
     for (const materials::VertexAttribute& attribute : model.attributes) {
         if (std::ranges::find(square.attributes, attribute.gltf, &gltf::VertexValues::name) !=
             square.attributes.end()) {
@@ -127,10 +158,10 @@ gltf::Primitive squareOf(int material, const materials::MaterialModel& model) {
     return square;
 }
 
-std::uint32_t addSquare(gltf::Scene& scene, const materials::Material& material) {
+std::uint32_t addSquare(gltf::Scene& scene, const materials::Material& material, bool isRich = false) {
     const auto number = static_cast<int>(scene.materials.size());
     scene.materials.push_back(material);
-    scene.meshes.push_back({{}, {squareOf(number, material.model())}});
+    scene.meshes.push_back({{}, {squareOf(number, material.model(), isRich)}});
     gltf::Node node;
     node.mesh = number;
     for (const std::size_t diagonal : {0U, 5U, 10U, 15U}) {
@@ -141,11 +172,13 @@ std::uint32_t addSquare(gltf::Scene& scene, const materials::Material& material)
 }
 
 // Returns whether the square's key has the feature.
-bool hasFeature(const materials::Material& material, int feature) {
+bool hasFeature(const materials::Material& material, int feature, bool isRich) {
     materials::PrimitiveInputs inputs;
     inputs.hasNormals = true;
     inputs.hasTangents = true;
     inputs.hasTexCoords0 = true;
+    inputs.hasTexCoords1 = isRich;
+    inputs.colors = isRich ? materials::ColorContent::Varying : inputs.colors;
     inputs.attributes = ~std::uint64_t{0};
     return feature < 0 || (compiler::makeKey(material, inputs, {}) &
                            material.model().features[static_cast<std::size_t>(feature)].mask()) != 0;
@@ -158,17 +191,20 @@ struct Combined {
 };
 
 Combined combine(const materials::MaterialModel& model, const materials::FeatureCode& code,
-                 const Ingredients& ingredients, const Choice& choice, int base, bool textured) {
+                 const Ingredients& ingredients, const Choice& choice, int base, bool textured, bool isRich) {
     Combined made{baseMaterial(model, base), {}};
-    made.material.alphaMode =
-        code.opacity.empty() ? materials::AlphaMode::Opaque : materials::AlphaMode::Mask;
-    made.place.base = kCheckedBases[base].name;
+    made.material.alphaMode = isRich                 ? materials::AlphaMode::Blend
+                              : code.opacity.empty() ? materials::AlphaMode::Opaque
+                                                     : materials::AlphaMode::Mask;
+    made.material.doubleSided = isRich;
+    made.place.base = fmt::format("{}{}{}", isRich ? "double-sided, blended " : "", kCheckedBases[base].name,
+                                  isRich ? " with vertex colours and UV 1" : "");
     for (std::size_t i = 0; i < choice.size(); ++i) {
         const materials::Parameter& parameter = *ingredients.parameters[i];
-        const float value = ingredients.values[i][choice[i]];
-        made.material[parameter.name] = value;
-        made.place.parameters.emplace_back(
-            parameter.name, std::vector<float>(static_cast<std::size_t>(parameter.channels), value));
+        const std::array<float, 4>& numbers = ingredients.values[i].of[choice[i]];
+        const std::vector<float> values(numbers.begin(), numbers.begin() + parameter.channels);
+        made.material[parameter.name] = std::span(values);
+        made.place.parameters.emplace_back(parameter.name, values);
     }
     const int object = code.feature < 0 ? -1 : model.features[static_cast<std::size_t>(code.feature)].object;
     if (object >= 0) {
@@ -177,6 +213,7 @@ Combined combine(const materials::MaterialModel& model, const materials::Feature
     if (textured) {
         for (const materials::MaterialTexture* const texture : ingredients.textures) {
             made.material.texture(texture->name).texture = 0;
+            made.material.texture(texture->name).texCoord = isRich ? 1 : 0;
         }
         made.place.parameters.emplace_back("textures", std::vector<float>{1.0F});
     }
@@ -205,12 +242,33 @@ std::vector<CheckedMaterial> addCombinations(const materials::MaterialModel& mod
         for (int attempt = 0; attempt < 2 * bases && !found; ++attempt) {
             const int base = (firstBase + attempt) % bases;
             const bool textured = firstTextured != (attempt >= bases && !ingredients.textures.empty());
-            Combined combined = combine(model, code, ingredients, choice, base, textured);
-            found = hasFeature(combined.material, code.feature);
+            const bool isRich = attempt == 0 && made.size() % 3 == 1;
+            Combined combined = combine(model, code, ingredients, choice, base, textured, isRich);
+            found = hasFeature(combined.material, code.feature, isRich);
             if (found) {
-                made.push_back({addSquare(scene, combined.material), base, std::move(combined.place)});
+                made.push_back(
+                    {addSquare(scene, combined.material, isRich), base, isRich, std::move(combined.place)});
             }
         }
+    }
+    return made;
+}
+
+// Glint's own base, in some of its shapes.
+std::vector<CheckedMaterial> addBases(const materials::MaterialModel& model,
+                                      const materials::FeatureCode& code, std::uint32_t most,
+                                      gltf::Scene& scene) {
+    constexpr std::array<std::array<float, 2>, 4> kShapes{
+        {{0.0F, 0.3F}, {0.5F, 0.6F}, {1.0F, 0.2F}, {0.0F, 1.0F}}};
+    std::vector<CheckedMaterial> made;
+    for (const auto& [metallic, roughness] :
+         std::span(kShapes).first(std::min<std::size_t>(most, kShapes.size()))) {
+        const bool isRich = made.size() % 3 == 1;
+        Combined combined = combine(model, code, {}, {}, 0, false, isRich);
+        combined.material["metallicFactor"] = metallic;
+        combined.material["roughnessFactor"] = roughness;
+        combined.place.parameters = {{"metallicFactor", {metallic}}, {"roughnessFactor", {roughness}}};
+        made.push_back({addSquare(scene, combined.material, isRich), 0, isRich, std::move(combined.place)});
     }
     return made;
 }
@@ -246,7 +304,13 @@ Result<CheckedScene> makeCheckedScene(const materials::MaterialModel& model, std
     made.scene.path = "check-materials";
     addCheckedTexture(made.scene);
     for (int base = 0; base < static_cast<int>(std::size(kCheckedBases)); ++base) {
-        made.bases.push_back(addSquare(made.scene, baseMaterial(model, base)));
+        materials::Material material = baseMaterial(model, base);
+        material.doubleSided = true;  // It is also seen from behind.
+        made.bases.push_back(addSquare(made.scene, material));
+    }
+    const auto base = std::ranges::find(model.code, "metallicRoughness", &materials::FeatureCode::name);
+    if (base != model.code.end()) {
+        made.features.push_back({&*base, addBases(model, *base, combinations, made.scene)});
     }
     for (const materials::FeatureCode& code : model.code) {
         if (!code.isOfPack) {

@@ -40,6 +40,7 @@ enum class CheckState : std::uint8_t {
     Absent,   // the feature has no such function
     Unasked,  // the declaration does not claim it
     Unsure,   // it depends on another check that failed
+    Waived,   // it failed, and the declaration says why it may
 };
 std::string_view nameOf(CheckState state);  // "passed"
 

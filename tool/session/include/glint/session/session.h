@@ -45,8 +45,7 @@ enum class ImageReading : std::uint8_t {
     Files,  // for loadTextures()
 };
 
-// Returns how a scene is read, for a package that is there already if `package` is not null. `texels` keeps
-// what was found in images; null: nothing is kept. Errors "effect-unknown" and those of loadMaterialModel().
+// Returns compiler::importOptions(), for a package that is there already if `package` is not null.
 Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, ImageReading images,
                                           base::Memo* texels, const Package* package = nullptr);
 

@@ -1,0 +1,169 @@
+// glint_material_sets: measures how long a program waits for the package of its materials: when it compiles
+// them first, and when it edits or adds one.
+#include "base/clock.h"
+#include "emit/material_compiler.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <ctime>
+#include <exception>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace glint {
+
+namespace {
+
+constexpr std::size_t kMostCases = 256;
+
+struct Arguments {
+    std::size_t materials = 200;
+    std::size_t cases = 20;
+    std::string strategy = "visibility";
+    std::string cache;
+    int rounds = 9;
+    int jobs = 0;
+    bool fallback = false;
+    bool steps = false;
+};
+
+// Returns the material of a case: eight switches, which are mixed so that any few cases have each of them.
+gltf::MaterialDescription materialOf(std::size_t number, std::size_t which) {
+    gltf::MaterialDescription made;
+    made.name = fmt::format("material {}", number);
+    made.values["roughnessFactor"] = {0.2 + 0.7 * static_cast<double>(number % 101) / 100.0};
+    made.attributes = {"NORMAL", "TANGENT", "TEXCOORD_0"};
+    const std::size_t switches = which * 37 % kMostCases;
+    const auto has = [&](unsigned bit) { return (switches >> bit & 1U) != 0; };
+    const char* const textures[] = {"baseColorTexture", "metallicRoughnessTexture", "normalTexture",
+                                    "emissiveTexture"};
+    for (unsigned bit = 0; bit < std::size(textures); ++bit) {
+        if (has(bit)) {
+            made.textures[textures[bit]] = {};
+        }
+    }
+    if (has(3)) {
+        made.values["emissiveFactor"] = {1.0, 1.0, 1.0};
+    }
+    const char* const lobes[] = {"clearcoatFactor", "iridescenceFactor", "anisotropyStrength"};
+    for (unsigned bit = 0; bit < std::size(lobes); ++bit) {
+        if (has(bit + 4)) {
+            made.values[lobes[bit]] = {0.75};
+        }
+    }
+    if (has(7)) {
+        made.values["sheenColorFactor"] = {0.5, 0.25, 0.125};
+    }
+    return made;
+}
+
+// Milliseconds of a call of MaterialCompiler::compile().
+struct Times {
+    double read = 0.0;     // checks, the scene and what no other part counts
+    double plan = 0.0;     // keys, cases and GLSL
+    double compile = 0.0;  // SPIR-V
+    double tables = 0.0;
+    double whole = 0.0;
+    double processor = 0.0;
+    std::size_t cases = 0;
+    std::size_t modules = 0;  // that were compiled
+};
+
+Result<Times> measure(compiler::MaterialCompiler& compiler, const gltf::MaterialSet& set) {
+    const std::clock_t clock = std::clock();
+    const base::Clock::time_point start = base::Clock::now();
+    GLINT_TRY(const auto compiled, compiler.compile(set));
+    Times times;
+    times.whole = base::millisecondsSince(start);
+    times.processor = 1e3 * static_cast<double>(std::clock() - clock) / CLOCKS_PER_SEC;
+    times.plan = compiled.package.planMs;
+    times.compile = compiled.package.compileMs;
+    times.tables = compiled.package.tablesMs;
+    times.read = times.whole - times.plan - times.compile - times.tables;
+    times.cases = compiled.package.plan.cases.size();
+    times.modules = static_cast<std::size_t>(std::ranges::count_if(
+        compiled.package.modules, [](const compiler::CompiledModule& module) { return module.compiled; }));
+    return times;
+}
+
+void printRow(const char* step, std::vector<Times> rows) {
+    std::ranges::sort(rows, {}, &Times::whole);
+    const Times& median = rows[rows.size() / 2];
+    fmt::print("| {} | {} | {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.0f} ({:.0f} to {:.0f}) | {:.0f} |\n",
+               step, median.cases, median.modules, median.read, median.plan, median.compile, median.tables,
+               median.whole, rows.front().whole, rows.back().whole, median.processor);
+}
+
+Status measure(const Arguments& arguments) {
+    compiler::Settings settings;
+    settings.compile.strategies = package::findStrategy(arguments.strategy)->strategy;
+    settings.compile.plan.merge = compiler::MergePolicy::None;
+    settings.compile.plan.fallback = arguments.fallback;
+    settings.compile.passes = arguments.steps ? package::Passes::Steps : package::Passes::Frame;
+    settings.compile.jobs = arguments.jobs;
+    gltf::MaterialSet set;
+    for (std::size_t i = 0; i < arguments.materials; ++i) {
+        set.materials.push_back(materialOf(i, i % arguments.cases));
+    }
+    GLINT_TRY(auto compiler, compiler::MaterialCompiler::create(settings, arguments.cache));
+    GLINT_TRY(const auto cold, measure(compiler, set));
+    std::map<std::string, std::vector<Times>> rows;
+    std::size_t cases = arguments.cases;
+    for (int round = 0; round < arguments.rounds && cases < kMostCases; ++round) {
+        GLINT_TRY(rows["same"].emplace_back(), measure(compiler, set));
+        set.materials.front().values["roughnessFactor"] = {0.3 + 0.01 * round};
+        GLINT_TRY(rows["value"].emplace_back(), measure(compiler, set));
+        set.materials.push_back(materialOf(set.materials.size(), 0));
+        GLINT_TRY(rows["known"].emplace_back(), measure(compiler, set));
+        set.materials.push_back(materialOf(set.materials.size(), cases++));
+        GLINT_TRY(rows["added"].emplace_back(), measure(compiler, set));
+        set.materials.back() = materialOf(set.materials.size() - 1, kMostCases - 1 - cases);
+        GLINT_TRY(rows["changed"].emplace_back(), measure(compiler, set));
+    }
+    fmt::print("{} materials, strategy {}, {} rounds; milliseconds\n\n", arguments.materials,
+               arguments.strategy, arguments.rounds);
+    fmt::print(
+        "| | cases | modules compiled | read | plan | SPIR-V | tables | whole call | processor |\n"
+        "|---|--:|--:|--:|--:|--:|--:|--:|--:|\n");
+    printRow("first call", {cold});
+    printRow("nothing changed", rows["same"]);
+    printRow("another value", rows["value"]);
+    printRow("a material more, of a known case", rows["known"]);
+    printRow("a material more, of a new case", rows["added"]);
+    printRow("a material changed to a new case", rows["changed"]);
+    return okStatus();
+}
+
+}  // namespace
+
+}  // namespace glint
+
+int main(int count, char** words) {
+    glint::Arguments arguments;
+    CLI::App app{"Measures how long a program waits for the package of its materials."};
+    app.add_option("--materials", arguments.materials, "of the set")->capture_default_str();
+    app.add_option("--cases", arguments.cases, "of these materials")->capture_default_str();
+    app.add_option("--strategy", arguments.strategy, "name of the strategy")->capture_default_str();
+    app.add_option("--cache", arguments.cache, "folder of compiled shaders; without it, memory alone");
+    app.add_option("--rounds", arguments.rounds, "edits of each kind")->capture_default_str();
+    app.add_option("--jobs", arguments.jobs, "threads; 0: one for each core")->capture_default_str();
+    app.add_flag("--steps", arguments.steps, "for rays of an engine's own, without a frame");
+    app.add_flag("--fallback", arguments.fallback, "compile a fallback, too");
+    CLI11_PARSE(app, count, words);
+    try {
+        if (const glint::Status status = glint::measure(arguments); !status) {
+            fmt::print(stderr, "{}\n", toString(status.error()));
+            return 1;
+        }
+        return 0;
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "glint_material_sets: {}\n", error.what());
+        return 1;
+    }
+}

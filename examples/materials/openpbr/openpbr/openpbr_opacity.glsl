@@ -1,0 +1,6 @@
+// The share of the surface that is there.
+#include "hit/surface_point.glsl"
+
+void openPbrOpacity(SurfacePoint point, Features features, inout float alpha) {
+    alpha *= GLINT_MATERIAL_GEOMETRY_OPACITY(point);
+}

@@ -1,0 +1,470 @@
+// The pack of OpenPBR, examples/materials/openpbr: each lobe against formulas in double precision, written
+// from the papers that the specification names.
+#include "gltf/import.h"
+#include "materials/declarations.h"
+#include "measure/features/checks.h"
+#include "plan/effects.h"
+#include "render/harness.h"
+#include "render/light_pictures.h"
+#include "render/pixel_test.h"
+#include "render/scene_builder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace glint;
+using namespace glint::testing;
+
+const std::string kOpenPbr = GLINT_SOURCE_DIR "/examples/materials/openpbr";
+
+const materials::MaterialModel& openPbr() {
+    static const materials::MaterialModel& model = []() -> const materials::MaterialModel& {
+        const Result<const materials::MaterialModel*> loaded =
+            materials::loadMaterialModel(std::vector{kOpenPbr});
+        EXPECT_TRUE(loaded) << toString(loaded.error());
+        return **loaded;
+    }();
+    return model;
+}
+
+// A material with the specification's defaults, as a file has that says nothing more.
+materials::Material openPbrMaterial() {
+    materials::Material material(openPbr());
+    material.give("EXAMPLE_materials_openpbr");
+    material.give("KHR_materials_emissive_strength");
+    material["baseColorFactor"] = {0.8F, 0.8F, 0.8F, 1.0F};
+    material["metallicFactor"] = 0.0F;
+    material["roughnessFactor"] = 0.3F;
+    material["emissiveFactor"] = {1.0F, 1.0F, 1.0F};
+    material["emissiveStrength"] = 0.0F;
+    return material;
+}
+
+// A base that sends no light back.
+materials::Material blackOpenPbr() {
+    materials::Material material = openPbrMaterial();
+    material["metallicFactor"] = 1.0F;
+    material["specularWeight"] = 0.0F;
+    return material;
+}
+
+struct Vector {
+    double x, y, z;
+};
+
+double dot(Vector a, Vector b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+Vector normalized(Vector v) {
+    const double length = std::sqrt(dot(v, v));
+    return {v.x / length, v.y / length, v.z / length};
+}
+
+Vector asOnDevice(Vector v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+double dielectric(double cosine, double eta) {
+    const double sine2 = (1.0 - cosine * cosine) / (eta * eta);
+    if (sine2 >= 1.0) {
+        return 1.0;
+    }
+    const double beyond = std::sqrt(1.0 - sine2);
+    const double s = (cosine - eta * beyond) / (cosine + eta * beyond);
+    const double p = (eta * cosine - beyond) / (eta * cosine + beyond);
+    return 0.5 * (s * s + p * p);
+}
+
+// The alphas of a roughness and an anisotropy.
+std::pair<double, double> alphas(double roughness, double anisotropy) {
+    const double along = roughness * roughness * std::sqrt(2.0 / (1.0 + std::pow(1.0 - anisotropy, 2.0)));
+    return {along, (1.0 - anisotropy) * along};
+}
+
+using Alphas = std::pair<double, double>;
+
+double ggx(Vector h, Alphas alpha) {
+    const double slope = std::pow(h.x / alpha.first, 2.0) + std::pow(h.y / alpha.second, 2.0) + h.z * h.z;
+    return 1.0 / (std::numbers::pi * alpha.first * alpha.second * slope * slope);
+}
+
+double lambda(Vector v, Alphas alpha) {
+    const double slope2 =
+        (std::pow(alpha.first * v.x, 2.0) + std::pow(alpha.second * v.y, 2.0)) / (v.z * v.z);
+    return 0.5 * (std::sqrt(1.0 + slope2) - 1.0);
+}
+
+// G₂ of Smith's model, with heights that are correlated.
+double masking(Vector v, Vector l, Alphas alpha) {
+    return 1.0 / (1.0 + lambda(v, alpha) + lambda(l, alpha));
+}
+
+// A reflection lobe times n·l, without Fresnel; and the cosine at its facet.
+std::pair<double, double> reflection(Vector v, Vector l, Alphas alpha) {
+    const Vector h = normalized({v.x + l.x, v.y + l.y, v.z + l.z});
+    return {ggx(h, alpha) * masking(v, l, alpha) / (4.0 * v.z), dot(v, h)};
+}
+
+// Walter et al. (2007), equation 21, times |n·l|, as flux.
+double refraction(Vector v, Vector l, Alphas alpha, double eta) {
+    Vector h = normalized({v.x + eta * l.x, v.y + eta * l.y, v.z + eta * l.z});
+    if (h.z < 0.0) {
+        h = {-h.x, -h.y, -h.z};
+    }
+    const double i = dot(v, h);
+    const double o = dot(l, h);
+    if (i <= 0.0 || o >= 0.0) {
+        return 0.0;
+    }
+    return (1.0 - dielectric(i, eta)) * i * -o * eta * eta * ggx(h, alpha) * masking(v, l, alpha) /
+           (v.z * std::pow(i + eta * o, 2.0));
+}
+
+// Energy-preserving Oren and Nayar: Portsmouth, Kutz and Hill (2025), with the exact albedo.
+double eon(double color, double r, Vector v, Vector l) {
+    constexpr double kPi = std::numbers::pi;
+    const double a = 1.0 / (1.0 + (0.5 - 2.0 / (3.0 * kPi)) * r);
+    const auto albedo = [&](double cosine) {
+        const double sine = std::sqrt(1.0 - cosine * cosine);
+        const double g = sine * (std::acos(cosine) - sine * cosine) +
+                         2.0 / 3.0 * (sine / cosine * (1.0 - sine * sine * sine) - sine);
+        return a + r * a * g / kPi;
+    };
+    const double mean = a * (1.0 + (2.0 / 3.0 - 28.0 / (15.0 * kPi)) * r);
+    const double s = dot(v, l) - v.z * l.z;
+    const double once = color / kPi * a * (1.0 + r * (s > 0.0 ? s / std::max(v.z, l.z) : s));
+    const double many = color * color * mean / (1.0 - color * (1.0 - mean));
+    return once + many / kPi * (1.0 - albedo(v.z)) * (1.0 - albedo(l.z)) / (1.0 - mean);
+}
+
+class QuietObserver final : public measure::Observer {
+public:
+    using measure::Observer::report;
+    void report(const Diagnostic& diagnostic) const override {
+        ADD_FAILURE() << toString(diagnostic);
+    }
+    void progress(std::string_view /*text*/) const override {}
+    void detail(std::string_view /*text*/) const override {}
+};
+
+// Three channels of the BSDF times |n·l|.
+using Light = std::array<double, 3>;
+
+struct LobeCase {
+    std::string name;
+    materials::Material material;
+    std::function<Light(Vector v, Vector l)> expected;
+    double tolerance = 1e-4;  // of the larger of the value and `least`
+    double least = 1e-3;
+    enum { Anywhere, Behind, AtMirror, OffMirror } lights = Anywhere;
+};
+
+Light gray(double value) {
+    return {value, value, value};
+}
+
+std::vector<LobeCase> lobeCases() {
+    std::vector<LobeCase> cases;
+    {
+        materials::Material rough = openPbrMaterial();
+        rough["specularWeight"] = 0.0F;
+        rough["baseColorFactor"] = {0.9F, 0.5F, 0.1F, 1.0F};
+        rough["baseDiffuseRoughness"] = 0.7F;
+        cases.push_back({"diffuse", rough,
+                         [](Vector v, Vector l) {
+                             return Light{eon(0.9F, 0.7F, v, l) * l.z, eon(0.5F, 0.7F, v, l) * l.z,
+                                          eon(0.1F, 0.7F, v, l) * l.z};
+                         },
+                         2e-3});  // the fit of the albedo
+    }
+    {
+        // Near the mirror direction, later bounces between facets are below the tolerance.
+        materials::Material metal = openPbrMaterial();
+        metal["metallicFactor"] = 1.0F;
+        metal["roughnessFactor"] = 0.25F;
+        metal["specularRoughnessAnisotropy"] = 0.5F;
+        metal["baseColorFactor"] = {0.9F, 0.6F, 0.3F, 1.0F};
+        metal["specularColor"] = {0.5F, 0.8F, 1.0F};
+        metal["specularWeight"] = 0.9F;
+        cases.push_back(
+            {"F82-tint", metal,
+             [](Vector v, Vector l) {
+                 const auto [lobe, cosine] = reflection(v, l, alphas(0.25, 0.5));
+                 const auto fresnel = [&, c = cosine](double f0, double tint) {
+                     const auto schlick = [&](double x) { return f0 + (1.0 - f0) * std::pow(1.0 - x, 5.0); };
+                     const double edge = 1.0 / 7.0;
+                     const double dip = schlick(edge) * (1.0 - tint) / (edge * std::pow(1.0 - edge, 6.0));
+                     return 0.9 * (schlick(c) - dip * c * std::pow(1.0 - c, 6.0));
+                 };
+                 return Light{fresnel(0.9F, 0.5F) * lobe, fresnel(0.6F, 0.8F) * lobe,
+                              fresnel(0.3F, 1.0) * lobe};
+             },
+             3e-3, 1.0, LobeCase::AtMirror});
+    }
+    {
+        materials::Material coat = blackOpenPbr();
+        coat["coatWeight"] = 0.75F;
+        coat["coatRoughness"] = 0.4F;
+        coat["coatRoughnessAnisotropy"] = 0.6F;
+        coat["coatIor"] = 1.7F;
+        cases.push_back({"coat", coat, [](Vector v, Vector l) {
+                             const auto [lobe, cosine] = reflection(v, l, alphas(0.4F, 0.6F));
+                             return gray(0.75 * lobe * dielectric(cosine, 1.7F));
+                         }});
+    }
+    {
+        materials::Material glass = openPbrMaterial();
+        glass["transmissionWeight"] = 1.0F;
+        glass["transmissionColor"] = {1.0F, 0.5F, 0.25F};
+        glass["roughnessFactor"] = 0.4F;
+        glass["specularIor"] = 1.6F;
+        cases.push_back({"refraction", glass,
+                         [](Vector v, Vector l) {
+                             const double value = refraction(v, l, alphas(0.4F, 0.0), 1.6F);
+                             return Light{value, 0.5 * value, 0.25 * value};
+                         },
+                         1e-4, 1e-3, LobeCase::Behind});
+        glass["transmissionDispersionScale"] = 0.5F;
+        cases.push_back({"dispersion", glass,
+                         [](Vector v, Vector l) {
+                             Light light{};
+                             const double wavelengths[] = {620.0, 540.0, 450.0};
+                             const double tints[] = {1.0, 0.5, 0.25};
+                             for (std::size_t i = 0; i < 3; ++i) {
+                                 // Cauchy's formula, with an Abbe number of 40.
+                                 const double b =
+                                     (1.6F - 1.0) / (40.0 * (std::pow(486.1, -2.0) - std::pow(656.3, -2.0)));
+                                 const double ior =
+                                     1.6F + b * (std::pow(wavelengths[i], -2.0) - std::pow(587.6, -2.0));
+                                 light[i] = tints[i] * refraction(v, l, alphas(0.4F, 0.0), ior);
+                             }
+                             return light;
+                         },
+                         1e-4, 1e-3, LobeCase::Behind});
+    }
+    {
+        // The series of reflections between both sides of a sheet.
+        materials::Material sheet = openPbrMaterial();
+        sheet["transmissionWeight"] = 1.0F;
+        sheet["transmissionColor"] = {0.8F, 0.8F, 0.8F};
+        sheet["geometryThinWalled"] = 1.0F;
+        sheet["roughnessFactor"] = 0.5F;
+        cases.push_back({"thin wall", sheet,
+                         [](Vector v, Vector l) {
+                             const auto [lobe, cosine] = reflection(v, {l.x, l.y, -l.z}, alphas(0.5, 0.0));
+                             const double r = dielectric(cosine, 1.5);
+                             double passed = 0.0;
+                             for (int order = 0; order < 20; ++order) {
+                                 passed += (1.0 - r) * (1.0 - r) * std::pow(r * 0.8F, 2.0 * order) * 0.8F;
+                             }
+                             return gray(passed * lobe);
+                         },
+                         1e-4, 1e-3, LobeCase::Behind});
+    }
+    {
+        // A thin sheet of subsurface scattering: 3/4 of the light goes on.
+        materials::Material paper = openPbrMaterial();
+        paper["specularWeight"] = 0.0F;
+        paper["subsurfaceWeight"] = 1.0F;
+        paper["subsurfaceColor"] = {0.5F, 0.5F, 0.5F};
+        paper["subsurfaceScatterAnisotropy"] = 0.5F;
+        paper["geometryThinWalled"] = 1.0F;
+        cases.push_back({"sheet of subsurface", paper,
+                         [](Vector, Vector l) { return gray(0.75 * 0.5 * -l.z / std::numbers::pi); }, 1e-4,
+                         1e-3, LobeCase::Behind});
+    }
+    {
+        // A smooth, coloured coat, which darkens what is below: away from the mirror direction, by its
+        // Fresnel reflectance. The tolerance is that of the albedo's fit.
+        materials::Material varnish = openPbrMaterial();
+        varnish["specularWeight"] = 0.0F;
+        varnish["baseColorFactor"] = {0.5F, 0.5F, 0.5F, 1.0F};
+        varnish["coatWeight"] = 1.0F;
+        varnish["coatIor"] = 1.5F;
+        varnish["coatColor"] = {0.25F, 0.25F, 0.25F};
+        cases.push_back(
+            {"darkening and absorption", varnish,
+             [](Vector v, Vector l) {
+                 // The reflectance of the inner side, by quadrature: r_b is 1 for a base without gloss.
+                 double mean = 0.0;
+                 constexpr int kSteps = 2000;
+                 for (int i = 0; i < kSteps; ++i) {
+                     const double c = (i + 0.5) / kSteps;
+                     mean += 2.0 * c * dielectric(c, 1.5) / kSteps;
+                 }
+                 const double inner = 1.0 - (1.0 - mean) / (1.5 * 1.5);
+                 const double darkening = (1.0 - inner) / (1.0 - 0.5 * inner);
+                 const auto within = [](double c) { return std::sqrt(1.0 - (1.0 - c * c) / 2.25); };
+                 const double tint = std::pow(0.25, 0.5 * (1.0 / within(v.z) + 1.0 / within(l.z)));
+                 return gray((1.0 - dielectric(v.z, 1.5)) * darkening * tint * 0.5 * l.z / std::numbers::pi);
+             },
+             6e-3, 1e-3, LobeCase::OffMirror});
+    }
+    return cases;
+}
+
+TEST(OpenPbr, LobesAreThoseOfDoublePrecision) {
+    const std::vector<LobeCase> cases = lobeCases();
+    Result<measure::CheckedScene> checked = measure::makeCheckedScene(openPbr(), 12);
+    ASSERT_TRUE(checked) << toString(checked.error());
+    ASSERT_GE(checked->scene.materials.size(), cases.size());
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        checked->scene.materials[i] = cases[i].material;
+    }
+    measure::CheckMaterialsOptions options;
+    options.packs = {kOpenPbr};
+    const auto evaluator = measure::FeatureEvaluator::create(checked->scene, options, QuietObserver());
+    ASSERT_TRUE(evaluator) << toString(evaluator.error());
+    constexpr std::size_t kDraws = 4000;
+    std::vector<compiler::FeatureKernelInput> inputs;
+    std::vector<std::pair<Vector, Vector>> directions;
+    for (std::size_t i = 0; i < cases.size() * kDraws; ++i) {
+        const LobeCase& one = cases[i / kDraws];
+        const auto direction = [&](std::uint32_t stream, double least) {
+            const std::array<double, 3> u = measure::randomNumbers(i, stream);
+            const double z = least + (1.0 - least) * u[0];
+            const double radius = std::sqrt(1.0 - z * z);
+            const double azimuth = 2.0 * std::numbers::pi * u[1];
+            return Vector{radius * std::cos(azimuth), radius * std::sin(azimuth), z};
+        };
+        const bool atMirror = one.lights == LobeCase::AtMirror;
+        const Vector view = asOnDevice(direction(1, atMirror ? 0.5 : 0.1));
+        Vector light = direction(2, atMirror ? 0.99 : 0.1);
+        if (atMirror) {
+            const double twice = 2.0 * dot(view, light);
+            light = {twice * light.x - view.x, twice * light.y - view.y, twice * light.z - view.z};
+        }
+        light.z = one.lights == LobeCase::Behind ? -light.z : light.z;
+        light = asOnDevice(light);
+        directions.emplace_back(view, light);
+        compiler::FeatureKernelInput& input = inputs.emplace_back();
+        input.geometry = static_cast<std::uint32_t>(i / kDraws);
+        input.place[0] = input.place[1] = 0.25F;
+        const double both[2][3] = {{view.x, view.y, view.z}, {light.x, light.y, light.z}};
+        for (int k = 0; k < 3; ++k) {
+            input.view[k] = static_cast<float>(both[0][k]);
+            input.light[k] = static_cast<float>(both[1][k]);
+        }
+    }
+    const auto outputs = (*evaluator)->run(inputs);
+    ASSERT_TRUE(outputs) << toString(outputs.error());
+    for (std::size_t c = 0; c < cases.size(); ++c) {
+        double worst = 0.0;
+        double brightest = 0.0;
+        for (std::size_t i = c * kDraws; i < (c + 1) * kDraws; ++i) {
+            const auto& [view, light] = directions[i];
+            const Vector half = normalized({view.x + light.x, view.y + light.y, view.z + light.z});
+            if (cases[c].lights == LobeCase::OffMirror && half.z > 0.98) {
+                continue;
+            }
+            const Light expected = cases[c].expected(view, light);
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double scale = std::max(expected[k], cases[c].least);
+                worst = std::max(worst, std::abs(outputs->at(i).whole[k] - expected[k]) / scale);
+                brightest = std::max(brightest, expected[k]);
+            }
+        }
+        EXPECT_LE(worst, cases[c].tolerance) << cases[c].name;
+        EXPECT_GT(brightest, 2.0 * cases[c].least) << cases[c].name;
+    }
+}
+
+struct Furnace {
+    std::array<gltf::Float3, 3> sky;  // zenith, horizon, below
+    compiler::SkyLight skyLight = compiler::SkyLight::Off;
+};
+
+// A small picture of a scene under a sky, without other lights.
+LinearImage underSky(gltf::Scene scene, const Furnace& furnace) {
+    addDirectionalLight(scene, {0, 0, -1}, 0.0F);  // a scene without lights would get some
+    RenderSetup setup = defaultSetup(scene, 9, 9);
+    setup.frame.sky = {furnace.sky[0], furnace.sky[1], furnace.sky[2]};
+    setup.samples = 16;
+    compiler::CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.maxBounces = 4;
+    settings.skyLight = furnace.skyLight;
+    settings.effects = {false, compiler::builtinEffects({"shadow", "indirect-diffuse"})};
+    RendererOptions options;
+    options.strategy = package::kStrategyUber;
+    options.bounces = 4;
+    const LoadedScene loaded(scene, settings);
+    LinearImage image = loaded.ok() ? loaded.render(options, setup) : LinearImage{};
+    EXPECT_FALSE(image.pixels.empty());
+    image.pixels.resize(81);
+    return image;
+}
+
+const std::array<gltf::Float3, 3> kWhiteSky{{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}}};
+
+// Light goes straight through a box without gloss, and loses what Beer and Lambert say on the way.
+TEST(OpenPbr, AMediumAbsorbsOverTheWay) {
+    materials::Material medium = openPbrMaterial();
+    medium["specularWeight"] = 0.0F;
+    medium["transmissionWeight"] = 1.0F;
+    medium["transmissionColor"] = {0.5F, 0.7F, 0.9F};
+    medium["transmissionDepth"] = 2.0F;
+    medium.doubleSided = true;
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    addQuad(scene, medium, {-8, -8, -4}, {16, 0, 0}, {0, 16, 0});
+    addQuad(scene, medium, {-8, -8, -7}, {0, 16, 0}, {16, 0, 0});
+    const Pixel middle = at(underSky(scene, {kWhiteSky}), 4, 4);
+    const float colors[] = {0.5F, 0.7F, 0.9F};
+    for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_NEAR(middle[k], std::pow(colors[k], 1.5), 2e-3);  // three metres of a depth of two
+    }
+    expectNoValidationMessages();
+}
+
+// Rays of primary surfaces follow the samples of a model that has any: a mirror shows what is above it.
+// Samples of the sky share its light with these rays.
+TEST(OpenPbr, PrimarySurfacesFollowTheirOwnSamples) {
+    materials::Material metal = openPbrMaterial();
+    metal["metallicFactor"] = 1.0F;
+    metal["roughnessFactor"] = 0.0F;
+    metal["baseColorFactor"] = {1.0F, 1.0F, 1.0F, 1.0F};
+    gltf::Scene mirror = emptyScene();
+    addCamera(mirror);
+    addQuad(mirror, metal, {-8, -8, 4}, {16, 0, 0}, {0, 16, -16});
+    const Pixel seen = at(underSky(mirror, {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}}), 4, 4);
+    EXPECT_NEAR(seen[0], 1.0, 0.03);
+    EXPECT_NEAR(seen[1], 0.0, 0.03);
+    EXPECT_NEAR(seen[2], 0.0, 1e-3);
+    metal["roughnessFactor"] = 0.6F;
+    gltf::Scene rough = emptyScene();
+    addCamera(rough);
+    addQuad(rough, metal, {-8, -8, -4}, {16, 0, 0}, {0, 16, 0});
+    for (const compiler::SkyLight skyLight : {compiler::SkyLight::Off, compiler::SkyLight::On}) {
+        EXPECT_NEAR(meanOf(underSky(rough, {kWhiteSky, skyLight})), 1.0, 0.02) << static_cast<int>(skyLight);
+    }
+    expectNoValidationMessages();
+}
+
+// A lamp's triangles are lights, and what has no luminance is none.
+TEST(OpenPbr, EmissionIsALight) {
+    gltf::ImportOptions import;
+    import.materialModel = &openPbr();
+    const Result<gltf::Scene> scene = importScene(kOpenPbr + "/scene.gltf", import);
+    ASSERT_TRUE(scene) << toString(scene.error());
+    EXPECT_TRUE(scene->warnings.empty()) << toString(scene->warnings.front());
+    int lamps = 0;
+    for (const materials::Material& material : scene->materials) {
+        const bool isEmitter = compiler::isEmitter(material, {});
+        EXPECT_EQ(isEmitter, material.name == "Lamp") << material.name;
+        lamps += isEmitter ? 1 : 0;
+    }
+    EXPECT_EQ(lamps, 1);
+}
+
+}  // namespace

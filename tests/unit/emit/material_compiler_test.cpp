@@ -1,0 +1,126 @@
+// Sets of materials that a program compiles in memory.
+#include "emit/material_compiler.h"
+
+#include "support/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <thread>
+
+namespace {
+
+using namespace glint;
+
+gltf::MaterialSet smallSet() {
+    gltf::MaterialSet set;
+    set.path = "game";
+    set.materials.push_back({.name = "paint", .values = {{"clearcoatFactor", {1}}}});
+    set.materials.push_back({.name = "cloth", .values = {{"sheenColorFactor", {1, 1, 1}}}});
+    return set;
+}
+
+// Few modules, which compile in less than a second.
+compiler::Settings smallSettings() {
+    compiler::Settings settings;
+    settings.compile.passes = package::Passes::Steps;
+    settings.compile.strategies = package::kStrategyUber;
+    settings.compile.plan.merge = compiler::MergePolicy::None;
+    settings.compile.effects = {false, 0};
+    return settings;
+}
+
+// Returns the modules and parts that a call compiled.
+std::ptrdiff_t countCompiled(const compiler::CompiledMaterials& compiled) {
+    std::ptrdiff_t count = 0;
+    for (const compiler::CompiledModule& module : compiled.package.modules) {
+        count += (module.compiled ? 1 : 0) + module.partsCompiled;
+    }
+    return count;
+}
+
+TEST(MaterialCompiler, CompilesOnlyWhatIsNew) {
+    const test::TemporaryFolder folder;
+    gltf::MaterialSet set = smallSet();
+    const auto filesOf = [](const compiler::CompiledMaterials& compiled) {
+        std::map<std::string, base::Bytes> files;
+        for (const compiler::PackageFile& file : compiled.package.files) {
+            files[file.name] = file.bytes;
+        }
+        return files;
+    };
+    std::map<std::string, base::Bytes> last;
+    {
+        Result<compiler::MaterialCompiler> compiler =
+            compiler::MaterialCompiler::create(smallSettings(), folder.path());
+        ASSERT_TRUE(compiler) << toString(compiler.error());
+        const Result<compiler::CompiledMaterials> first = compiler->compile(set);
+        ASSERT_TRUE(first) << toString(first.error());
+        EXPECT_EQ(first->package.plan.cases.size(), 2U);
+        EXPECT_EQ(first->scene.materials[0].name, "paint");
+        EXPECT_GT(countCompiled(*first), 0);
+
+        // An error changes nothing.
+        set.materials.push_back({.name = "coat", .values = {{"clearcoatFacto", {1}}}});
+        const Result<compiler::CompiledMaterials> wrong = compiler->compile(set);
+        ASSERT_FALSE(wrong);
+        EXPECT_EQ(wrong.error().where, "game#/materials/2/values/clearcoatFacto");
+        set.materials.pop_back();
+        const Result<compiler::CompiledMaterials> again = compiler->compile(set);
+        ASSERT_TRUE(again) << toString(again.error());
+        EXPECT_EQ(countCompiled(*again), 0);
+        EXPECT_TRUE(filesOf(*again) == filesOf(*first));
+
+        // A value is in the tables alone. Numbers outside of the range are clamped, with a warning.
+        set.materials[0].values["roughnessFactor"] = {-1.0};
+        const Result<compiler::CompiledMaterials> value = compiler->compile(set);
+        ASSERT_TRUE(value) << toString(value.error());
+        EXPECT_EQ(countCompiled(*value), 0);
+        EXPECT_TRUE(filesOf(*value) != filesOf(*first));
+        EXPECT_TRUE(std::ranges::any_of(value->messages, [](const Diagnostic& message) {
+            return message.where == "game#/materials/0/values/roughnessFactor";
+        }));
+
+        set.materials.push_back(
+            {.name = "coat", .values = {{"clearcoatFactor", {1}}, {"sheenColorFactor", {1, 1, 1}}}});
+        const Result<compiler::CompiledMaterials> added = compiler->compile(set);
+        ASSERT_TRUE(added) << toString(added.error());
+        EXPECT_EQ(added->package.plan.cases.size(), 3U);
+        EXPECT_GT(countCompiled(*added), 0);
+        // The shader of the new case is one of the parts that are joined; those of the others are kept.
+        EXPECT_TRUE(std::ranges::any_of(added->package.modules, [](const compiler::CompiledModule& module) {
+            return module.partsCached > 0;
+        }));
+        last = filesOf(*added);
+    }
+    // The folder has all of it for the next program, or for several threads of one.
+    std::array<std::thread, 2> threads;
+    for (std::thread& thread : threads) {
+        thread = std::thread([&] {
+            Result<compiler::MaterialCompiler> compiler =
+                compiler::MaterialCompiler::create(smallSettings(), folder.path());
+            ASSERT_TRUE(compiler) << toString(compiler.error());
+            const Result<compiler::CompiledMaterials> next = compiler->compile(set);
+            ASSERT_TRUE(next) << toString(next.error());
+            EXPECT_EQ(countCompiled(*next), 0);
+            EXPECT_TRUE(filesOf(*next) == last);
+        });
+    }
+    for (std::thread& thread : threads) {
+        thread.join();
+    }
+}
+
+TEST(MaterialCompiler, RefusesPacksThatAreNotThere) {
+    compiler::Settings settings = smallSettings();
+    settings.materials = {"no such folder"};
+    const Result<compiler::MaterialCompiler> compiler = compiler::MaterialCompiler::create(settings);
+    ASSERT_FALSE(compiler);
+    EXPECT_EQ(compiler.error().id, "materials-folder");
+}
+
+}  // namespace

@@ -1,0 +1,489 @@
+#include "gltf/document/material_expansion.h"
+
+#include "base/text.h"
+#include "gltf/document/material_list.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <set>
+#include <string_view>
+#include <utility>
+
+namespace glint::gltf {
+
+using materials::MaterialModel;
+
+namespace {
+
+constexpr std::string_view kCoreModel = "metallicRoughness";
+constexpr std::uint32_t kSegments = 24;
+constexpr std::uint32_t kRings = 12;
+constexpr double kGap = 2.3;  // of the centres of spheres, in largest radii
+
+// ---- The sphere ----
+
+// Arrays of floats of one buffer, and their accessors.
+class Arrays {
+public:
+    // Adds a value of `channels` numbers for each vertex of a unit sphere. `value` takes the normal and the
+    // UV.
+    template <typename Value>
+    int add(const char* type, Value value) {
+        const std::size_t first = bytes_.size();
+        std::size_t count = 0;
+        for (std::uint32_t ring = 0; ring <= kRings; ++ring) {
+            const double theta = std::numbers::pi * ring / kRings;
+            for (std::uint32_t segment = 0; segment <= kSegments; ++segment, ++count) {
+                const double phi = 2.0 * std::numbers::pi * segment / kSegments;
+                const std::array<double, 3> normal{std::sin(theta) * std::cos(phi), std::cos(theta),
+                                                   -std::sin(theta) * std::sin(phi)};
+                for (const double number : value(normal, phi, theta)) {
+                    append(static_cast<float>(number));
+                }
+            }
+        }
+        return accessor(first, count, 5126, type);
+    }
+    int addIndices() {
+        const std::size_t first = bytes_.size();
+        std::size_t count = 0;
+        for (std::uint32_t ring = 0; ring < kRings; ++ring) {
+            for (std::uint32_t segment = 0; segment < kSegments; ++segment) {
+                const std::uint32_t a = ring * (kSegments + 1) + segment;
+                const std::uint32_t b = a + kSegments + 1;
+                // One of the two triangles at a pole has no area.
+                const std::array<std::uint32_t, 6> corners{a, b, a + 1, a + 1, b, b + 1};
+                for (std::size_t i = ring > 0 ? 0 : 3; i < (ring + 1 < kRings ? 6U : 3U); ++i, ++count) {
+                    append(corners[i]);
+                }
+            }
+        }
+        return accessor(first, count, 5125, "SCALAR");
+    }
+    // glTF wants the bounds of positions.
+    void setBounds(int accessor, const std::array<double, 3>& least, const std::array<double, 3>& most) {
+        accessors_[static_cast<std::size_t>(accessor)]["min"] = least;
+        accessors_[static_cast<std::size_t>(accessor)]["max"] = most;
+    }
+    Json accessors() const {
+        return accessors_;
+    }
+    Json views() const {
+        return views_;
+    }
+    base::Bytes take() {
+        return std::move(bytes_);
+    }
+
+private:
+    template <typename Number>
+    void append(Number number) {
+        const auto* const bytes = reinterpret_cast<const std::uint8_t*>(&number);
+        bytes_.insert(bytes_.end(), bytes, bytes + sizeof number);
+    }
+    int accessor(std::size_t first, std::size_t count, int component, const char* type) {
+        views_.push_back({{"buffer", 0}, {"byteOffset", first}, {"byteLength", bytes_.size() - first}});
+        accessors_.push_back({{"bufferView", accessors_.size()},
+                              {"componentType", component},
+                              {"count", count},
+                              {"type", type}});
+        return static_cast<int>(accessors_.size()) - 1;
+    }
+
+    base::Bytes bytes_;
+    Json accessors_ = Json::array();
+    Json views_ = Json::array();
+};
+
+// ---- From names to places ----
+
+class Expander {
+public:
+    Expander(const MaterialModel& model, base::JsonReader& reader) : model_(model), reader_(reader) {}
+
+    ExpandedMaterials expand(const MaterialSet& list) {
+        addSphere();
+        double largest = 0.0;
+        for (const MaterialDescription& material : list.materials) {
+            largest = std::max(largest, std::sqrt(material.weight));
+        }
+        const auto columns =
+            static_cast<std::size_t>(std::ceil(std::sqrt(1.5 * static_cast<double>(list.materials.size()))));
+        for (std::size_t i = 0; i < list.materials.size() && reader_.ok(); ++i) {
+            addMaterial(list.materials[i], i);
+            const double radius = std::sqrt(list.materials[i].weight);
+            const double step = kGap * largest;
+            const std::size_t column = i % columns;
+            const std::size_t row = i / columns;
+            nodes_.push_back(
+                {{"name", list.materials[i].name},
+                 {"mesh", i},
+                 {"translation", {step * static_cast<double>(column), -step * static_cast<double>(row), 0.0}},
+                 {"scale", {radius, radius, radius}}});
+            shown_.push_back(i);
+        }
+        finish();
+        return std::move(expanded_);
+    }
+
+private:
+    using Place = std::string;
+
+    void fail(const Place& place, const std::string& message) {
+        reader_.fail(place, message);
+    }
+
+    void addSphere() {
+        using Normal = std::array<double, 3>;
+        sphere_["POSITION"] = arrays_.add("VEC3", [](const Normal& n, double, double) { return n; });
+        arrays_.setBounds(sphere_["POSITION"], {-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0});
+        sphere_["NORMAL"] = sphere_["POSITION"];
+        sphere_["TANGENT"] = arrays_.add("VEC4", [](const Normal&, double phi, double) {
+            return std::array{-std::sin(phi), 0.0, -std::cos(phi), 1.0};
+        });
+        sphere_["TEXCOORD_0"] = arrays_.add("VEC2", [](const Normal&, double phi, double theta) {
+            return std::array{phi / std::numbers::pi, theta / std::numbers::pi};
+        });
+        sphere_["TEXCOORD_1"] = sphere_["TEXCOORD_0"];
+        const auto half = [](const Normal& n, double, double) {
+            return std::array{0.5 + 0.5 * n[0], 0.5 + 0.5 * n[1], 0.5 + 0.5 * n[2], 1.0};
+        };
+        sphere_["COLOR_0"] = arrays_.add("VEC4", half);
+        const std::array<int, 4> ofChannels{
+            arrays_.add("SCALAR",
+                        [](const Normal& n, double, double) { return std::array{0.5 + 0.5 * n[1]}; }),
+            sphere_["TEXCOORD_0"], sphere_["POSITION"], sphere_["COLOR_0"]};
+        for (const materials::VertexAttribute& attribute : model_.attributes) {
+            sphere_[attribute.gltf] = ofChannels[static_cast<std::size_t>(attribute.channels - 1)];
+        }
+        indices_ = arrays_.addIndices();
+    }
+
+    std::vector<std::string> attributeNames() const {
+        std::vector<std::string> names;
+        for (const auto& [name, accessor] : sphere_) {
+            names.push_back(name);
+        }
+        return names;
+    }
+
+    void addMesh(const MaterialDescription& material, std::size_t index) {
+        Json attributes{{"POSITION", sphere_.at("POSITION")}};
+        const std::vector<std::string> usual{"NORMAL", "TEXCOORD_0"};
+        const std::vector<std::string>& names = material.attributes.empty() ? usual : material.attributes;
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            const auto found = sphere_.find(names[i]);
+            if (found == sphere_.end()) {
+                fail(fmt::format("/materials/{}/attributes/{}", index, i),
+                     fmt::format("no material reads an attribute \"{}\"{}", names[i],
+                                 base::suggestion(names[i], attributeNames())));
+                return;
+            }
+            attributes[names[i]] = found->second;
+        }
+        meshes_.push_back(
+            {{"name", material.name},
+             {"primitives", {{{"attributes", attributes}, {"indices", indices_}, {"material", index}}}}});
+    }
+
+    // Returns the JSON of an object of a material, which exists from then on.
+    Json& objectOf(Json& material, int number) {
+        const materials::MaterialObject& object = model_.objects[static_cast<std::size_t>(number)];
+        if (object.name.empty()) {
+            return material;
+        }
+        if (!object.isExtension) {
+            return material[object.name].is_null() ? material[object.name] = Json::object()
+                                                   : material[object.name];
+        }
+        extensions_.insert(object.name);
+        Json& extension = material["extensions"][object.name];
+        return extension.is_null() ? extension = Json::object() : extension;
+    }
+
+    std::string pointerOf(std::size_t index, int number, const std::string& member) const {
+        const materials::MaterialObject& object = model_.objects[static_cast<std::size_t>(number)];
+        return fmt::format("/materials/{}{}{}{}/{}", index, object.isExtension ? "/extensions" : "",
+                           object.name.empty() ? "" : "/", object.name, member);
+    }
+
+    // Returns the name of the base in place of the object, or an empty text.
+    std::string replacedBy(int object) const {
+        const bool isOther = base_ >= 0 && model_.objects[static_cast<std::size_t>(base_)].replaces == object;
+        const bool isBaseOfOthers =
+            base_ != object && model_.objects[static_cast<std::size_t>(object)].replaces >= 0;
+        return isOther || isBaseOfOthers ? baseName_ : std::string();
+    }
+
+    void readModel(const MaterialDescription& listed, std::size_t index, Json& material) {
+        base_ = -1;
+        baseName_ = listed.model.empty() ? std::string(kCoreModel) : listed.model;
+        if (baseName_ == kCoreModel) {
+            return;
+        }
+        std::vector<std::string> names{std::string(kCoreModel)};
+        for (const materials::Feature& feature : model_.features) {
+            if (feature.stage == materials::Stage::Base && feature.object >= 0) {
+                names.push_back(feature.name);
+            }
+        }
+        const int found = model_.findFeature(baseName_);
+        if (found < 0 || std::ranges::find(names, baseName_) == names.end()) {
+            fail(fmt::format("/materials/{}/model", index),
+                 fmt::format("no declaration of a base is called \"{}\"{}", baseName_,
+                             base::suggestion(baseName_, names)));
+            return;
+        }
+        base_ = model_.features[static_cast<std::size_t>(found)].object;
+        objectOf(material, base_);
+    }
+
+    void readFeatures(const MaterialDescription& listed, std::size_t index, Json& material) {
+        for (std::size_t i = 0; i < listed.features.size(); ++i) {
+            const int found = model_.findFeature(listed.features[i]);
+            const int object = found < 0 ? -1 : model_.features[static_cast<std::size_t>(found)].object;
+            if (object < 0) {
+                std::vector<std::string> names;
+                for (const materials::Feature& feature : model_.features) {
+                    if (feature.object >= 0) {
+                        names.push_back(feature.name);
+                    }
+                }
+                fail(fmt::format("/materials/{}/features/{}", index, i),
+                     fmt::format("no feature that a material can ask for is called \"{}\"{}",
+                                 listed.features[i], base::suggestion(listed.features[i], names)));
+                return;
+            }
+            if (model_.objects[static_cast<std::size_t>(object)].replaces >= 0) {
+                fail(fmt::format("/materials/{}/features/{}", index, i),
+                     fmt::format("{} is a base: name it as the material's \"model\"", listed.features[i]));
+                return;
+            }
+            objectOf(material, object);
+        }
+    }
+
+    const materials::Parameter* parameterNamed(const std::string& name, const Place& place) {
+        const int found = model_.findParameter(name);
+        if (found < 0) {
+            std::vector<std::string> names;
+            for (const materials::Parameter& parameter : model_.parameters) {
+                names.push_back(parameter.name);
+            }
+            fail(place, fmt::format("no parameter is called \"{}\"{}", name, base::suggestion(name, names)));
+            return nullptr;
+        }
+        const materials::Parameter& parameter = model_.parameters[static_cast<std::size_t>(found)];
+        if (const std::string model = replacedBy(parameter.object); !model.empty()) {
+            fail(place, fmt::format("{} is of another base: the model of the material is {}", name, model));
+            return nullptr;
+        }
+        return &parameter;
+    }
+
+    void readTextures(const MaterialDescription& listed, std::size_t index, Json& material) {
+        for (const auto& [name, texture] : listed.textures) {
+            const Place place = fmt::format("/materials/{}/textures/{}", index, name);
+            std::vector<std::string> names;
+            const materials::MaterialTexture::Place* found = nullptr;
+            for (const materials::MaterialTexture& slot : model_.textures) {
+                for (const materials::MaterialTexture::Place& one : slot.places) {
+                    if (replacedBy(one.object).empty()) {
+                        names.push_back(one.member);
+                        found = one.member == name ? &one : found;
+                    }
+                }
+            }
+            if (found == nullptr) {
+                fail(place, fmt::format("no texture of such a material is called \"{}\"{}", name,
+                                        base::suggestion(name, names)));
+                return;
+            }
+            objectOf(material, found->object)[found->member] = textureInfo(texture, name, place);
+            const std::string pointer = pointerOf(index, found->object, found->member);
+            expanded_.places[pointer] = place;
+        }
+    }
+
+    Json textureInfo(const TextureDescription& texture, const std::string& name, const Place& place) {
+        Json info{{"index", textures_.size()}, {"texCoord", texture.texCoord}};
+        Json transform = Json::object();
+        const TextureDescription usual;
+        if (texture.offset != usual.offset) {
+            transform["offset"] = texture.offset;
+        }
+        if (texture.scale != usual.scale) {
+            transform["scale"] = texture.scale;
+        }
+        if (texture.rotation != usual.rotation) {
+            transform["rotation"] = texture.rotation;
+        }
+        if (!transform.empty()) {
+            info["extensions"]["KHR_texture_transform"] = transform;
+            extensions_.insert("KHR_texture_transform");
+        }
+        // Every texture has an image of its own if its texels come at run time, since others may be given to
+        // each.
+        const auto known = texture.file.empty() ? images_.end() : images_.find(texture.file);
+        std::size_t image = imageJson_.size();
+        if (known != images_.end()) {
+            image = known->second;
+        } else {
+            expanded_.places[fmt::format("/images/{}", image)] = place;
+            if (texture.file.empty()) {
+                imageJson_.push_back(
+                    {{"name", texture.name.empty() ? name : texture.name}, {kAtRunTime, true}});
+            } else {
+                images_[texture.file] = image;
+                imageJson_.push_back({{"uri", texture.file}});
+            }
+        }
+        textures_.push_back({{"source", image}});
+        return info;
+    }
+
+    bool isTexture(int object, const std::string& member) const {
+        return std::ranges::any_of(model_.textures, [&](const materials::MaterialTexture& texture) {
+            return std::ranges::any_of(texture.places, [&](const materials::MaterialTexture::Place& place) {
+                return place.object == object && place.member == member;
+            });
+        });
+    }
+
+    void readValues(const MaterialDescription& listed, std::size_t index, Json& material) {
+        for (const auto& [name, numbers] : listed.values) {
+            const Place place = fmt::format("/materials/{}/values/{}", index, name);
+            const materials::Parameter* const parameter = parameterNamed(name, place);
+            if (parameter == nullptr) {
+                return;
+            }
+            const auto count = static_cast<std::size_t>(parameter->channels);
+            if (numbers.size() != count) {
+                fail(place,
+                     count == 1 ? "must be a number" : fmt::format("must be a list of {} numbers", count));
+                return;
+            }
+            Json* target = &objectOf(material, parameter->object);
+            expanded_.places[pointerOf(index, parameter->object, parameter->place)] = place;
+            std::string_view rest = parameter->place;
+            for (std::size_t slash = rest.find('/'); slash != std::string_view::npos;
+                 slash = rest.find('/')) {
+                const std::string member(rest.substr(0, slash));
+                if (isTexture(parameter->object, member) && !target->contains(member)) {
+                    fail(place, fmt::format("changes nothing without the texture {}", member));
+                    return;
+                }
+                target = &(*target)[member];
+                rest.remove_prefix(slash + 1);
+            }
+            (*target)[std::string(rest)] = count == 1 ? Json(numbers.front()) : Json(numbers);
+        }
+    }
+
+    void readEdited(const MaterialDescription& listed, std::size_t index, Json& material) {
+        for (std::size_t i = 0; i < listed.edited.size(); ++i) {
+            const EditedParameter& edited = listed.edited[i];
+            const Place place = fmt::format("/materials/{}/edited/{}", index, i);
+            const materials::Parameter* const parameter = parameterNamed(edited.parameter, place);
+            if (parameter == nullptr) {
+                return;
+            }
+            const materials::ValueInterval whole =
+                parameter->isAngle ? materials::ValueInterval{-std::numbers::pi, std::numbers::pi}
+                                   : materials::ValueInterval{parameter->hold(parameter->low),
+                                                              parameter->hold(parameter->high)};
+            materials::ValueInterval range = whole;
+            if (edited.range) {
+                range = {(*edited.range)[0], (*edited.range)[1]};
+                if (!(whole.low <= range.low && range.low <= range.high && range.high <= whole.high)) {
+                    fail(place, fmt::format("{} to {} is no range within that of {}, which is {} to {}",
+                                            range.low, range.high, edited.parameter, whole.low, whole.high));
+                    return;
+                }
+            }
+            objectOf(material, parameter->object);
+            expanded_.edited.push_back({static_cast<int>(index),
+                                        static_cast<int>(parameter - model_.parameters.data()), range,
+                                        place});
+        }
+    }
+
+    void addMaterial(const MaterialDescription& listed, std::size_t index) {
+        Json material{{"name", listed.name},
+                      {"alphaMode", kAlphaModes[static_cast<std::size_t>(listed.alphaMode)]},
+                      {"doubleSided", listed.doubleSided}};
+        readModel(listed, index, material);
+        readFeatures(listed, index, material);
+        readTextures(listed, index, material);
+        readValues(listed, index, material);
+        readEdited(listed, index, material);
+        addMesh(listed, index);
+        materials_.push_back(std::move(material));
+        for (const char* const made : {"/meshes/{}/primitives/0", "/meshes/{}", "/nodes/{}"}) {
+            expanded_.places[fmt::format(fmt::runtime(made), index)] = fmt::format("/materials/{}", index);
+        }
+    }
+
+    // The engine brings the lights; one here stands for them in the choice of effects, and in pictures.
+    void addLight() {
+        constexpr const char* kLights = "KHR_lights_punctual";
+        extensions_.insert(kLights);
+        expanded_.document["extensions"][kLights]["lights"] = {{{"type", "directional"}, {"intensity", 3.0}}};
+        shown_.push_back(nodes_.size());
+        nodes_.push_back({{"name", "light"},
+                          {"rotation", {-0.5, 0.2, 0.1, std::sqrt(0.7)}},
+                          {"extensions", {{kLights, {{"light", 0}}}}}});
+    }
+
+    void finish() {
+        addLight();
+        Json& document = expanded_.document;
+        document.update({{"asset", {{"version", "2.0"}, {"generator", "glint"}}},
+                         {"extensionsUsed", Json(extensions_)},
+                         {"scene", 0},
+                         {"scenes", {{{"nodes", shown_}}}},
+                         {"nodes", nodes_},
+                         {"meshes", meshes_},
+                         {"materials", materials_},
+                         {"accessors", arrays_.accessors()},
+                         {"bufferViews", arrays_.views()}});
+        if (!textures_.empty()) {
+            document["textures"] = textures_;
+            document["images"] = imageJson_;
+        }
+        expanded_.buffer = arrays_.take();
+        document["buffers"] = {{{"byteLength", expanded_.buffer.size()}}};
+    }
+
+    const MaterialModel& model_;
+    base::JsonReader& reader_;
+    ExpandedMaterials expanded_;
+    Arrays arrays_;
+    std::map<std::string, int> sphere_;  // accessors by attribute
+    int indices_ = 0;
+    int base_ = -1;  // the object of the material's model, or -1
+    std::string baseName_;
+    std::set<std::string> extensions_;
+    std::map<std::string, std::size_t> images_;  // by file
+    Json imageJson_ = Json::array();
+    Json textures_ = Json::array();
+    Json materials_ = Json::array();
+    Json meshes_ = Json::array();
+    Json nodes_ = Json::array();
+    Json shown_ = Json::array();
+};
+
+}  // namespace
+
+Result<ExpandedMaterials> expandMaterials(const MaterialSet& set, const MaterialModel& model) {
+    base::JsonReader reader = materialListReader(set.path);
+    ExpandedMaterials expanded = Expander(model, reader).expand(set);
+    return reader.ok() ? Result<ExpandedMaterials>(std::move(expanded)) : reader.error();
+}
+
+}  // namespace glint::gltf

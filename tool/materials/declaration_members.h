@@ -1,0 +1,67 @@
+// The members of the declarations of material features, in one table. The reader refuses what the table does
+// not have, and docs/schemas/material_feature.json follows from it.
+#pragma once
+
+#include "base/json.h"
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace glint::materials {
+
+// The objects of a declaration.
+enum class Place : std::uint8_t {
+    File,
+    Glsl,
+    Parameter,
+    Texture,
+    Attribute,
+    Derived,
+    Feature,
+    Reason,
+    Effect,
+    Replaces,
+    Excludes,
+    Cost,
+    Count
+};
+
+constexpr std::uint32_t placeBit(Place place) {
+    return 1U << static_cast<unsigned>(place);
+}
+
+struct MemberRow {
+    std::string_view name;
+    std::uint32_t places;      // where it may stand
+    base::Json (*schema)();    // of its value
+    std::string_view about;    // a sentence
+    std::uint32_t needed = 0;  // the places that must have it
+
+    bool standsAt(Place place) const {
+        return (places & placeBit(place)) != 0;
+    }
+    bool isNeededAt(Place place) const {
+        return (needed & placeBit(place)) != 0;
+    }
+};
+
+// A member that says something only beside others, or only without them.
+struct MemberRule {
+    Place place;
+    std::string_view members;  // words, each of which the rule is for
+    // One of the two is empty.
+    std::string_view with;     // words, of which one has to be there
+    std::string_view without;  // words, of which none may be there
+    std::string_view message;
+    std::string_view hint;
+};
+
+// Returns whether a text of words has the word.
+bool hasWord(std::string_view words, std::string_view word);
+std::span<const MemberRow> memberRows();
+std::span<const MemberRule> memberRules();
+// The JSON schema of a declaration.
+base::Json declarationSchema();
+
+}  // namespace glint::materials
