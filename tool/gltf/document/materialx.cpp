@@ -324,7 +324,9 @@ private:
     Result<base::Bytes> list(const SurfaceInputs& inputs) const {
         base::Json values = base::Json::object();
         base::Json textures = base::Json::object();
-        for (const auto& [name, input] : inputs) {
+        for (const auto& given : inputs) {
+            const std::string& name = given.first;
+            const SurfaceInput& input = given.second;
             const auto parameter = std::ranges::find_if(
                 model_.parameters,
                 [&](const materials::Parameter& one) { return one.object == object_ && one.place == name; });
@@ -393,7 +395,8 @@ bool isMaterialX(ByteView text) {
     constexpr std::string_view kRoot = "<materialx";
     const auto first = std::ranges::find_if(
         text, [](std::uint8_t c) { return c != ' ' && c != '\t' && c != '\r' && c != '\n'; });
-    return first != text.end() && *first == '<' && !std::ranges::search(text, kRoot).empty();
+    return first != text.end() && *first == '<' &&
+           std::search(text.begin(), text.end(), kRoot.begin(), kRoot.end()) != text.end();
 }
 
 Result<base::Bytes> listOfMaterialX(ByteView text, const std::filesystem::path& path,
