@@ -384,7 +384,8 @@ bool isMaterialX(ByteView text) {
     constexpr std::string_view kRoot = "<materialx";
     const auto first = std::ranges::find_if(
         text, [](std::uint8_t c) { return c != ' ' && c != '\t' && c != '\r' && c != '\n'; });
-    return first != text.end() && *first == '<' && !std::ranges::search(text, kRoot).empty();
+    return first != text.end() && *first == '<' &&
+           std::search(text.begin(), text.end(), kRoot.begin(), kRoot.end()) != text.end();
 }
 
 Result<MaterialSet> readMaterialX(ByteView text, const std::filesystem::path& path,

@@ -59,9 +59,7 @@ void openPbrCoat(Hit hit, vec3 baseAlbedo, float baseRoughness, float cosine, in
     model.coatAlpha = openPbrAlphas(GLINT_MATERIAL_COAT_ROUGHNESS(hit), GLINT_MATERIAL_COAT_ROUGHNESS_ANISOTROPY(hit));
     model.coatDepth = -0.5 * log(color);
     // The share of diffuse light that the coat's inner side turns back, and of light that a smooth base mirrors.
-    float greater = max(model.coatEta, 1.0 / model.coatEta);
-    float rough = model.coatEta < 1.0 ? openPbrMeanFresnel(greater)
-                                      : 1.0 - (1.0 - openPbrMeanFresnel(greater)) / (greater * greater);
+    float rough = 1.0 - (1.0 - openPbrMeanFresnel(model.coatEta)) / (model.coatEta * model.coatEta);
     float inner = mix(openPbrCoatFresnel(model.coatEta, cosine), rough, baseRoughness);
     vec3 darkening = (1.0 - inner) / max(1.0 - baseAlbedo * inner, vec3(1e-6));
     model.coatDarkening = mix(vec3(1.0), darkening, GLINT_MATERIAL_COAT_DARKENING(hit));
