@@ -322,7 +322,9 @@ private:
 
     Result<MaterialSet> setOf(const SurfaceInputs& inputs) const {
         MaterialDescription made{.model = std::string(kOpenPbrModel)};
-        for (const auto& [name, input] : inputs) {
+        for (const auto& given : inputs) {
+            const std::string& name = given.first;
+            const SurfaceInput& input = given.second;
             const auto parameter = std::ranges::find_if(
                 model_.parameters,
                 [&](const materials::Parameter& one) { return one.object == object_ && one.place == name; });
