@@ -25,10 +25,10 @@ vec3 scatteredBy(Hit hit, Surface surface, Features features, SkyShares sky) {
 
 // Returns whether something is left of a pixel that earlier rounds of shadow rays have shaded.
 bool shadesInRound(uvec2 pixel) {
-#if GLINT_FIRST_SHADOWS_DEFERRED
+#if GLINT_FIRST_SHADOW_RAYS > 0
     uint place = pixel.x + pixel.y * GLINT_FRAME.width - GLINT_FRAME.bandFirst;
     return pushed.shadowRound == 0u ||
-           GLINT_FRAME.firstShadowCounts.data[place] > kFirstShadowRays * pushed.shadowRound;
+           GLINT_FRAME.firstShadowCounts.data[place] > GLINT_FIRST_SHADOW_RAYS * pushed.shadowRound;
 #else
     return true;
 #endif
@@ -54,7 +54,7 @@ void shadeFirst(uvec2 pixel, uint number, HostGeometry geometry, uint primitive,
     } else {
         skipEffects(hit.target, kRayUnlit);
     }
-#if GLINT_FIRST_SHADOWS_DEFERRED
+#if GLINT_FIRST_SHADOW_RAYS > 0
     if (pushed.shadowRound > 0u) {
         return;
     }

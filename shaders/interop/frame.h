@@ -126,9 +126,9 @@ GLINT_CONSTANT(kShadowOfSharedWithin, 2u);  // the same within a volume
 GLINT_CONSTANT(kShadowPastGlass, 3u);
 GLINT_CONSTANT(kShadowKind, 3u);  // the bits of these numbers
 
-// The most shadow rays of a pixel that wait in memory at once. Pixels with more are shaded once more for each further
-// round of as many.
-GLINT_CONSTANT(kFirstShadowRays, 4u);
+// The most shadow rays of a pixel that wait in memory at once: a package has room for those that its scenes need, up to
+// this number. Pixels with more are shaded once more for each further round of as many.
+GLINT_CONSTANT(kMostFirstShadowRays, 4u);
 
 // A hit as a surface, for a host that lights it. 112 bytes. Vectors are in the world.
 struct SurfaceRecord {
@@ -419,7 +419,7 @@ struct PushConstants {
     uint bucket;    // shading passes: which bucket this dispatch shades
     uint geometry;  // G-buffer pass: GeometryRecord index of this draw's first instance
     uint geometryStride;  // and from one instance's GeometryRecord to the next one's
-    uint shadowRound;  // passes over first hits: the number of kFirstShadowRays that are stored and traced
+    uint shadowRound;  // passes over first hits: the round of shadow rays that are stored and traced
 };
 
 // Descriptor set 0: the scene.

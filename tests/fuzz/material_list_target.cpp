@@ -8,7 +8,7 @@
 
 const glint::fuzz::InputSchema& glint::fuzz::inputSchema() {
     static const InputSchema kSchema = [] {
-        InputSchema schema{base::schemaOf<gltf::MaterialList>(),
+        InputSchema schema{base::schemaOf<gltf::MaterialSet>(),
                            {"metallicRoughness", "specularGlossiness", "NORMAL", "TANGENT", "TEXCOORD_0",
                             "TEXCOORD_1", "COLOR_0", "OPAQUE", "MASK", "BLEND"}};
         const materials::MaterialModel& model = materials::builtinMaterialModel();

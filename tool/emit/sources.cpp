@@ -126,8 +126,11 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
                         settings.precision == package::ShadingPrecision::Half ? " mediump" : "");
     text += fmt::format("#define GLINT_SHADOWS_DEFERRED {}\n",
                         flag(settings.shadows == package::ShadowPlacement::Deferred));
-    text += fmt::format("#define GLINT_FIRST_SHADOWS_DEFERRED {}\n",
-                        flag(shapeOf(scenes, plan, settings).defersFirstShadows()));
+    text +=
+        "// The shadow rays of a first hit that wait for a pass of their own; 0: they are traced inline.\n";
+    const package::PackageShape shape = shapeOf(scenes, plan, settings);
+    text += fmt::format("#define GLINT_FIRST_SHADOW_RAYS {}u\n",
+                        shape.defersFirstShadows() ? shape.firstShadowRays : 0);
     text += fmt::format("#define GLINT_HIT_RECORD_PACKED {}\n",
                         flag(settings.hitRecord == package::HitRecordFormat::Packed));
     const bool packsSamples = settings.sampleRecord == package::SampleRecordFormat::Packed &&
@@ -150,7 +153,7 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     text += fmt::format("#define GLINT_STEPS {}\n", flag(settings.passes == package::Passes::Steps));
     text += fmt::format("#define GLINT_ANSWERS_SURFACE {}\n",
                         flag(settings.answer == package::HitAnswer::Surface));
-    const bool paths = package::hasPaths(shapeOf(scenes, plan, settings));
+    const bool paths = package::hasPaths(shape);
     text += fmt::format("#define GLINT_PATHS {}\n", flag(paths));
     text += "// The record of a sample holds what its ray hit, in the place of the ray's start.\n";
     text += fmt::format("#define GLINT_HITS_IN_SAMPLES {}\n", flag(packsSamples && !paths && !emissive));

@@ -52,7 +52,7 @@ package::PackageShape shapeOf(const gltf::SceneList& scenes, const Plan& plan,
             settings.maxBounces,
             settings.plan.fallback,
             settings.shadowThrough != package::ShadowThrough::Alpha,
-            settings.firstShadows};
+            settings.firstShadows == package::ShadowPlacement::Deferred ? settings.firstShadowRays : 0};
 }
 
 namespace {
@@ -155,9 +155,9 @@ std::vector<std::string> runnableStrategies(const Target& target, std::optional<
     return names.empty() && target.package ? strategyNames(target.package->shape.strategies) : names;
 }
 
-// Surfaces with more shadow rays trace them inline, because each round of kFirstShadowRays shades them once
-// more.
-constexpr std::size_t kMostDeferredRays = std::size_t{4} * gpu::kFirstShadowRays;
+// Surfaces with more shadow rays trace them inline, because each round of kMostFirstShadowRays shades them
+// once more.
+constexpr std::size_t kMostDeferredRays = std::size_t{4} * gpu::kMostFirstShadowRays;
 
 // Decides one thing after the other. Each step relies on those before it.
 class Resolver {
@@ -405,6 +405,9 @@ private:
         const std::string why = showsLight               ? "a layer shows the light of lights by itself"
                                 : !compile_.host.empty() ? "a host may have any number of lights"
                                                          : "";
+        const std::size_t most = mostShadowRays();
+        compile_.firstShadowRays =
+            static_cast<std::uint32_t>(std::clamp<std::size_t>(most, 1, gpu::kMostFirstShadowRays));
         if (!settings_.choosesFirstShadows) {
             return why.empty() || compile_.firstShadows == package::ShadowPlacement::Inline
                        ? okStatus()
@@ -412,7 +415,7 @@ private:
                                           "the shadow rays of first hits can't be deferred: " + why,
                                           "use --first-shadows inline, or leave out the option"));
         }
-        const bool defers = why.empty() && mostShadowRays() <= kMostDeferredRays;
+        const bool defers = why.empty() && most <= kMostDeferredRays;
         compile_.firstShadows =
             defers ? package::ShadowPlacement::Deferred : package::ShadowPlacement::Inline;
         settings_.choosesFirstShadows = false;
@@ -424,13 +427,13 @@ private:
         std::size_t most = 0;
         for (std::size_t i = 0; i < scenes_.scenes().size(); ++i) {
             const LightCounts counts = countLights(scenes_, i, compile_.emissiveLights);
-            const std::size_t punctual = scenes_.scenes()[i].lights.size();
+            const std::size_t punctual = scenes_.scenes()[i].lights.size() + (compile_.addsLight ? 1 : 0);
             const std::size_t apart = counts.areApart ? punctual : punctual - counts.positions;
             const std::size_t samples = compile_.lightSamples.value_or(0);
             const std::size_t found = compile_.sizedLights == SizedLights::On ? punctual : 0;
             most = std::max(most, found + (samples > 0 ? apart + samples : punctual + counts.emitters));
         }
-        return most;
+        return most + (compile_.skyLight == SkyLight::On ? 1 : 0);
     }
 
     // Chooses the strategy that should be fastest, and from the strategies the tracers.

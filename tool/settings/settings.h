@@ -78,6 +78,8 @@ struct CompileSettings {
     std::uint32_t tracers = package::kTracerRayQuery;
     package::ShadowPlacement shadows = package::ShadowPlacement::Inline;
     package::ShadowPlacement firstShadows = package::ShadowPlacement::Inline;  // of first hits
+    // The rays of a first hit that wait at once, if they are deferred (resolve() counts them).
+    std::uint32_t firstShadowRays = 1;
     package::ShadowThrough shadowThrough = package::ShadowThrough::Alpha;
     package::HitRecordFormat hitRecord = package::HitRecordFormat::Full;
     package::SampleRecordFormat sampleRecord = package::SampleRecordFormat::Full;

@@ -155,6 +155,9 @@ struct WantedBuffer {
     VkDeviceSize bytes;  // 0: the frame needs none
     VkBufferUsageFlags usage;
     MemoryUse use;
+    // Nothing writes or reads the buffer until the shadow rays of first hits are traced, which need theirs no
+    // longer.
+    bool followsShadows = false;
 
     // Returns true if nothing writes or reads the buffer until surfaces are known. It may then share the
     // memory of the depth image, which nothing needs afterwards. Other buffers are cleared at the start of a
@@ -185,7 +188,7 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
     const VkDeviceSize firstShadows = size.firstShadowBytes > 0 ? size.pixelsOfBand() : 0;
     const VkDeviceSize shadows = size.deferredShadows ? rays : 0;
     const VkDeviceSize shadowBytes = std::max(shadows * sizeof(gpu::ShadowRecord),
-                                              firstShadows * gpu::kFirstShadowRays * size.firstShadowBytes);
+                                              firstShadows * size.firstShadowRays * size.firstShadowBytes);
     // The keys end at the end of the last tile that may be read, or block that may be written.
     const VkDeviceSize keys =
         ordered > 0 ? ordered + VkDeviceSize{gpu::kLargeTileThreads} * gpu::kTileHitsOfThread : 0;
@@ -215,12 +218,13 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
          MemoryUse::Device},
         {&Frame::walkedLight, size.layerWalks ? samples * sizeof(gpu::BounceLight) : 0, kCleared,
          MemoryUse::Device},
-        {&Frame::hits, hits * size.hitBytes, kStorage, MemoryUse::Device},
-        {&Frame::orderedHits, slots * sizeof(std::uint32_t), kStorage, MemoryUse::Device},
-        {&Frame::visitedHits, visitedWords * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
         {&Frame::shadows, shadowBytes, kStorage, MemoryUse::Device},
         {&Frame::shadowDispatch, shadowLists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
         {&Frame::firstShadowCounts, firstShadows * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
+        {&Frame::hits, hits * size.hitBytes, kStorage, MemoryUse::Device,
+         firstShadows > 0 && !size.deferredShadows},
+        {&Frame::orderedHits, slots * sizeof(std::uint32_t), kStorage, MemoryUse::Device},
+        {&Frame::visitedHits, visitedWords * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
         {&Frame::bucketKeys, keys * size.keyBytes, kStorage, MemoryUse::Device},
         {&Frame::bucketCounts, buckets, kCleared, MemoryUse::Device},
         {&Frame::bucketBegins, buckets, kStorage, MemoryUse::Device},
@@ -240,8 +244,16 @@ Status createBuffers(Context::State& context, const FrameSize& size, FrameResour
         if (entry.bytes == 0) {
             continue;
         }
-        GLINT_TRY(frame.*entry.member, createBuffer(context, frame.pool, entry.bytes, entry.usage, entry.use,
-                                                    entry.followsDepth() ? &ofDepth : nullptr));
+        SharedMemory ofShadows;
+        if (entry.followsShadows) {
+            const Allocation& memory = frame.shadows.memory;
+            ofShadows = {memory, memory.offset, memory.offset + frame.shadows.bytes};
+        }
+        SharedMemory* const shared = entry.followsShadows   ? &ofShadows
+                                     : entry.followsDepth() ? &ofDepth
+                                                            : nullptr;
+        GLINT_TRY(frame.*entry.member,
+                  createBuffer(context, frame.pool, entry.bytes, entry.usage, entry.use, shared));
     }
     return okStatus();
 }
@@ -334,7 +346,12 @@ VkDeviceSize frameBytes(const FrameSize& size) {
     VkDeviceSize bytes = 0;
     const VkDeviceSize depth = size.hostRays ? 0 : VkDeviceSize{size.width} * size.height * sizeof(float);
     VkDeviceSize shared = 0;  // by the depth and buffers that follow it
+    VkDeviceSize shadows = 0;
     for (const WantedBuffer& buffer : wantedBuffers(size)) {
+        if (buffer.followsShadows && buffer.bytes <= shadows) {
+            continue;
+        }
+        shadows = buffer.member == &FrameResources::shadows ? buffer.bytes : shadows;
         bytes += buffer.bytes;
         shared += buffer.followsDepth() && shared + buffer.bytes <= depth ? buffer.bytes : 0;
     }
@@ -369,12 +386,15 @@ Result<NextBuffers> createNextBuffers(Context::State& context, const FrameSize& 
     buffers.pool = std::make_shared<MemoryPool>(context, "frame");
     const auto before = wantedBuffers(now);
     const auto after = wantedBuffers(next);
+    bool shadowsMove = false;
     for (std::size_t place = 0; place < after.size(); ++place) {
         const WantedBuffer& wanted = after[place];
-        if (wanted.bytes == before[place].bytes) {
+        const bool sharesMoved = shadowsMove && (wanted.followsShadows || before[place].followsShadows);
+        if (wanted.bytes == before[place].bytes && !sharesMoved) {
             buffers.kept += wanted.bytes > 0 ? 1 : 0;
             continue;
         }
+        shadowsMove = shadowsMove || wanted.member == &FrameResources::shadows;
         Buffer made;
         if (wanted.bytes > 0) {
             GLINT_TRY(made, createBuffer(context, *buffers.pool, wanted.bytes, wanted.usage, wanted.use));

@@ -90,12 +90,12 @@ struct FrameResources {
                  {"hits of layers", &rayHits},
                  {"light of bounces", &bounceLight},
                  {"light of walks", &walkedLight},
-                 {"hits", &hits},
-                 {"ordered hits", &orderedHits},
-                 {"visited hits", &visitedHits},
                  {"shadow rays", &shadows},
                  {"shadow dispatch", &shadowDispatch},
                  {"first shadow counts", &firstShadowCounts},
+                 {"hits", &hits},
+                 {"ordered hits", &orderedHits},
+                 {"visited hits", &visitedHits},
                  {"bucket keys", &bucketKeys},
                  {"bucket counts", &bucketCounts},
                  {"bucket begins", &bucketBegins},
@@ -122,7 +122,8 @@ struct FrameSize {
     std::uint32_t hitBytes = sizeof(gpu::HitRecord);  // 0: the samples hold their hits
     std::uint32_t keyBytes = 1;                       // size of the key of a hit's bucket
     bool deferredShadows = false;
-    std::uint32_t lightSamples = 0;  // lights that a surface chooses by the hierarchy; 0: all
+    std::uint32_t lightSamples = 0;     // lights that a surface chooses by the hierarchy; 0: all
+    std::uint32_t firstShadowRays = 0;  // of a round
     std::uint32_t firstShadowBytes =
         0;  // of a shadow ray of a first hit that waits; 0: they are traced inline
     bool environmentMap = false;

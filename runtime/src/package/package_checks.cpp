@@ -1,4 +1,5 @@
 // Checks that the elements of tables.bin agree with each other.
+#include "interop/frame.h"
 #include "package/package.h"
 
 #include <algorithm>
@@ -94,8 +95,7 @@ Status checkHeader(const Package::State& state, const std::string& where) {
         {"the alpha policy", number(header.alpha), 0, number(package::AlphaPolicy::Stochastic)},
         {"the placement of shadow rays", number(header.shadows), 0,
          number(package::ShadowPlacement::Deferred)},
-        {"the placement of first hits' shadow rays", number(header.firstShadows), 0,
-         number(package::ShadowPlacement::Deferred)},
+        {"the number of shadow rays that wait", header.firstShadowRays, 0, gpu::kMostFirstShadowRays},
         {"what shadow rays pass", number(header.shadowThrough), 0, number(package::ShadowThrough::Glass)},
         {"the hit record", number(header.hitRecord), 0, number(package::HitRecordFormat::Packed)},
         {"the record of samples", number(header.sampleRecord), 0,
@@ -414,7 +414,7 @@ package::PackageShape shapeOf(const Package::State& state) {
     shape.maxBounces = header.maxBounces;
     shape.fallback = header.fallback != 0;
     shape.shadowsApart = header.shadowThrough != package::ShadowThrough::Alpha;
-    shape.firstShadows = header.firstShadows;
+    shape.firstShadowRays = header.firstShadowRays;
     return shape;
 }
 

@@ -12,8 +12,8 @@ namespace {
 
 using package::ModuleRole;
 
-// Returns the rounds of at most kFirstShadowRays that hold all shadow rays of a pixel (light/direct.glsl), or
-// 0 if they are traced inline.
+// Returns the rounds of at most FrameSize::firstShadowRays that hold all shadow rays of a pixel
+// (light/direct.glsl), or 0 if they are traced inline.
 std::uint32_t shadowRounds(const FrameSize& size, const gpu::FrameConstants& constants) {
     if (size.firstShadowBytes == 0) {
         return 0;
@@ -26,7 +26,7 @@ std::uint32_t shadowRounds(const FrameSize& size, const gpu::FrameConstants& con
     const auto effects = static_cast<std::uint32_t>(std::popcount(size.effects.rays));
     const std::uint32_t most =
         chosen * constants.shadowSamples + (size.sizedLights ? effects * all : 0) + (size.skyLight ? 1 : 0);
-    return (most + gpu::kFirstShadowRays - 1) / gpu::kFirstShadowRays;
+    return (most + size.firstShadowRays - 1) / size.firstShadowRays;
 }
 
 class FrameRecorder {

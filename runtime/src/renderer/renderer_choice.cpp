@@ -221,6 +221,7 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     // shaders/effects/shadow/shadow.glsl: SurfaceShadow, with the light past glass where both are known.
     const bool splitsGlass = size.emissiveLights && package.shadowThrough() == package::ShadowThrough::Glass;
     size.lightSamples = package.lightSamples();
+    size.firstShadowRays = package.shape().firstShadowRays;
     size.firstShadowBytes = !package.shape().defersFirstShadows() ? 0 : splitsGlass ? 44 : 32;
     size.rayPipeline = choice.tracer == package::kTracerRayPipeline;
     size.layers.assign(package.layers().begin(), package.layers().end());

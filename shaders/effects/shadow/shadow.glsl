@@ -26,7 +26,7 @@ bool passesGate(LightSample centre, inout ShadowCounts counts) {
 }
 
 void reportShadows(ShadowCounts counts) {
-#if !GLINT_FIRST_SHADOWS_DEFERRED
+#if GLINT_FIRST_SHADOW_RAYS == 0
     countRays(kEffectShadow, counts.rays, counts.misses);
 #else
     if (pushed.shadowRound > 0u) {
@@ -92,7 +92,7 @@ vec3 traceShadow(Hit hit, SurfaceShadow ray, inout ShadowCounts counts) {
 
 #endif
 
-#if GLINT_FIRST_SHADOWS_DEFERRED
+#if GLINT_FIRST_SHADOW_RAYS > 0
 
 // The rays of a round: first those of all pixels of a band with the lowest numbers, then those with the next ones.
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer FirstShadowArray { SurfaceShadow data[]; };
@@ -110,8 +110,8 @@ vec3 traceWaiting(Hit hit, ShadowCounts counts) {
 }
 
 vec3 sendShadow(Hit hit, SurfaceShadow ray, inout ShadowCounts counts) {
-    uint place = counts.rays - kFirstShadowRays * pushed.shadowRound;
-    if (place < kFirstShadowRays) {
+    uint place = counts.rays - GLINT_FIRST_SHADOW_RAYS * pushed.shadowRound;
+    if (place < GLINT_FIRST_SHADOW_RAYS) {
         FirstShadowArray(GLINT_FRAME.shadows)
             .data[firstShadowPlace(hit.target - GLINT_FRAME.bandFirst, place)] = ray;
     }

@@ -301,7 +301,7 @@ PackageHeader makeTablesHeader(const gltf::SceneList& scenes, const Plan& plan,
     header.strategies = settings.strategies;
     header.tracers = settings.tracers;
     header.shadows = settings.shadows;
-    header.firstShadows = settings.firstShadows;
+    header.firstShadowRays = shapeOf(scenes, plan, settings).firstShadowRays;
     header.hitRecord = settings.hitRecord;
     const bool hasSamples = settings.passes == package::Passes::Frame;
     header.sampleRecord = hasSamples ? settings.sampleRecord : package::SampleRecordFormat::Full;

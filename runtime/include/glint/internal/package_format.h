@@ -116,10 +116,10 @@ struct PackageHeader {
         lightSamples;        // lights that a surface chooses by the hierarchy; 0: it takes all, without one
     std::uint32_t fallback;  // 1: the package has shaders for every material beside those of its cases
     ShadowThrough shadowThrough;
-    std::uint32_t textureLevels;   // 1: shaders record the finest level that they read of each texture
-    std::uint32_t trustTextures;   // 1: shaders rely on the contents of the scenes' textures
-    std::uint32_t skyLight;        // 1: surfaces sample the sky as a light
-    ShadowPlacement firstShadows;  // of first hits
+    std::uint32_t textureLevels;    // 1: shaders record the finest level that they read of each texture
+    std::uint32_t trustTextures;    // 1: shaders rely on the contents of the scenes' textures
+    std::uint32_t skyLight;         // 1: surfaces sample the sky as a light
+    std::uint32_t firstShadowRays;  // of a round, which wait for a pass of their own; 0: traced inline
     SampleRecordFormat sampleRecord;
     std::uint32_t sizedLights;  // 1: rays of lobes find punctual lights that have a size, too
 };

@@ -109,12 +109,11 @@ struct PackageShape {
     std::uint32_t maxBounces = 1;
     bool fallback = false;      // it has shaders for every material beside those of its cases
     bool shadowsApart = false;  // candidates of shadow rays are not treated as those of other rays
-    ShadowPlacement firstShadows = ShadowPlacement::Inline;
+    std::uint32_t firstShadowRays = 0;  // PackageHeader::firstShadowRays
 
     // Returns whether the shadow rays of first hits wait for a pass of their own.
     bool defersFirstShadows() const {
-        return passes == Passes::Frame && effects.tracesAtSurfaces() &&
-               firstShadows == ShadowPlacement::Deferred;
+        return passes == Passes::Frame && effects.tracesAtSurfaces() && firstShadowRays > 0;
     }
 };
 
