@@ -28,7 +28,7 @@ bool shadesInRound(uvec2 pixel) {
 #if GLINT_FIRST_SHADOW_RAYS > 0
     uint place = pixel.x + pixel.y * GLINT_FRAME.width - GLINT_FRAME.bandFirst;
     return pushed.shadowRound == 0u ||
-           GLINT_FRAME.firstShadowCounts.data[place] > GLINT_FIRST_SHADOW_RAYS * pushed.shadowRound;
+           GLINT_FRAME.firstShadowCounts.data[place] > kFirstShadowRays * pushed.shadowRound;
 #else
     return true;
 #endif

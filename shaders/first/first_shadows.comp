@@ -15,7 +15,7 @@ void main() {
     uint target = pixel.x + pixel.y * GLINT_FRAME.width;
     uint place = target - GLINT_FRAME.bandFirst;
     uint sent = GLINT_FRAME.firstShadowCounts.data[place];
-    uint first = GLINT_FIRST_SHADOW_RAYS * pushed.shadowRound;
+    uint first = kFirstShadowRays * pushed.shadowRound;
     if (sent <= first) {
         return;
     }
@@ -29,7 +29,7 @@ void main() {
     Hit hit = primaryHit(hostGeometry(seen.x), seen.y, cameraRay(pixel), target, kNone);
     ShadowCounts counts = ShadowCounts(0u, 0u, 0u, 0u, 0u);
     vec3 sum = vec3(0.0);
-    for (uint ray = 0u; ray < min(sent - first, GLINT_FIRST_SHADOW_RAYS); ++ray) {
+    for (uint ray = 0u; ray < min(sent - first, kFirstShadowRays); ++ray) {
         sum += traceShadow(hit, FirstShadowArray(GLINT_FRAME.shadows).data[firstShadowPlace(place, ray)], counts);
     }
     countRays(kEffectShadow, counts.rays, counts.misses);

@@ -94,6 +94,46 @@ double differenceOf(const LinearImage& image, const LinearImage& reference) {
     return std::sqrt(sum / (3.0 * static_cast<double>(image.pixels.size())));
 }
 
+// The pictures of shadow rays that wait in memory are those of rays that the cases trace: with more rays than
+// a round holds, lights of several points, bands, and both tracers.
+TEST(FirstShadows, WaitWithoutAChange) {
+    const gltf::Scene scene = hallOfLights(5);
+    const auto giveSizes = [](session::SceneViewData& data) {
+        for (LightView& light : data.lights) {
+            light.size = light.type == LightView::Type::Directional ? 0.01F : 0.2F;
+        }
+    };
+    compiler::CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.tracers = package::kAllTracers;
+    settings.plan.merge = compiler::MergePolicy::All;
+    settings.firstShadows = package::ShadowPlacement::Inline;
+    const LoadedScene traced(scene, settings, giveSizes);
+    settings.firstShadows = package::ShadowPlacement::Deferred;
+    const LoadedScene waiting(scene, settings, giveSizes);
+    ASSERT_TRUE(traced.ok() && waiting.ok());
+    EXPECT_EQ(traced.package().shape().firstShadowRays, 0U);
+    EXPECT_EQ(waiting.package().shape().firstShadowRays, 4U);
+    RenderSetup setup = setupOf(scene, 2, 3);
+    setup.frame.shadowSamples = 3;
+    const LinearImage expected = traced.render(package::kStrategyUber, setup);
+    RendererOptions options;
+    options.strategy = package::kStrategyUber;
+    options.bands = 2;
+    for (const package::Tracer tracer : package::kTracers) {
+        options.tracer = tracer;
+        const LinearImage image = waiting.render(options, setup);
+        ASSERT_EQ(image.pixels.size(), expected.pixels.size());
+        for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                EXPECT_NEAR(image.pixels[i][channel], expected.pixels[i][channel],
+                            1e-5F * (1.0F + expected.pixels[i][channel]))
+                    << nameOf(tracer) << ", pixel " << i;
+            }
+        }
+    }
+}
+
 // With jitter each sample sees other points, so the reference has many samples too.
 TEST(ManyLights, ChosenLightsConvergeToAll) {
     const gltf::Scene scene = hallOfLights();

@@ -129,7 +129,7 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     text +=
         "// The shadow rays of a first hit that wait for a pass of their own; 0: they are traced inline.\n";
     const package::PackageShape shape = shapeOf(scenes, plan, settings);
-    text += fmt::format("#define GLINT_FIRST_SHADOW_RAYS {}u\n",
+    text += fmt::format("#define GLINT_FIRST_SHADOW_RAYS {}\n",
                         shape.defersFirstShadows() ? shape.firstShadowRays : 0);
     text += fmt::format("#define GLINT_HIT_RECORD_PACKED {}\n",
                         flag(settings.hitRecord == package::HitRecordFormat::Packed));

@@ -587,6 +587,7 @@ Result<Build> resolve(std::span<const gltf::Scene> scenes, const Settings& setti
 Result<Build> resolve(std::span<const gltf::Scene> scenes, const CompileSettings& compile) {
     Settings settings;
     settings.compile = compile;
+    settings.choosesFirstShadows = compile.firstShadows == package::ShadowPlacement::Deferred;
     settings.alpha = compile.plan.keys.alpha;
     settings.frame.maxReflectionRoughness = compile.effects.maxReflectionRoughness;
     return resolve(scenes, settings);

@@ -77,7 +77,8 @@ struct CompileSettings {
     std::uint32_t strategies = package::kDefaultStrategies;
     std::uint32_t tracers = package::kTracerRayQuery;
     package::ShadowPlacement shadows = package::ShadowPlacement::Inline;
-    package::ShadowPlacement firstShadows = package::ShadowPlacement::Inline;  // of first hits
+    // Of first hits. resolve() makes Deferred Inline where something speaks against it.
+    package::ShadowPlacement firstShadows = package::ShadowPlacement::Deferred;
     // The rays of a first hit that wait at once, if they are deferred (resolve() counts them).
     std::uint32_t firstShadowRays = 1;
     package::ShadowThrough shadowThrough = package::ShadowThrough::Alpha;

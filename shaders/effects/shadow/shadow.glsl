@@ -94,6 +94,8 @@ vec3 traceShadow(Hit hit, SurfaceShadow ray, inout ShadowCounts counts) {
 
 #if GLINT_FIRST_SHADOW_RAYS > 0
 
+const uint kFirstShadowRays = GLINT_FIRST_SHADOW_RAYS;
+
 // The rays of a round: first those of all pixels of a band with the lowest numbers, then those with the next ones.
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer FirstShadowArray { SurfaceShadow data[]; };
 
@@ -110,8 +112,8 @@ vec3 traceWaiting(Hit hit, ShadowCounts counts) {
 }
 
 vec3 sendShadow(Hit hit, SurfaceShadow ray, inout ShadowCounts counts) {
-    uint place = counts.rays - GLINT_FIRST_SHADOW_RAYS * pushed.shadowRound;
-    if (place < GLINT_FIRST_SHADOW_RAYS) {
+    uint place = counts.rays - kFirstShadowRays * pushed.shadowRound;
+    if (place < kFirstShadowRays) {
         FirstShadowArray(GLINT_FRAME.shadows)
             .data[firstShadowPlace(hit.target - GLINT_FRAME.bandFirst, place)] = ray;
     }
