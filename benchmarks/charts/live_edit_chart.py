@@ -66,6 +66,7 @@ def main():
                       label=list(parts)[number] if row == 0 else None)
             left += value
         axes.text(left, row, f" {total:.0f}", va="center", fontsize=8)
+    axes.set_xlim(right=1.1 * max(total for _, _, total in bars))  # room for the sums
     axes.axvline(GOAL_MS, color="k", linestyle="--", linewidth=1)
     axes.set_yticks(range(len(bars)), [label for label, _, _ in bars], fontsize=8)
     axes.invert_yaxis()
