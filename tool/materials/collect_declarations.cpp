@@ -203,6 +203,7 @@ void ModelBuilder::addParameter(const File& file, const Members& members) {
     if (file.json["name"] != name) {
         name = newName(members);
     }
+    refuseWordOfGlsl(members);
     const auto& type = choose(kTypes, members, "type", members.text("type"));
     Parameter parameter = makeParameter(file, members, name, type.channels);
     parameter.type = type.glsl;
@@ -217,6 +218,7 @@ void ModelBuilder::addParameter(const File& file, const Members& members) {
 void ModelBuilder::addAttribute(const File& file, const Members& members) {
     VertexAttribute attribute;
     attribute.name = newName(members);
+    refuseWordOfGlsl(members);
     attribute.gltf = members.text("at");
     attribute.about = members.text("about", "");
     const auto& type = choose(kTypes, members, "type", members.text("type"));

@@ -136,6 +136,9 @@ private:
     std::string where_;
 };
 
+// Refuses a name that can't be that of a member in GLSL.
+void refuseWordOfGlsl(const Members& members);
+
 // A name that an #include may have, and that stays in its folder.
 inline bool isDeclaredFile(std::string_view name, std::string_view extension) {
     return name.ends_with(extension) && name.front() != '.' && std::ranges::all_of(name, [](unsigned char c) {

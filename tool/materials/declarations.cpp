@@ -211,29 +211,6 @@ void numberEffects(std::vector<EffectDeclaration>& effects) {
 
 namespace {
 
-// The words of GLSL that names of members can't be (GLSL 4.60, section 3.6), but for types with digits in
-// their names.
-constexpr std::string_view kGlslWords =
-    "attribute const uniform varying buffer shared coherent volatile restrict readonly writeonly layout "
-    "centroid flat "
-    "smooth noperspective patch sample break continue do for while switch case default if else subroutine in "
-    "out inout "
-    "int void bool true false float double invariant precise discard return lowp mediump highp precision "
-    "struct uint "
-    "common partition active asm class union enum typedef template this resource goto inline noinline public "
-    "static "
-    "extern external interface long short half fixed unsigned superp input output filter sizeof cast "
-    "namespace using";
-constexpr std::string_view kGlslTypes[] = {"vec", "ivec", "uvec", "bvec", "dvec", "mat", "dmat"};
-
-// Names are those of members and functions in GLSL.
-bool isWordOfGlsl(std::string_view name) {
-    const std::size_t letters = name.find_first_of("0123456789");
-    return hasWord(kGlslWords, name) ||
-           (letters != std::string_view::npos &&
-            std::ranges::find(kGlslTypes, name.substr(0, letters)) != std::end(kGlslTypes));
-}
-
 bool isIdentifier(std::string_view name) {
     return !name.empty() && std::islower(static_cast<unsigned char>(name.front())) != 0 &&
            std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) != 0; });
@@ -348,9 +325,6 @@ std::string ModelBuilder::newName(const Members& members) {
     if (!isIdentifier(name)) {
         failAt(members.at("name"),
                fmt::format("\"{}\" must be letters and digits that begin with a small letter", name));
-    }
-    if (isWordOfGlsl(name)) {
-        failAt(members.at("name"), fmt::format("\"{}\" is a word of GLSL, where the name stands", name));
     }
     const auto [place, isNew] = named_.try_emplace(name, members.at("name"));
     if (!isNew) {

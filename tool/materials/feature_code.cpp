@@ -55,6 +55,9 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
     if (!code.model.empty()) {
         checkModel(declaration, members);
     }
+    if (!code.layer.empty() || !code.model.empty() || !code.diffuse.empty()) {
+        refuseWordOfGlsl(declaration);  // The BSDF has a member of the name.
+    }
     // The code of coordinates and opacity also runs in traversal, for keys that no case of the module has.
     for (const std::string_view stage : {"layer", "coordinates", "opacity", "diffuse"}) {
         if (members.has(stage) && feature < 0) {

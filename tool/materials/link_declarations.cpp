@@ -398,6 +398,7 @@ void ModelBuilder::linkParameters(const File& file, const Members& members) {
 void ModelBuilder::linkDerived(const File& file, const Members& members) {
     DerivedField field;
     field.name = newName(members);
+    refuseWordOfGlsl(members);
     const auto& type = choose(kTypes, members, "type", members.text("type"));
     field.type = type.glsl;
     field.count = type.channels;

@@ -20,60 +20,6 @@ namespace glint::materials {
 inline constexpr double kNoOrder = 1e6;
 inline constexpr double kLargestFloat = std::numeric_limits<float>::max();
 
-struct NamedStage {
-    std::string_view name;
-    Stage stage;
-};
-inline constexpr NamedStage kStages[] = {
-    {"attributes", Stage::Attributes},
-    {"coordinates", Stage::Coordinates},
-    {"base", Stage::Base},
-    {"surface", Stage::Surface},
-    {"layer", Stage::Layer},
-    {"emission", Stage::Emission},
-    {"opacity", Stage::Opacity},
-};
-
-// Where a surface takes light from.
-enum class Light : std::uint8_t { None, Front, Both };
-
-struct NamedLight {
-    std::string_view name;
-    Light light;
-};
-inline constexpr NamedLight kLights[] = {
-    {"none", Light::None}, {"front", Light::Front}, {"both", Light::Both}};
-
-struct NamedType {
-    std::string_view name;
-    std::string_view glsl;
-    int channels;
-};
-inline constexpr NamedType kTypes[] = {{"float", "float", 1},
-                                       {"vec2", "vec2", 2},
-                                       {"vec3", "vec3", 3},
-                                       {"color", "vec3", 3},
-                                       {"vec4", "vec4", 4}};
-
-struct NamedBehaviour {
-    std::string_view name;
-    Behaviour behaviour;
-    std::string_view text;  // for explain, where the declaration has none
-};
-inline constexpr NamedBehaviour kBehaviours[] = {
-    {"reflects", Behaviour::Reflects, "has the roughness {}"},
-    {"transmits", Behaviour::Transmits, "lets light through"},
-    {"scatters", Behaviour::Scatters, "scatters light diffusely"},
-    {"emits", Behaviour::Emits, "emits light"},
-};
-
-// What a feature may read beyond its own values.
-struct NamedNeed {
-    std::string_view name;
-    int texCoord;  // the UV set; -1: a frame
-};
-inline constexpr NamedNeed kNeeds[] = {{"tangents", -1}, {"texCoord0", 0}, {"texCoord1", 1}};
-
 // Builds the model in two passes over the files: the first collects the names, the second reads the
 // expressions, which may use any of the names.
 class ModelBuilder {

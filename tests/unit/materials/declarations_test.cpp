@@ -338,13 +338,23 @@ TEST(Declarations, ReflectionsNeedNoWords) {
     EXPECT_TRUE(compiler::sendsRays(materials::builtinMaterialModel().effects[2], material, {}, 0.3F));
 }
 
+// Names that stand alone in GLSL; those of other features are the beginnings of names.
 TEST(Declarations, NamesAreNoWordsOfGlsl) {
+    const auto layer = [](const std::string& name) {
+        return R"({"name": ")" + name +
+               R"(", "extension": "EXT_wet", "stage": "layer", "glsl": {"bsdf": "a.glsl", "layer": "a.glsl"}})";
+    };
+    const auto parameter = [](const std::string& name) {
+        return R"({"name": "wet", "stage": "layer", "parameters": [{"name": ")" + name +
+               R"(", "type": "float", "default": 0}]})";
+    };
     for (const std::string name : {"precision", "sample", "vec3", "mat2x3"}) {
-        EXPECT_NE(refusal(R"({"name": ")" + name + R"(", "stage": "layer"})").find("is a word of GLSL"),
-                  std::string::npos)
-            << name;
+        EXPECT_NE(refusal(layer(name)).find("#/name: \"" + name + "\" is a word of GLSL"), std::string::npos);
+        EXPECT_NE(refusal(parameter(name)).find("#/parameters/0/name: \"" + name + "\" is a word of GLSL"),
+                  std::string::npos);
     }
-    EXPECT_TRUE(modelWith(R"({"name": "vec", "stage": "layer"})").ok());
+    EXPECT_TRUE(modelWith(parameter("vec")).ok());
+    EXPECT_TRUE(modelWith(R"({"name": "half", "stage": "opacity"})").ok());
 }
 
 // Glint's shaders have macros such as GLINT_PATHS and GLINT_FRAME. The bits of packs have a prefix, and no
