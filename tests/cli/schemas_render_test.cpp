@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace glint::testing {
 namespace {
@@ -39,12 +40,20 @@ TEST_F(RenderSchemas, HoldTheChecksOfMaterials) {
     EXPECT_EQ(outcome.exit, 1);
     EXPECT_TRUE(has(outcome.err, "retroreflectionDensity(): integrates to ")) << outcome.err;
     EXPECT_TRUE(has(outcome.err, "[check-density]")) << outcome.err;
-    expectFits("check-materials", outcome.json());
-    EXPECT_EQ(outcome.json().at("features").at(0).at("failed"), true);
-    for (const Json& picture : outcome.json().at("pictures")) {
+    const Json report = outcome.json();
+    expectFits("check-materials", report);
+    // Beside the pack's feature stands Glint's own base.
+    std::vector<std::string> failed;
+    for (const Json& feature : report.at("features")) {
+        if (feature.at("failed") == true) {
+            failed.push_back(feature.at("feature").get<std::string>());
+        }
+    }
+    EXPECT_EQ(failed, std::vector<std::string>{"retroreflection"});
+    for (const Json& picture : report.at("pictures")) {
         EXPECT_TRUE(std::filesystem::exists(path(picture.get<std::string>()))) << picture;
     }
-    EXPECT_EQ(outcome.json().at("pictures").size(), 2U);
+    EXPECT_EQ(report.at("pictures").size(), 4U);
 
     writeText(pack / "retroreflection.glsl", file);
     const Outcome sound = run({"check-materials", "pack", "--combinations", "4"});
