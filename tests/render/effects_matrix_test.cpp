@@ -115,6 +115,9 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     std::multiset<std::string> expected{"gbuffer.vert",    "gbuffer.frag",       "first_count.comp",
                                         "first_copy.comp", "bucket_offset.comp", "first_miss.comp",
                                         "compose.comp"};
+    if (shadow) {
+        expected.insert("first_shadows.comp");
+    }
     if (rays) {
         expected.insert({"ray_dispatch.comp", "trace.comp", "shade_miss.comp", "order_check.comp"});
         for (const char* const ordering : {"global_atomics", "wave_loop", "wave_aggregated", "wave_ballot",
@@ -139,7 +142,7 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
         const bool traces = module.statistics.rayQueries > 0;
         const bool mayTrace =
             module.name == "trace.comp" || module.name == "refraction_walk.comp" ||
-            (shadow && (module.name.starts_with("first_") || module.name.starts_with("shade_")));
+            (shadow && (module.name == "first_shadows.comp" || module.name.starts_with("shade_")));
         EXPECT_TRUE(!traces || mayTrace) << module.name;
     }
 
@@ -155,7 +158,7 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     // G-buffer, compose; of first hits: count, offset, copy, misses, cases; and of the list: dispatch, trace,
     // count, copy, misses, cases.
     const auto cases = static_cast<std::uint32_t>(keys);
-    std::uint32_t pipelines = 6 + cases;
+    std::uint32_t pipelines = 6 + cases + (shadow ? 1 : 0);
     pipelines += rays ? 5 + cases : 0;
     pipelines += reflection ? 1 : 0;
     pipelines += refraction ? 2 : 0;
@@ -164,14 +167,15 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     // positions.
     EXPECT_EQ(footprint.images, 5U + (reflection ? 1U : 0U));
     // The buffers are constants, counters, read-back; order, keys, buckets and their dispatch; samples in
-    // three parts, rays, hits and their dispatch.
-    EXPECT_EQ(footprint.buffers, 9U + (rays ? 6U : 0U));
+    // three parts, rays, hits and their dispatch; shadow rays and their numbers.
+    EXPECT_EQ(footprint.buffers, 9U + (rays ? 6U : 0U) + (shadow ? 2U : 0U));
 
     FrameOptions frame = defaultSetup(scene, 16, 9).frame;
     frame.timing = Timing::Passes;
     ASSERT_TRUE(renderer->render(frame));
     std::vector<std::string> passes{"gbuffer", "first count", "first offset", "first copy", "first miss"};
     passes.insert(passes.end(), keys, "first");
+    passes.insert(passes.end(), shadow ? 1 : 0, "first shadows");
     for (const char* const effect : {"reflection", "refraction"}) {
         const bool walks = effect == std::string("refraction");
         if (walks ? refraction : reflection) {

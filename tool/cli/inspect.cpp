@@ -90,6 +90,11 @@ base::Json scenesToJson(const inspect::InspectedPackage& inspected) {
     return list;
 }
 
+package::ShadowPlacement firstShadowsOf(const Package& package) {
+    return package.shape().defersFirstShadows() ? package::ShadowPlacement::Deferred
+                                                : package::ShadowPlacement::Inline;
+}
+
 std::string bindingsOf(const Package& package) {
     compiler::Settings settings;
     settings.compile.bindings = package.bindings();
@@ -233,6 +238,7 @@ base::Json toJson(const inspect::InspectedPackage& inspected) {
            package.layers().empty() ? "none" : fmt::format("{}", fmt::join(layerNames(package), ","))},
           {"precision", package::bitsOf(package.precision())},
           {"shadows", std::string(package::nameOf(package.shape().shadows))},
+          {"firstShadows", std::string(package::nameOf(firstShadowsOf(package)))},
           {"shadowThrough", std::string(package::nameOf(package.shadowThrough()))},
           {"hitRecord", std::string(package::nameOf(package.hitRecord()))},
           {"sampleRecord", std::string(package::nameOf(package.sampleRecord()))},
@@ -266,6 +272,7 @@ std::string toText(const inspect::InspectedPackage& inspected, Detail detail) {
          {"strategies", base::join(compiler::strategyNames(package.shape().strategies))},
          {"tracers", base::join(compiler::tracerNames(package.shape().tracers))},
          {"shadow rays", std::string(package::nameOf(package.shape().shadows))},
+         {"shadow rays of first hits", std::string(package::nameOf(firstShadowsOf(package)))},
          {"shadows through", std::string(package::nameOf(package.shadowThrough()))},
          {"hit record", package.hitsInSamples() ? std::string("in the record of its sample")
                                                 : std::string(package::nameOf(package.hitRecord()))},

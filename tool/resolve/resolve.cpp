@@ -402,7 +402,9 @@ private:
             const package::LayerInfo* const radiance = package::findLayer("radiance");
             return entry.effect == 0 && entry.layer == radiance->number;
         });
-        const std::string why = showsLight               ? "a layer shows the light of lights by itself"
+        const std::string why = showsLight ? "a layer shows the light of lights by itself"
+                                : build_.plan.effects.effects.surfaces != 0
+                                    ? "an effect traces rays at the same surfaces"
                                 : !compile_.host.empty() ? "a host may have any number of lights"
                                                          : "";
         const std::size_t most = mostShadowRays();
@@ -415,7 +417,9 @@ private:
                                           "the shadow rays of first hits can't be deferred: " + why,
                                           "use --first-shadows inline, or leave out the option"));
         }
-        const bool defers = why.empty() && most <= kMostDeferredRays;
+        const bool hasRays =
+            compile_.passes == package::Passes::Frame && build_.plan.effects.effects.lights != 0;
+        const bool defers = hasRays && why.empty() && most <= kMostDeferredRays;
         compile_.firstShadows =
             defers ? package::ShadowPlacement::Deferred : package::ShadowPlacement::Inline;
         settings_.choosesFirstShadows = false;

@@ -392,9 +392,10 @@ constexpr Descriptor kRows[] = {
      .what = "where shadow rays of what the camera sees are traced",
      .values = decided<&Settings::choosesFirstShadows, &Settings::compile, &CompileSettings::firstShadows>(
          "deferred, unless surfaces send many or layers show the light of lights"),
-     .bench = changesTime(withoutRays, "inline deferred"),
+     .bench = kNoPicture,
      .document = "shadows.md#where-shadow-rays-are-traced",
-     .recorded = true},
+     .recorded = true,
+     .idle = neverIdle},
     {.name = "hit-record",
      .commands = kMakers,
      .stage = SettingStage::Package,

@@ -38,12 +38,12 @@ TEST(CompilePackage, HasTheModulesOfItsStrategies) {
     settings.plan.merge = compiler::MergePolicy::None;
     settings.strategies = package::kStrategyUber;
     auto uber = countRoles(compileSample(settings));
-    EXPECT_EQ(uber.size(), 11U);
+    EXPECT_EQ(uber.size(), 12U);
     EXPECT_EQ(uber[package::roleNamed("UberShade")], 1);
     EXPECT_EQ(uber[ModuleRole::Trace], 0);
     settings.strategies = package::kStrategyVisibility;
     auto visibility = countRoles(compileSample(settings));
-    EXPECT_EQ(visibility.size(), 16U);
+    EXPECT_EQ(visibility.size(), 17U);
     EXPECT_EQ(visibility[package::roleNamed("ShadeCase")], 4);
     EXPECT_EQ(visibility[ModuleRole::BucketCount], static_cast<int>(package::Ordering::Count));
     EXPECT_EQ(visibility[package::roleNamed("UberShade")], 0);

@@ -60,7 +60,7 @@ TEST(SceneSource, HoldsTheSettings) {
     EXPECT_TRUE(defines(usual, "GLINT_PRECISION", "32"));
     EXPECT_NE(usual.find("#define GLINT_RELAXED\n"), std::string::npos);
     EXPECT_TRUE(defines(usual, "GLINT_ALPHA_TESTED", "0"));
-    EXPECT_TRUE(defines(usual, "GLINT_HAS_MASKED", "1"));
+    EXPECT_TRUE(defines(usual, "GLINT_MAY_MASK", "1"));
     settings.energyCompensation = false;
     settings.textureLod = compiler::TextureLod::Mip0;
     settings.precision = package::ShadingPrecision::Half;

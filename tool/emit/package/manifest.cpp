@@ -180,6 +180,7 @@ std::string memberName(std::string_view setting) {
 std::vector<std::pair<std::string, std::string>> settingsOf(const CompileSettings& compile) {
     Settings settings;
     settings.compile = compile;
+    settings.choosesFirstShadows = false;  // resolve() has chosen
     std::vector<std::pair<std::string, std::string>> list;
     for (const Descriptor& row : settingsTable()) {
         if (row.recorded) {
