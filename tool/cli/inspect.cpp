@@ -272,7 +272,7 @@ std::string toText(const inspect::InspectedPackage& inspected, Detail detail) {
          {"strategies", base::join(compiler::strategyNames(package.shape().strategies))},
          {"tracers", base::join(compiler::tracerNames(package.shape().tracers))},
          {"shadow rays", std::string(package::nameOf(package.shape().shadows))},
-         {"shadow rays of first hits", std::string(package::nameOf(firstShadowsOf(package)))},
+         {"first shadow rays", std::string(package::nameOf(firstShadowsOf(package)))},
          {"shadows through", std::string(package::nameOf(package.shadowThrough()))},
          {"hit record", package.hitsInSamples() ? std::string("in the record of its sample")
                                                 : std::string(package::nameOf(package.hitRecord()))},
