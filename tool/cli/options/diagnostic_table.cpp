@@ -27,7 +27,7 @@ constexpr DiagnosticList kLists[] = {
      " effect-unknown emissive-lights engine-scene"
      " environment-missing environment-radiance environment-size environment-unread environment-unsampled"
      " exception exr-encode extension-unsupported file-open file-read file-size file-write first-shadows"
-    " frame-not-recorded"
+     " frame-not-recorded"
      " frame-options glb-chunk glb-length glb-version glsl gltf gpu-table gpu-unknown half-precision"
      " hit-lobe-unknown host-folder host-unknown image-data image-decode image-extension image-format"
      " image-mismatch image-size index-range internal json-depth json-missing json-range json-syntax"
