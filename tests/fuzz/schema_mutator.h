@@ -1,4 +1,5 @@
-// Mutations of JSON that follow its schema. Blind changes of bytes rarely give a member that the readers know.
+// Mutations of JSON that follow its schema. Blind changes of bytes rarely give a member that the readers
+// know.
 #pragma once
 
 #include "base/json.h"

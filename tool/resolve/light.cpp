@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <interop/frame.h>
 #include <interop/lights.h>
 #include <iterator>
 #include <optional>
@@ -246,6 +247,52 @@ LightCounts countLights(const gltf::SceneList& scenes, std::size_t index, Emissi
     counts.emitters = emissive == EmissiveLights::On ? countEmitters(scenes, index) : 0;
     counts.areApart = counts.emitters > 0 && counts.positions <= gpu::kMostLightsApart;
     return counts;
+}
+
+namespace {
+
+// Surfaces with more shadow rays trace them inline, because each round of kMostFirstShadowRays shades them
+// once more.
+constexpr std::size_t kMostDeferredRays = std::size_t{4} * gpu::kMostFirstShadowRays;
+
+// Returns the most shadow rays of a surface, apart from those to further points of area lights.
+std::size_t mostShadowRays(const gltf::SceneList& scenes, const CompileSettings& compile) {
+    std::size_t most = 0;
+    for (std::size_t i = 0; i < scenes.scenes().size(); ++i) {
+        const LightCounts counts = countLights(scenes, i, compile.emissiveLights);
+        const std::size_t punctual = scenes.scenes()[i].lights.size() + (compile.addsLight ? 1 : 0);
+        const std::size_t apart = counts.areApart ? punctual : punctual - counts.positions;
+        const std::size_t samples = compile.lightSamples.value_or(0);
+        const std::size_t found = compile.sizedLights == SizedLights::On ? punctual : 0;
+        most = std::max(most, found + (samples > 0 ? apart + samples : punctual + counts.emitters));
+    }
+    return most + (compile.skyLight == SkyLight::On ? 1 : 0);
+}
+
+}  // namespace
+
+Result<FirstShadowPlan> planFirstShadows(const gltf::SceneList& scenes, const Plan& plan,
+                                         const CompileSettings& compile, bool chooses) {
+    const bool showsLight = std::ranges::any_of(plan.layers, [](const package::LayerEntry& entry) {
+        return entry.effect == 0 && entry.layer == package::findLayer("radiance")->number;
+    });
+    const package::EffectSet& effects = plan.effects.effects;
+    const std::string why = showsLight              ? "a layer shows the light of lights by itself"
+                            : effects.surfaces != 0 ? "an effect traces rays at the same surfaces"
+                            : !compile.host.empty() ? "a host may have any number of lights"
+                                                    : "";
+    if (!chooses && compile.firstShadows == package::ShadowPlacement::Deferred && !why.empty()) {
+        return makeError("first-shadows", scenes.path(),
+                         "the shadow rays of first hits can't be deferred: " + why,
+                         "use --first-shadows inline, or leave out the option");
+    }
+    const std::size_t most = mostShadowRays(scenes, compile);
+    const bool wanted = chooses ? why.empty() && most <= kMostDeferredRays
+                                : compile.firstShadows == package::ShadowPlacement::Deferred;
+    const bool hasRays = compile.passes == package::Passes::Frame && effects.lights != 0;
+    return FirstShadowPlan{
+        wanted && hasRays ? package::ShadowPlacement::Deferred : package::ShadowPlacement::Inline,
+        static_cast<std::uint32_t>(std::clamp<std::size_t>(most, 1, gpu::kMostFirstShadowRays))};
 }
 
 bool addsSun(const Settings& settings, const gltf::Scene& scene) {

@@ -77,6 +77,17 @@ std::size_t countEmitters(const gltf::SceneList& scenes, std::size_t scene);
 // triangles where these are lights.
 LightCounts countLights(const gltf::SceneList& scenes, std::size_t scene, EmissiveLights emissive);
 
+// Where shadow rays of first hits are traced. A pass of their own leaves the shaders of cases without the
+// code of a traversal, so that they take fewer registers and less time to compile.
+struct FirstShadowPlan {
+    package::ShadowPlacement placement = package::ShadowPlacement::Inline;
+    std::uint32_t rays = 1;  // CompileSettings::firstShadowRays
+};
+// Requires that `plan` has its effects and layers, and that lights are decided. `chooses`: nobody asks for
+// CompileSettings::firstShadows. Error "first-shadows" if rays are to be deferred that can't be.
+Result<FirstShadowPlan> planFirstShadows(const gltf::SceneList& scenes, const Plan& plan,
+                                         const CompileSettings& compile, bool chooses);
+
 // Returns whether a picture gets a light that its scene lacks.
 bool addsSun(const Settings& settings, const gltf::Scene& scene);
 

@@ -17,7 +17,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <interop/frame.h>
 #include <iterator>
 #include <optional>
 #include <utility>
@@ -154,10 +153,6 @@ std::vector<std::string> runnableStrategies(const Target& target, std::optional<
     // Features that the device lacks are reported when the package is used.
     return names.empty() && target.package ? strategyNames(target.package->shape.strategies) : names;
 }
-
-// Surfaces with more shadow rays trace them inline, because each round of kMostFirstShadowRays shades them
-// once more.
-constexpr std::size_t kMostDeferredRays = std::size_t{4} * gpu::kMostFirstShadowRays;
 
 // Decides one thing after the other. Each step relies on those before it.
 class Resolver {
@@ -395,49 +390,13 @@ private:
         return okStatus();
     }
 
-    // Decides where shadow rays of first hits are traced. A pass of their own leaves the shaders of cases
-    // without the code of a traversal, so that they take fewer registers and less time to compile.
     Status decideFirstShadows() {
-        const bool showsLight = std::ranges::any_of(build_.plan.layers, [](const package::LayerEntry& entry) {
-            const package::LayerInfo* const radiance = package::findLayer("radiance");
-            return entry.effect == 0 && entry.layer == radiance->number;
-        });
-        const std::string why = showsLight ? "a layer shows the light of lights by itself"
-                                : build_.plan.effects.effects.surfaces != 0
-                                    ? "an effect traces rays at the same surfaces"
-                                : !compile_.host.empty() ? "a host may have any number of lights"
-                                                         : "";
-        const std::size_t most = mostShadowRays();
-        compile_.firstShadowRays =
-            static_cast<std::uint32_t>(std::clamp<std::size_t>(most, 1, gpu::kMostFirstShadowRays));
-        if (!settings_.choosesFirstShadows) {
-            return why.empty() || compile_.firstShadows == package::ShadowPlacement::Inline
-                       ? okStatus()
-                       : Status(makeError("first-shadows", scenes_.path(),
-                                          "the shadow rays of first hits can't be deferred: " + why,
-                                          "use --first-shadows inline, or leave out the option"));
-        }
-        const bool hasRays =
-            compile_.passes == package::Passes::Frame && build_.plan.effects.effects.lights != 0;
-        const bool defers = hasRays && why.empty() && most <= kMostDeferredRays;
-        compile_.firstShadows =
-            defers ? package::ShadowPlacement::Deferred : package::ShadowPlacement::Inline;
+        GLINT_TRY(const FirstShadowPlan planned,
+                  planFirstShadows(scenes_, build_.plan, compile_, settings_.choosesFirstShadows));
+        compile_.firstShadows = planned.placement;
+        compile_.firstShadowRays = planned.rays;
         settings_.choosesFirstShadows = false;
         return okStatus();
-    }
-
-    // Returns the most shadow rays of a surface, apart from those to further points of area lights.
-    std::size_t mostShadowRays() const {
-        std::size_t most = 0;
-        for (std::size_t i = 0; i < scenes_.scenes().size(); ++i) {
-            const LightCounts counts = countLights(scenes_, i, compile_.emissiveLights);
-            const std::size_t punctual = scenes_.scenes()[i].lights.size() + (compile_.addsLight ? 1 : 0);
-            const std::size_t apart = counts.areApart ? punctual : punctual - counts.positions;
-            const std::size_t samples = compile_.lightSamples.value_or(0);
-            const std::size_t found = compile_.sizedLights == SizedLights::On ? punctual : 0;
-            most = std::max(most, found + (samples > 0 ? apart + samples : punctual + counts.emitters));
-        }
-        return most + (compile_.skyLight == SkyLight::On ? 1 : 0);
     }
 
     // Chooses the strategy that should be fastest, and from the strategies the tracers.

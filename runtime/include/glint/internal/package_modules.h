@@ -107,8 +107,8 @@ struct PackageShape {
     bool deforms = false;                  // a scene has meshes that follow skins or morph targets
     Passes passes = Passes::Frame;
     std::uint32_t maxBounces = 1;
-    bool fallback = false;      // it has shaders for every material beside those of its cases
-    bool shadowsApart = false;  // candidates of shadow rays are not treated as those of other rays
+    bool fallback = false;              // it has shaders for every material beside those of its cases
+    bool shadowsApart = false;          // candidates of shadow rays are not treated as those of other rays
     std::uint32_t firstShadowRays = 0;  // PackageHeader::firstShadowRays
 
     // Returns whether the shadow rays of first hits wait for a pass of their own.
