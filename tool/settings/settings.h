@@ -77,7 +77,7 @@ struct CompileSettings {
     std::uint32_t strategies = package::kDefaultStrategies;
     std::uint32_t tracers = package::kTracerRayQuery;
     package::ShadowPlacement shadows = package::ShadowPlacement::Inline;
-    // Of first hits. resolve() makes Deferred Inline where something speaks against it.
+    // The same for first hits. Where something speaks against Deferred, resolve() makes it Inline.
     package::ShadowPlacement firstShadows = package::ShadowPlacement::Deferred;
     // The rays of a first hit that wait at once, if they are deferred (resolve() counts them).
     std::uint32_t firstShadowRays = 1;
