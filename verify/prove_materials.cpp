@@ -296,8 +296,11 @@ Result<FeatureProof> compileFeatureProof(const compiler::Build& build, const mat
     context.set("type", type);
     context.set("inputs", std::to_string(inputs.count));
     context.set("outputs", std::to_string(kProofOutputs));
-    context.set("lobes", std::to_string(static_cast<std::uint32_t>(mask)));
-    context.set("inputBits", std::to_string(static_cast<std::uint32_t>(mask >> 32U)));
+    const package::KeyWords words = plan.model->words(mask);
+    context.set("lobes", std::to_string(words.lobes));
+    context.set("inputBits", std::to_string(words.inputs));
+    context.set("model", fmt::format("{:#x}u", words.model));
+    context.set("own", fmt::format("{:#x}u", words.own));
     GLINT_TRY(const auto text, compiler::renderTemplate(sources, kProofTemplate, context));
     GLINT_TRY(const auto glsl,
               compiler::flatten(kProofName, text, sources.lookup(), compiler::FlattenSide::Glsl));

@@ -25,7 +25,9 @@ using Vec3 = std::array<float, 3>;
 struct GeometryData {
     VkDeviceAddress vertices;
     VkDeviceAddress indices;
-    std::uint32_t shaderId, material, featureLobes, featureInputs, instance, pad;
+    std::uint32_t shaderId, material;
+    glint::package::KeyWords key;
+    std::uint32_t instance, pad;
 };
 struct SunData {
     Vec3 direction;

@@ -86,7 +86,7 @@ void Engine::State::placeInstances() {
             records.push_back(view);
             recordIndexCounts.push_back(geometry.indexCount);
             data.push_back({address, indices[place].address, entry->shaderId, entry->materialIndex,
-                            entry->featureLobes, entry->featureInputs, i, 0});
+                            entry->key, i, 0});
         }
     }
     geometryData = gpu.upload(bytesOf(data));

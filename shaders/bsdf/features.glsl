@@ -1,17 +1,32 @@
 #include "generated/features.glsl"
 #include "generated/scene.glsl"
+#include "interop/models.h"
 
-// The features that a case knows about its keys. `always` and `sometimes` are literals of the case; `lobes` and
-// `inputs` are the key of the geometry at hand. The functions are written so that SPIRV-Tools folds every decided bit:
-// a feature that no key of the case has leaves no code, and one that every key has leaves no branch.
+// The features that a case knows about its keys. Those that every model may have stand in two words, `lobes` and
+// `inputs`; those of a model that a pack declares in `own`, numbered in the model. What begins with `always`, `sometimes`
+// and `case` are literals of the case; the others are the key of the geometry at hand. The functions are written so that
+// SPIRV-Tools folds every decided bit: a feature that no key of the case has leaves no code, and one that every key has
+// leaves no branch.
 struct Features {
     uint alwaysLobes;
     uint alwaysInputs;
     uint sometimesLobes;
     uint sometimesInputs;
+    uint caseModel;  // interop/models.h
+    uint alwaysOwn;
+    uint sometimesOwn;
     uint lobes;
     uint inputs;
+    uint model;
+    uint own;
 };
+
+// The members of Features that are the key of a geometry.
+#if GLINT_MODELS
+#define GLINT_KEY(geometry) (geometry).featureLobes, (geometry).featureInputs, (geometry).featureModel, (geometry).featureOwn
+#else
+#define GLINT_KEY(geometry) (geometry).featureLobes, (geometry).featureInputs, 0u, 0u
+#endif
 
 bool lobeOfKey(Features features, uint bit) {
     return (features.alwaysLobes & bit) != 0u ||
@@ -23,6 +38,22 @@ bool inputOfKey(Features features, uint bit) {
            ((features.sometimesInputs & bit) != 0u && (features.inputs & bit) != 0u);
 }
 
+// The features of a case and a key without such a model.
+#define GLINT_FEATURES_OF_GLTF(alwaysLobes, alwaysInputs, sometimesLobes, sometimesInputs, lobes, inputs)       \
+    Features(alwaysLobes, alwaysInputs, sometimesLobes, sometimesInputs, 0u, 0u, 0u, lobes, inputs, 0u, 0u)
+
+// Returns the word of the key's model.
+uint modelOfKey(Features features) {
+    return features.caseModel != kAnyModel ? features.caseModel : features.model;
+}
+
+// Returns whether the key is of the model of that number, and has one of its features; without bits, the model alone.
+bool ownOfKey(Features features, uint model, uint bits) {
+    return (modelOfKey(features) & kModelNumber) == model &&
+           (bits == 0u || (features.alwaysOwn & bits) != 0u ||
+            ((features.sometimesOwn & bits) != 0u && (features.own & bits) != 0u));
+}
+
 // The features that all cases of the module have, and those that any has. A module that defines them before it includes
 // this file compiles several times faster, because code of decided features is removed before functions are inlined.
 #ifndef GLINT_MODULE_ALWAYS_LOBES
@@ -30,6 +61,7 @@ bool inputOfKey(Features features, uint bit) {
 #define GLINT_MODULE_ALWAYS_INPUTS 0u
 #define GLINT_MODULE_ANY_LOBES 0xFFFFFFFFu
 #define GLINT_MODULE_ANY_INPUTS 0xFFFFFFFFu
+#define GLINT_MODULE_MODEL kAnyModel
 #endif
 
 // Every module also evaluates the emission of emissive lights, whichever case they belong to. So nothing is decided for
@@ -39,11 +71,13 @@ bool inputOfKey(Features features, uint bit) {
 #define GLINT_DECIDED_ALWAYS_INPUTS GLINT_EMITTER_ALWAYS_INPUTS
 #define GLINT_DECIDED_ANY_LOBES (GLINT_EMITTER_ALWAYS_LOBES | GLINT_EMITTER_SOMETIMES_LOBES)
 #define GLINT_DECIDED_ANY_INPUTS (GLINT_EMITTER_ALWAYS_INPUTS | GLINT_EMITTER_SOMETIMES_INPUTS)
+#define GLINT_DECIDED_MODEL GLINT_EMITTER_MODEL
 #else
 #define GLINT_DECIDED_ALWAYS_LOBES 0xFFFFFFFFu
 #define GLINT_DECIDED_ALWAYS_INPUTS 0xFFFFFFFFu
 #define GLINT_DECIDED_ANY_LOBES 0u
 #define GLINT_DECIDED_ANY_INPUTS 0u
+#define GLINT_DECIDED_MODEL GLINT_MODULE_MODEL
 #endif
 
 #define hasLobe(features, bit)                                                                                  \
@@ -53,32 +87,45 @@ bool inputOfKey(Features features, uint bit) {
     ((GLINT_MODULE_ALWAYS_INPUTS & GLINT_DECIDED_ALWAYS_INPUTS & (bit)) != 0u ||                                \
      (((GLINT_MODULE_ANY_INPUTS | GLINT_DECIDED_ANY_INPUTS) & (bit)) != 0u && inputOfKey(features, bit)))
 
+// Whether `model` is the number of a model that the module's keys, or emissive lights, may have.
+#define GLINT_MAY_BE_MODEL(number)                                                                              \
+    (GLINT_MODULE_MODEL == kAnyModel || GLINT_DECIDED_MODEL == kAnyModel ||                                     \
+     (GLINT_MODULE_MODEL & kModelNumber) == (number) || (GLINT_DECIDED_MODEL & kModelNumber) == (number))
+#define hasOwn(features, model, bits) (GLINT_MAY_BE_MODEL(model) && ownOfKey(features, model, bits))
+
+// The word of the key's model.
+#define GLINT_MODEL_OF(features)                                                                                \
+    (GLINT_MODULE_MODEL != kAnyModel && GLINT_MODULE_MODEL == GLINT_DECIDED_MODEL ? GLINT_MODULE_MODEL          \
+                                                                                  : modelOfKey(features))
+
 // Returns whether light changes what the surface shows.
 bool isLit(Features features) {
-    return !hasLobe(features, GLINT_UNLIT_LOBES);
+    return !hasLobe(features, GLINT_UNLIT_LOBES) && (GLINT_MODEL_OF(features) & kModelUnlit) == 0u;
 }
 
 // Returns whether a model of a pack stands in place of glTF's base (bsdf/model.glsl).
 bool hasModel(Features features) {
-    return hasLobe(features, GLINT_MODEL_LOBES);
+    return (GLINT_MODEL_OF(features) & kModelOwnCode) != 0u;
+}
+
+// Returns whether such a model samples directions itself.
+bool samplesModel(Features features) {
+    return (GLINT_MODEL_OF(features) & kModelSampled) != 0u;
 }
 
 // Returns whether the base sends light to the far side.
 bool transmits(Features features) {
-    return hasLobe(features, GLINT_BOTH_SIDES_LOBES);
+    return hasLobe(features, GLINT_BOTH_SIDES_LOBES) || (GLINT_MODEL_OF(features) & kModelBothSides) != 0u;
 }
 
 // Returns whether it scatters light there: Bsdf::diffuseTransmitted.
 bool scattersBehind(Features features) {
-    return hasLobe(features, GLINT_DIFFUSE_TRANSMISSION | (GLINT_MODEL_LOBES & GLINT_BOTH_SIDES_LOBES));
+    const uint kScatters = kModelOwnCode | kModelBothSides;
+    return hasLobe(features, GLINT_DIFFUSE_TRANSMISSION) || (GLINT_MODEL_OF(features) & kScatters) == kScatters;
 }
 
 // The features of any key of the scene, with all lobes: for primary surfaces.
-#define GLINT_PRIMARY_FEATURES(geometry)                                                                        \
-    Features(GLINT_ALWAYS_LOBES, GLINT_ALWAYS_INPUTS, GLINT_SOMETIMES_LOBES, GLINT_SOMETIMES_INPUTS,            \
-             (geometry).featureLobes, (geometry).featureInputs)
+#define GLINT_PRIMARY_FEATURES(geometry) Features(GLINT_ALL, GLINT_KEY(geometry))
 
 // Returns the features of a hit of a ray, with the lobes that hits keep: for code before the switch.
-#define GLINT_HIT_FEATURES(geometry)                                                                            \
-    Features(GLINT_HIT_ALWAYS_LOBES, GLINT_HIT_ALWAYS_INPUTS, GLINT_HIT_SOMETIMES_LOBES,                        \
-             GLINT_HIT_SOMETIMES_INPUTS, (geometry).featureLobes, (geometry).featureInputs)
+#define GLINT_HIT_FEATURES(geometry) Features(GLINT_HIT_ALL, GLINT_KEY(geometry))

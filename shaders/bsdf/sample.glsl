@@ -4,7 +4,7 @@
 #if GLINT_MODELS
 // Returns whether the model samples itself.
 bool samplesModel(Features features) {
-    return hasLobe(features, GLINT_SAMPLED_MODEL_LOBES);
+    return samplesModel(features);
 }
 #endif
 

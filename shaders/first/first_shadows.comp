@@ -24,7 +24,7 @@ void main() {
 #endif
     GLINT_CLOCK_START
     // The origin of the rays needs no attribute of the vertices.
-    const Features kNone = Features(0u, 0u, 0u, 0u, 0u, 0u);
+    const Features kNone = GLINT_FEATURES_OF_GLTF(0u, 0u, 0u, 0u, 0u, 0u);
     uvec2 seen = imageLoad(surfaceImage, ivec2(pixel)).xy;
     Hit hit = primaryHit(hostGeometry(seen.x), seen.y, cameraRay(pixel), target, kNone);
     ShadowCounts counts = ShadowCounts(0u, 0u, 0u, 0u, 0u);

@@ -23,8 +23,7 @@ void countAlphaTest() {
 // Returns the alpha at a point of a triangle, and the cutoff. It reads mip 0, because traversal knows no footprint. The
 // module's own cases do not matter here: a ray of any case meets masks of all cases.
 vec2 alphaAndCutoff(HostGeometry geometry, uint primitive, vec2 barycentrics) {
-    Features features = Features(GLINT_ALPHA_ALWAYS_LOBES, GLINT_ALPHA_ALWAYS_INPUTS, GLINT_ALPHA_SOMETIMES_LOBES,
-                                 GLINT_ALPHA_SOMETIMES_INPUTS, geometry.featureLobes, geometry.featureInputs);
+    Features features = Features(GLINT_ALPHA_ALL, GLINT_KEY(geometry));
     MaterialRecord material = hostMaterials().data[geometry.materialIndex];
     SurfacePoint point = surfacePoint(geometry, primitive, barycentrics, features);
     runMaskCoordinates(point, features);

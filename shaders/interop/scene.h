@@ -3,6 +3,7 @@
 #define GLINT_INTEROP_SCENE_H
 
 #include "interop/lights.h"
+#include "interop/models.h"
 #include "interop/surface.h"
 
 #ifndef __cplusplus
@@ -41,8 +42,10 @@ GLINT_CONSTANT(kGeometryHostFlagsShift, 16u);  // the flags from this bit on are
 struct GeometryRecord {
     uint shaderId;       // number of the case that shades it
     uint materialIndex;  // index into FrameConstants::materials
-    uint featureLobes;   // the key, low word: lobes
-    uint featureInputs;  // the key, high word: inputs
+    uint featureLobes;   // the key: features that every model may have, lobes
+    uint featureInputs;  // and inputs
+    uint featureModel;   // the model of a pack, as interop/models.h has it; 0: one of glTF's
+    uint featureOwn;     // and its own features
     uint instanceIndex;  // index into FrameConstants::instances
     uint flags;          // kGeometry*
     GLINT_ADDRESS(Uint) indices;     // 3 for each triangle

@@ -27,6 +27,8 @@ struct GlintSurface {
     // These members are the library's own.
     uint featureLobes;
     uint featureInputs;
+    uint featureModel;
+    uint featureOwn;
     uint number;
     float clearance;
     Surface inner;
@@ -65,6 +67,8 @@ GlintSurface librarySurface(GlintHit given, HostGeometry geometry, Features feat
     result.shaderId = geometry.shaderId;
     result.featureLobes = geometry.featureLobes;
     result.featureInputs = geometry.featureInputs;
+    result.featureModel = geometry.featureModel;
+    result.featureOwn = geometry.featureOwn;
     result.number = given.number;
     result.clearance = hit.clearance;
     if (!isLit(features)) {
@@ -179,6 +183,8 @@ GlintSurface unknownSurface(GlintHit given, HostGeometry geometry) {
     result.shaderId = geometry.shaderId;
     result.featureLobes = 0u;
     result.featureInputs = 0u;
+    result.featureModel = 0u;
+    result.featureOwn = 0u;
     result.number = given.number;
     result.clearance = 0.0;
     return result;

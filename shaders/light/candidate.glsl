@@ -106,8 +106,7 @@ vec3 sharePastInterface(SurfacePoint point, Features features, vec3 color, float
 // Returns whether the light ends at the candidate. If it goes on, `passage` loses the part that the candidate absorbs.
 bool endsLight(PassageCandidate candidate, inout LightPassage passage) {
     HostGeometry geometry = hostGeometry(candidate.geometry);
-    Features features = Features(GLINT_ALPHA_ALWAYS_LOBES, GLINT_ALPHA_ALWAYS_INPUTS, GLINT_ALPHA_SOMETIMES_LOBES,
-                                 GLINT_ALPHA_SOMETIMES_INPUTS, geometry.featureLobes, geometry.featureInputs);
+    Features features = Features(GLINT_ALPHA_ALL, GLINT_KEY(geometry));
     SurfacePoint point = surfacePoint(geometry, candidate.primitive, candidate.barycentrics, features);
     runMaskCoordinates(point, features);
     vec4 color = pointColor(geometry, point, candidate, features);

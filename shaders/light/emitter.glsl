@@ -153,9 +153,7 @@ SharedSample sampleEmitter(uint emitter, vec3 position, vec2 u) {
         return result;
     }
     HostGeometry geometry = triangle.geometry;
-    Features features =
-        Features(GLINT_EMITTER_ALWAYS_LOBES, GLINT_EMITTER_ALWAYS_INPUTS, GLINT_EMITTER_SOMETIMES_LOBES,
-                 GLINT_EMITTER_SOMETIMES_INPUTS, geometry.featureLobes, geometry.featureInputs);
+    Features features = Features(GLINT_EMITTER_ALL, GLINT_KEY(geometry));
     // A cone without width reads the finest level of textures.
     Hit hit = fetchHitAt(geometry, barycentrics, result.direction, 0.0, 0u, features,
                          vertexPositions(geometry, triangle.primitive));

@@ -20,7 +20,10 @@ struct TestMaterial {
     glsl::uint inputs = 0;
 
     glsl::Features features() const {
-        return {0U, 0U, 0xFFFFFFFFU, 0xFFFFFFFFU, lobes, inputs};
+        return {.sometimesLobes = 0xFFFFFFFFU,
+                .sometimesInputs = 0xFFFFFFFFU,
+                .lobes = lobes,
+                .inputs = inputs};
     }
     bool has(glsl::uint lobe) const {
         return (lobes & lobe) != 0U;

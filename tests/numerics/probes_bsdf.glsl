@@ -216,9 +216,9 @@ Bsdf givenBsdf(float f0X, float f0Y, float f0Z, vec3 diffuse, float f90, vec2 al
 }
 
 #define GIVEN_INPUTS (i[37] > 0.0 && i[37] < 1.0 ? GLINT_PARTIAL_METAL : 0u)
-#define GIVEN_FEATURES Features(0u, 0u, 0xFFFFFFFFu, 0xFFFFFFFFu, uint(i[0]), GIVEN_INPUTS)
+#define GIVEN_FEATURES GLINT_FEATURES_OF_GLTF(0u, 0u, 0xFFFFFFFFu, 0xFFFFFFFFu, uint(i[0]), GIVEN_INPUTS)
 #define GIVEN_FEATURES_WITHOUT_SHEEN                                                                        \
-    Features(0u, 0u, 0xFFFFFFFFu, 0xFFFFFFFFu, uint(i[0]) & ~GLINT_SHEEN, GIVEN_INPUTS)
+    GLINT_FEATURES_OF_GLTF(0u, 0u, 0xFFFFFFFFu, 0xFFFFFFFFu, uint(i[0]) & ~GLINT_SHEEN, GIVEN_INPUTS)
 #define GIVEN_BSDF(b)                                                                                       \
     Bsdf b = givenBsdf(i[1], i[2], i[3], VEC3(4), i[7], VEC2(8), VEC3(10), VEC3(13), VEC3(16));              \
     b.layers.clearcoat.factor = i[19];                                                                                \

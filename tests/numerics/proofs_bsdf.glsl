@@ -291,7 +291,7 @@ Bsdf claimedBsdf(float f0, float f90, float loss, float meanLoss) {
     return b;
 }
 
-#define CLAIMED_FEATURES(lobes) Features(lobes, 0u, 0u, 0u, lobes, 0u)
+#define CLAIMED_FEATURES(lobes) GLINT_FEATURES_OF_GLTF(lobes, 0u, 0u, 0u, lobes, 0u)
 
 PROOF(MultiScatterOf) {
     o[0] = multiScatterOf(vec3(i[0]), claimedF90(i[0], i[1]), i[2]).x;

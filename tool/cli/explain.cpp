@@ -329,7 +329,7 @@ base::Json toJson(const ExplainArguments& arguments, const compiler::Build& buil
                       {"scenesInFile", scenesInFileToJson(scene)},
                       {"merge", nameOf(options.merge)},
                       {"alpha", nameOf(options.keys.alpha)},
-                      {"hitLobes", featuresToJson(*build.plan.model, options.keys.keptLobes)},
+                      {"hitLobes", featuresToJson(*build.plan.model, options.keys.keptLobes & build.plan.model->lobes)},
                       {"variant", base::textOrNull(scene.variant)},
                       {"variants", scene.variants}};
     if (arguments.wholePlan) {

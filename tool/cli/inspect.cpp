@@ -66,8 +66,8 @@ base::Json shadersToJson(const inspect::InspectedPackage& inspected) {
         }
         list.push_back(base::Json{{"id", id},
                                   {"name", std::string(inspected.package.string(shader.name))},
-                                  {"always", featuresToJson(inspected.manifest.model, shader.always)},
-                                  {"sometimes", featuresToJson(inspected.manifest.model, shader.sometimes)},
+                                  {"always", inspected.package.featureNames(shader.always)},
+                                  {"sometimes", inspected.package.featureNames(shader.sometimes)},
                                   {"keys", shader.keyCount},
                                   {"materials", materials},
                                   {"stages", stagesOf(inspected, id)}});
@@ -136,8 +136,8 @@ std::string materialsText(const inspect::InspectedPackage& inspected, std::uint3
 }
 
 // Features that a shader has; their names where there is room for them.
-std::string featuresText(const materials::MaterialModel& model, materials::FeatureMask mask, Detail detail) {
-    return detail == Detail::Whole ? featureList(model, mask) : fmt::format("{}", std::popcount(mask));
+std::string featuresText(const std::vector<std::string>& names, Detail detail) {
+    return detail == Detail::Whole ? base::join(names) : fmt::format("{}", names.size());
 }
 
 std::string shaderTable(const inspect::InspectedPackage& inspected, Detail detail) {
@@ -146,8 +146,8 @@ std::string shaderTable(const inspect::InspectedPackage& inspected, Detail detai
     for (const package::CaseEntry& shader : inspected.package.cases()) {
         rows.push_back({shaderTitle(id, inspected.package.string(shader.name), detail),
                         fmt::format("{}", shader.keyCount),
-                        featuresText(inspected.manifest.model, shader.always, detail),
-                        featuresText(inspected.manifest.model, shader.sometimes, detail),
+                        featuresText(inspected.package.featureNames(shader.always), detail),
+                        featuresText(inspected.package.featureNames(shader.sometimes), detail),
                         materialsText(inspected, id)});
         ++id;
     }
@@ -179,7 +179,7 @@ std::string moduleTable(const inspect::InspectedPackage& inspected, Detail detai
 }
 
 std::string hitLobesText(const inspect::Manifest& manifest) {
-    return manifest.hitLobes.size() == manifest.model.names(manifest.model.lobes).size()
+    return manifest.hitLobes.size() == static_cast<std::size_t>(std::ranges::count_if(manifest.features, &compiler::ManifestFeature::lobe))
                ? "all"
                : base::join(manifest.hitLobes);
 }

@@ -38,7 +38,7 @@ std::string materialNames(const gltf::SceneList& scenes, const std::vector<int>&
     return list;
 }
 
-std::string literal(materials::FeatureMask word) {
+std::string literal(std::uint32_t word) {
     return fmt::format("{:#x}u", word);
 }
 
@@ -59,14 +59,22 @@ std::string commentText(std::string_view text) {
     return text.size() > kMaxNameLength ? line + "..." : line;
 }
 
+std::string caseFeatures(const package::KeyWords& always, const package::KeyWords& sometimes) {
+    return fmt::format("{:#x}u, {:#x}u, {:#x}u, {:#x}u, {:#x}u, {:#x}u, {:#x}u", always.lobes, always.inputs,
+                       sometimes.lobes, sometimes.inputs, always.model, always.own, sometimes.own);
+}
+
 void addCase(mustache::data& context, const gltf::SceneList& scenes, const materials::MaterialModel& model,
              const Case& shaderCase) {
     context.set("id", shaderCase.shaderId < 0 ? "of any material" : fmt::format("{}", shaderCase.shaderId));
     context.set("name", shaderCase.name);
-    context.set("alwaysLobes", literal(shaderCase.always & materials::kLobeMask));
-    context.set("alwaysInputs", literal(shaderCase.always >> 32U));
-    context.set("sometimesLobes", literal(shaderCase.sometimes & materials::kLobeMask));
-    context.set("sometimesInputs", literal(shaderCase.sometimes >> 32U));
+    const auto [always, sometimes] = model.caseWords(shaderCase.always, shaderCase.sometimes);
+    context.set("alwaysLobes", literal(always.lobes));
+    context.set("alwaysInputs", literal(always.inputs));
+    context.set("sometimesLobes", literal(sometimes.lobes));
+    context.set("sometimesInputs", literal(sometimes.inputs));
+    context.set("model", literal(always.model));
+    context.set("caseFeatures", caseFeatures(always, sometimes));
     context.set("always", featureList(model, shaderCase.always));
     context.set("sometimes", featureList(model, shaderCase.sometimes));
     context.set("materials", materialNames(scenes, shaderCase.materials));

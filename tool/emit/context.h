@@ -41,8 +41,11 @@ std::string commentText(std::string_view text);
 kainjow::mustache::data makeContext(const gltf::SceneList& scenes, const Plan& plan,
                                     const PlanOptions& options);
 
+// Returns the first members of Features (shaders/bsdf/features.glsl), as GLSL.
+std::string caseFeatures(const package::KeyWords& always, const package::KeyWords& sometimes);
+
 // Adds the fields of one case to the top level: id, name, alwaysLobes, alwaysInputs, sometimesLobes,
-// sometimesInputs, always, sometimes, materials.
+// sometimesInputs, model, caseFeatures, always, sometimes, materials.
 void addCase(kainjow::mustache::data& context, const gltf::SceneList& scenes,
              const materials::MaterialModel& model, const Case& shaderCase);
 

@@ -106,13 +106,12 @@ mustache::data imageFields(const Plan& plan, std::string_view layer, package::Ef
 std::string slotsRead(const Plan& plan) {
     const MaterialLayout layout = materialLayoutOf(plan);
     std::vector<std::string> bits;
-    for (std::size_t slot = 0; slot < layout.textures.size(); ++slot) {
+    for (const TextureSlot& slot : layout.textures) {
         const materials::MaterialTexture& texture =
-            plan.model->textures[static_cast<std::size_t>(layout.textures[slot])];
+            plan.model->textures[static_cast<std::size_t>(slot.texture)];
         const materials::Feature& feature = plan.model->features[static_cast<std::size_t>(texture.feature)];
-        bits.push_back(fmt::format("({}(features, {}) ? {}u : 0u)",
-                                   feature.bit < materials::kFirstInput ? "hasLobe" : "hasInput",
-                                   feature.macro, std::uint64_t{1} << slot));
+        bits.push_back(fmt::format("(GLINT_HAS_{}(features) ? {}u : 0u)", feature.macroEnd(),
+                                   std::uint64_t{1} << static_cast<unsigned>(slot.slot)));
     }
     return fmt::format("#define GLINT_SLOTS_READ(features) ({})\n",
                        bits.empty() ? "0u" : fmt::format("{}", fmt::join(bits, " | ")));

@@ -22,7 +22,7 @@ std::vector<const materials::FeatureCode*> lobesOf(const Plan& plan) {
     std::vector<const materials::FeatureCode*> lobes;
     for (const materials::FeatureCode& code : plan.model->code) {
         if (!(code.layer.empty() && code.model.empty()) &&
-            (plan.model->features[static_cast<std::size_t>(code.feature)].mask() & used) != 0) {
+            used.has(plan.model->features[static_cast<std::size_t>(code.feature)].bit)) {
             lobes.push_back(&code);
         }
     }
@@ -43,7 +43,8 @@ Result<FeatureKernel> compileFeatureKernel(const Build& build) {
         (lobe->model.empty() ? layers : models)
             .push_back(kainjow::mustache::object{
                 {"name", lobe->name},
-                {"macro", plan.model->features[static_cast<std::size_t>(lobe->feature)].macro},
+                {"has",
+                 "GLINT_HAS_" + plan.model->features[static_cast<std::size_t>(lobe->feature)].macroEnd()},
                 {"lobe", std::to_string(kernel.lobes.size())}});
     }
     kainjow::mustache::data context;

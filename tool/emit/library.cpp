@@ -84,7 +84,8 @@ std::string withHost(std::string text, const std::string& host) {
 }
 
 void setModule(mustache::data& context, const std::string& alwaysLobes, const std::string& alwaysInputs,
-               const std::string& anyLobes, const std::string& anyInputs) {
+               const std::string& anyLobes, const std::string& anyInputs, const std::string& model) {
+    context.set("moduleModel", model);
     context.set("moduleAlwaysLobes", alwaysLobes);
     context.set("moduleAlwaysInputs", alwaysInputs);
     context.set("moduleAnyLobes", anyLobes);
@@ -209,7 +210,7 @@ Result<std::vector<PackageFile>> makeLibrary(const gltf::SceneList& scenes, cons
     all.set("isSwitch", mustache::data(true));
     setModule(all, "GLINT_HIT_ALWAYS_LOBES", "GLINT_HIT_ALWAYS_INPUTS",
               "(GLINT_HIT_ALWAYS_LOBES | GLINT_HIT_SOMETIMES_LOBES)",
-              "(GLINT_HIT_ALWAYS_INPUTS | GLINT_HIT_SOMETIMES_INPUTS)");
+              "(GLINT_HIT_ALWAYS_INPUTS | GLINT_HIT_SOMETIMES_INPUTS)", "GLINT_HIT_MODEL");
     GLINT_TRY_DO(add(all, plan.always | plan.sometimes, "glint_library.glsl"));
     if (settings.emitLinkable) {
         const std::string text(files.back().bytes.begin(), files.back().bytes.end());
@@ -230,11 +231,11 @@ Result<std::vector<PackageFile>> makeLibrary(const gltf::SceneList& scenes, cons
         one.set("title", fmt::format("// Glint's library: the shading of hits with the shader ID {}.",
                                      shaderCase.shaderId));
         one.set("isSwitch", mustache::data(false));
-        const auto word = [](materials::FeatureMask mask) {
-            return fmt::format("{:#x}u", mask & materials::kLobeMask);
-        };
+        const auto word = [](std::uint32_t bits) { return fmt::format("{:#x}u", bits); };
         const materials::FeatureMask any = shaderCase.always | shaderCase.sometimes;
-        setModule(one, word(shaderCase.always), word(shaderCase.always >> 32U), word(any), word(any >> 32U));
+        const auto [always, sometimes] = plan.model->caseWords(shaderCase.always, shaderCase.sometimes);
+        setModule(one, word(always.lobes), word(always.inputs), word(always.lobes | sometimes.lobes),
+                  word(always.inputs | sometimes.inputs), word(always.model));
         const std::string name =
             fmt::format("glint_case_{}_{}.glsl", shaderCase.shaderId, shaderCase.name.substr(0, 100));
         GLINT_TRY_DO(add(one, any, name));

@@ -31,11 +31,13 @@ std::string typeName(std::string name) {
 // The keys that the code runs for: those of the module's cases, or any.
 enum class Asked : std::uint8_t { OfModule, OfAnyKey };
 
+// The macro that asks whether a key has the feature.
+std::string hasMacro(const materials::Feature& feature, Asked asked) {
+    return (asked == Asked::OfModule ? "GLINT_HAS_" : "GLINT_KEY_HAS_") + feature.macroEnd();
+}
+
 std::string hasFeature(const materials::Feature& feature, Asked asked) {
-    const bool isLobe = feature.bit < materials::kFirstInput;
-    const char* const function =
-        asked == Asked::OfModule ? (isLobe ? "hasLobe" : "hasInput") : (isLobe ? "lobeOfKey" : "inputOfKey");
-    return fmt::format("{}(features, {})", function, feature.macro);
+    return hasMacro(feature, asked) + "(features)";
 }
 
 // The condition under which code runs; empty if it always runs.
@@ -44,7 +46,7 @@ std::string conditionOf(const materials::MaterialModel& model, const materials::
     const auto feature = [&](int index) { return model.features[static_cast<std::size_t>(index)]; };
     std::string text = code.feature < 0 ? "" : hasFeature(feature(code.feature), asked);
     for (const materials::Feature& other : model.features) {
-        if ((other.mask() & code.unless) != 0) {
+        if (code.unless.has(other.bit)) {
             text += fmt::format("{}!{}", text.empty() ? "" : " && ", hasFeature(other, asked));
         }
     }
@@ -100,7 +102,7 @@ void addLayers(mustache::data& context, const materials::MaterialModel& model,
         mustache::data entry(
             mustache::object{{"name", layer->name},
                              {"type", typeName(layer->name)},
-                             {"macro", model.features[static_cast<std::size_t>(layer->feature)].macro},
+                             {"has", hasMacro(model.features[static_cast<std::size_t>(layer->feature)], Asked::OfModule)},
                              {"file", layer->layer},
                              {"coversEmission", layer->coversEmission},
                              {"isMirror", layer->isTraced}});
@@ -139,7 +141,7 @@ void addLayers(mustache::data& context, const materials::MaterialModel& model,
                 mustache::object{{"name", one->name},
                                  {"type", typeName(one->name)},
                                  {"file", one->model},
-                                 {"macro", model.features[static_cast<std::size_t>(one->feature)].macro},
+                                 {"has", hasMacro(model.features[static_cast<std::size_t>(one->feature)], Asked::OfModule)},
                                  {"isSampled", mustache::data(one->isSampled)}});
         }
     }
@@ -154,7 +156,7 @@ std::vector<const materials::FeatureCode*> codeOf(const materials::MaterialModel
                                                   materials::FeatureMask used) {
     std::vector<const materials::FeatureCode*> code;
     for (const materials::FeatureCode& one : model.code) {
-        if (one.feature < 0 || (model.features[static_cast<std::size_t>(one.feature)].mask() & used) != 0) {
+        if (one.feature < 0 || used.has(model.features[static_cast<std::size_t>(one.feature)].bit)) {
             code.push_back(&one);
         }
     }
@@ -166,7 +168,7 @@ std::vector<const materials::VertexAttribute*> attributesOf(const materials::Mat
                                                             materials::FeatureMask used) {
     std::vector<const materials::VertexAttribute*> attributes;
     for (const materials::VertexAttribute& attribute : model.attributes) {
-        if ((model.features[static_cast<std::size_t>(attribute.feature)].mask() & used) != 0) {
+        if (used.has(model.features[static_cast<std::size_t>(attribute.feature)].bit)) {
             attributes.push_back(&attribute);
         }
     }

@@ -16,7 +16,7 @@ constexpr std::uint32_t kFloatBytes = 4;
 constexpr std::string_view kFrameTexture = "normalTexture";
 
 bool isUsed(const materials::MaterialModel& model, int feature, materials::FeatureMask used) {
-    return feature < 0 || (model.features[static_cast<std::size_t>(feature)].mask() & used) != 0;
+    return feature < 0 || used.has(model.features[static_cast<std::size_t>(feature)].bit);
 }
 
 std::string noteOf(const std::string& unit, const std::string& about) {
@@ -78,59 +78,105 @@ std::string literalOf(const std::string& type, std::span<const float> values) {
     return text + (type == "float" ? "" : ")");
 }
 
+// The expression that reads a field. Those of models lie over each other, as floats.
+std::string readOf(const MaterialLayout& layout, const RecordField& field) {
+    if (field.model < 0) {
+        return fmt::format("(record).{}", field.name);
+    }
+    const std::uint32_t first = (field.offset - layout.ownOffset) / kFloatBytes;
+    std::string text = field.channels == 1 ? "" : field.type + "(";
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(field.channels); ++i) {
+        text += fmt::format("{}(record).own[{}]", i == 0 ? "" : ", ", first + i);
+    }
+    return text + (field.channels == 1 ? "" : ")");
+}
+
 // Whether a frame may be that of a texture's coordinates though no key reads the texture.
 bool takesFrameOf(const materials::MaterialModel& model, int texture, materials::FeatureMask used) {
     const materials::FeatureMask sets = model.mask("texCoord0") | model.mask("texCoord1");
     const bool matters = (used & sets) == sets || (used & model.mask("turnedFrames")) != 0;
     return matters && model.textures[static_cast<std::size_t>(texture)].name == kFrameTexture &&
            std::ranges::any_of(model.features, [&](const materials::Feature& feature) {
-               return feature.needsTangents && feature.texture < 0 && (feature.mask() & used) != 0;
+               return feature.needsTangents && feature.texture < 0 && used.has(feature.bit);
            });
 }
 
 }  // namespace
 
 int MaterialLayout::slotOf(int texture) const {
-    const auto found = std::ranges::find(textures, texture);
-    return found == textures.end() ? -1 : static_cast<int>(found - textures.begin());
+    const auto found = std::ranges::find(textures, texture, &TextureSlot::texture);
+    return found == textures.end() ? -1 : found->slot;
 }
 
 MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, materials::FeatureMask used) {
     MaterialLayout layout;
     layout.model = &model;
     layout.turnsFrames = (used & model.mask("turnedFrames")) != 0;
-    const auto append = [&layout](RecordField field) {
-        field.offset = layout.bytes;
-        layout.bytes += kFloatBytes * static_cast<std::uint32_t>(field.channels);
-        layout.fields.push_back(std::move(field));
+    const auto modelOf = [&](int feature) {
+        return feature < 0 ? -1 : model.features[static_cast<std::size_t>(feature)].model;
     };
-    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
-        const materials::Parameter& parameter = model.parameters[i];
-        if (parameter.inRecord && isUsed(model, parameter.feature, used)) {
-            append({parameter.name, parameter.type, noteOf(parameter.unit, parameter.about),
-                    parameter.channels, 0, static_cast<int>(i), -1});
+    // What all models may have comes first. The fields of each model follow, all of them in the same place.
+    const auto addFields = [&](int owner) {
+        std::uint32_t end = layout.ownOffset;
+        const auto append = [&](RecordField field, int feature) {
+            if (isUsed(model, feature, used) && modelOf(feature) == owner) {
+                field.model = owner;
+                field.offset = end;
+                end += kFloatBytes * static_cast<std::uint32_t>(field.channels);
+                layout.fields.push_back(std::move(field));
+            }
+        };
+        for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+            const materials::Parameter& parameter = model.parameters[i];
+            if (parameter.inRecord) {
+                append({parameter.name, parameter.type, noteOf(parameter.unit, parameter.about),
+                        parameter.channels, 0, static_cast<int>(i), -1},
+                       parameter.feature);
+            }
         }
-    }
-    for (std::size_t i = 0; i < model.derived.size(); ++i) {
-        const materials::DerivedField& field = model.derived[i];
-        if (isUsed(model, field.feature, used)) {
+        for (std::size_t i = 0; i < model.derived.size(); ++i) {
+            const materials::DerivedField& field = model.derived[i];
             append({field.name, field.type, noteOf(field.unit, field.about), field.count, 0, -1,
-                    static_cast<int>(i)});
+                    static_cast<int>(i)},
+                   field.feature);
         }
-    }
-    for (std::size_t i = 0; i < model.textures.size(); ++i) {
-        if (isUsed(model, model.textures[i].feature, used) ||
-            takesFrameOf(model, static_cast<int>(i), used)) {
-            layout.textures.push_back(static_cast<int>(i));
+        return end;
+    };
+    int slots = 0;
+    const auto addTextures = [&](int owner) {
+        int slot = layout.sharedTextures;
+        for (std::size_t i = 0; i < model.textures.size(); ++i) {
+            const int feature = model.textures[i].feature;
+            if (modelOf(feature) == owner &&
+                (isUsed(model, feature, used) || takesFrameOf(model, static_cast<int>(i), used))) {
+                layout.textures.push_back({static_cast<int>(i), slot++, owner});
+            }
         }
+        slots = std::max(slots, slot);
+        return slot;
+    };
+    layout.ownOffset = addFields(-1);
+    layout.sharedTextures = addTextures(-1);
+    layout.textureOffset = layout.ownOffset;
+    for (int owner = 0; owner < static_cast<int>(model.models.size()); ++owner) {
+        layout.textureOffset = std::max(layout.textureOffset, addFields(owner));
+        addTextures(owner);
     }
-    layout.textureOffset = layout.bytes;
-    layout.bytes += static_cast<std::uint32_t>(layout.textures.size() * sizeof(gpu::TextureRecord));
+    layout.textureCount = static_cast<std::uint32_t>(slots);
+    layout.bytes =
+        layout.textureOffset + layout.textureCount * static_cast<std::uint32_t>(sizeof(gpu::TextureRecord));
     return layout;
 }
 
 MaterialLayout materialLayoutOf(const Plan& plan) {
     return makeMaterialLayout(*plan.model, plan.primaryAlways | plan.primarySometimes);
+}
+
+bool isOfModel(const materials::Material& material, int model) {
+    const materials::MaterialModel& all = material.model();
+    return model < 0 ||
+           material.reads(all.features[static_cast<std::size_t>(all.models[static_cast<std::size_t>(model)].feature)]
+                              .object);
 }
 
 std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material,
@@ -144,6 +190,9 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
     const materials::MaterialFacts facts(plain, primitive, options, key,
                                          materials::MaterialFacts::Textures::Ignored);
     for (const RecordField& field : layout.fields) {
+        if (!isOfModel(material, field.model)) {
+            continue;
+        }
         const float* const values =
             field.parameter < 0
                 ? nullptr
@@ -159,13 +208,14 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
                         sizeof value);
         }
     }
-    for (std::size_t slot = 0; slot < layout.textures.size(); ++slot) {
-        const auto index = static_cast<std::size_t>(layout.textures[slot]);
+    for (const TextureSlot& row : layout.textures) {
+        const auto index = static_cast<std::size_t>(row.texture);
         const materials::TextureInfo& info = material.textures[index];
-        if (info.texture >= 0 ||
-            (layout.turnsFrames && layout.model->textures[index].name == kFrameTexture)) {
+        if (isOfModel(material, row.model) && (info.texture >= 0 || (layout.turnsFrames &&
+                                                     layout.model->textures[index].name == kFrameTexture))) {
             const gpu::TextureRecord texture = transformed(info.transform);
-            std::memcpy(&record[layout.textureOffset + slot * sizeof texture], &texture, sizeof texture);
+            std::memcpy(&record[layout.textureOffset + static_cast<std::size_t>(row.slot) * sizeof texture],
+                        &texture, sizeof texture);
         }
     }
     return record;
@@ -174,11 +224,16 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
 std::string recordStruct(const MaterialLayout& layout, std::string_view scope) {
     std::string text = "struct MaterialRecord {\n";
     for (const RecordField& field : layout.fields) {
-        text += fmt::format("    {}{} {};{}{}\n", field.channels == 1 ? "" : scope, field.type, field.name,
-                            field.note.empty() ? "" : "  // ", field.note);
+        if (field.model < 0) {
+            text += fmt::format("    {}{} {};{}{}\n", field.channels == 1 ? "" : scope, field.type, field.name,
+                                field.note.empty() ? "" : "  // ", field.note);
+        }
     }
-    if (!layout.textures.empty()) {
-        text += fmt::format("    {}TextureRecord textures[{}];\n", scope, layout.textures.size());
+    if (layout.ownFloats() > 0) {
+        text += fmt::format("    float own[{}];  // the fields of the material's model\n", layout.ownFloats());
+    }
+    if (layout.textureCount > 0) {
+        text += fmt::format("    {}TextureRecord textures[{}];\n", scope, layout.textureCount);
     }
     return text + "};\n";
 }
@@ -193,31 +248,40 @@ std::string recordDeclarations(const MaterialLayout& layout) {
         "data[]; };\n";
     text += "// The textures of a record.\n";
     for (std::size_t i = 0; i < model.textures.size(); ++i) {
-        text += fmt::format("const uint {} = {}u;\n", textureConstant(model.textures[i].name),
-                            std::max(0, layout.slotOf(static_cast<int>(i))));
+        const int slot = layout.slotOf(static_cast<int>(i));
+        const bool isShared = model.features[static_cast<std::size_t>(model.textures[i].feature)].model < 0;
+        if (isShared || slot >= 0) {
+            text += fmt::format("const uint {} = {}u;\n", textureConstant(model.textures[i].name),
+                                std::max(0, slot));
+        }
     }
     text += "#define GLINT_TEXTURE(record, slot) ";
-    text += layout.textures.empty() ? "TextureRecord(0u, 0u, 0u, vec3(0.0), vec3(0.0), vec2(0.0), 0.0)\n"
+    text += layout.textureCount == 0 ? "TextureRecord(0u, 0u, 0u, vec3(0.0), vec3(0.0), vec2(0.0), 0.0)\n"
                                     : "(record).textures[slot]\n";
-    text += fmt::format("#define GLINT_TEXTURE_SLOTS {}\n", layout.textures.size());
+    text += fmt::format("#define GLINT_TEXTURE_SLOTS {}\n", layout.textureCount);
     text += "// The record of the material of a Hit or a SurfacePoint.\n";
     text += "#define GLINT_MATERIAL(hit) hostMaterials().data[(hit).material]\n";
     text += "// The values of a hit's material. No key of the package reads those that are constants here.\n";
-    const auto define = [&](const std::string& name, const std::string& type,
+    const auto define = [&](const std::string& name, const std::string& type, int feature,
                             std::span<const float> fallback) {
-        const bool present =
-            std::ranges::any_of(layout.fields, [&](const RecordField& row) { return row.name == name; });
-        text += fieldMacros(name, present ? fmt::format("(record).{}", name) : literalOf(type, fallback));
+        const auto field = std::ranges::find(layout.fields, name, &RecordField::name);
+        const bool isShared = feature < 0 || model.features[static_cast<std::size_t>(feature)].model < 0;
+        if (field != layout.fields.end()) {
+            text += fieldMacros(name, readOf(layout, *field));
+        } else if (isShared) {
+            text += fieldMacros(name, literalOf(type, fallback));
+        }
     };
     for (const materials::Parameter& parameter : model.parameters) {
         if (parameter.inRecord) {
-            define(parameter.name, parameter.type,
+            define(parameter.name, parameter.type, parameter.feature,
                    std::span(parameter.fallback).first(static_cast<std::size_t>(parameter.channels)));
         }
     }
     for (const materials::DerivedField& field : model.derived) {
         const std::array<float, 4> zero{};
-        define(field.name, field.type, std::span(zero).first(static_cast<std::size_t>(field.count)));
+        define(field.name, field.type, field.feature,
+               std::span(zero).first(static_cast<std::size_t>(field.count)));
     }
     return text;
 }

@@ -19,16 +19,30 @@ struct RecordField {
     std::uint32_t offset = 0;  // bytes
     int parameter = -1;        // index into MaterialModel::parameters, or
     int derived = -1;          // into MaterialModel::derived
+    int model = -1;            // into MaterialModel::models; -1: the records of all materials have it
+};
+
+// A texture of records.
+struct TextureSlot {
+    int texture = 0;  // index into MaterialModel::textures
+    int slot = 0;     // that textures of different models share
+    int model = -1;   // as RecordField::model
 };
 
 struct MaterialLayout {
     const materials::MaterialModel* model = nullptr;
     std::vector<RecordField> fields;
-    std::vector<int> textures;  // index into MaterialModel::textures for each texture of a record
+    std::vector<TextureSlot> textures;
+    std::uint32_t ownOffset = 0;  // bytes: where the fields of a model begin, which lie over those of others
     std::uint32_t textureOffset = 0;
+    std::uint32_t textureCount = 0;
+    int sharedTextures = 0;  // the first slots
     std::uint32_t bytes = 0;
     bool turnsFrames = false;  // Some key has turnedFrames.
 
+    std::uint32_t ownFloats() const {
+        return (textureOffset - ownOffset) / 4;
+    }
     // Returns the place of a texture in the record, or -1.
     int slotOf(int texture) const;
 };
@@ -38,6 +52,9 @@ MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, materia
 
 // The layout of a plan's package.
 MaterialLayout materialLayoutOf(const Plan& plan);
+
+// Returns whether the records of a material have what belongs to a model (RecordField::model).
+bool isOfModel(const materials::Material& material, int model);
 
 // Returns the bytes of a record: the values of the material and the transforms of its textures. Which
 // textures these are is for makeMaterialTables() to settle.

@@ -38,14 +38,16 @@ constexpr std::string_view kGenerated[] = {"cases.glsl",           "effects.glsl
                                            "compose_effects.glsl", "hit_effects.glsl", "surface_layers.glsl",
                                            "tallies.glsl"};
 
-void defineFeatures(std::string& text, std::string_view prefix, materials::FeatureMask always,
-                    materials::FeatureMask sometimes) {
-    const auto define = [&](std::string_view when, materials::FeatureMask mask) {
-        text += fmt::format("#define {}_{}_LOBES {:#x}u\n", prefix, when, mask & materials::kLobeMask);
-        text += fmt::format("#define {}_{}_INPUTS {:#x}u\n", prefix, when, mask >> 32U);
-    };
-    define("ALWAYS", always);
-    define("SOMETIMES", sometimes);
+void defineFeatures(std::string& text, std::string_view prefix, const materials::MaterialModel& model,
+                    const materials::FeatureMask& always, const materials::FeatureMask& sometimes) {
+    const auto [least, some] = model.caseWords(always, sometimes);
+    text += fmt::format("#define {}_ALWAYS_LOBES {:#x}u\n", prefix, least.lobes);
+    text += fmt::format("#define {}_ALWAYS_INPUTS {:#x}u\n", prefix, least.inputs);
+    text += fmt::format("#define {}_SOMETIMES_LOBES {:#x}u\n", prefix, some.lobes);
+    text += fmt::format("#define {}_SOMETIMES_INPUTS {:#x}u\n", prefix, some.inputs);
+    text += fmt::format("#define {}_MODEL {:#x}u\n", prefix, least.model);
+    // The members of Features that a case knows.
+    text += fmt::format("#define {}_ALL {}\n", prefix, caseFeatures(least, some));
 }
 
 // The features that decide about the alpha of a hit.
@@ -58,7 +60,7 @@ materials::FeatureMask alphaFeatures(const materials::MaterialModel& model) {
     mask |= maskCodeFeatures(model);
     for (const materials::Feature& feature : model.features) {
         const bool readForCode =
-            feature.lobe >= 0 && (mask & model.features[static_cast<std::size_t>(feature.lobe)].mask()) != 0;
+            feature.lobe >= 0 && mask.has(model.features[static_cast<std::size_t>(feature.lobe)].bit);
         mask |= readForCode ? feature.mask() : 0;
     }
     return mask;
@@ -81,9 +83,9 @@ std::string bindingDefines(const package::Bindings& bindings) {
 }
 
 // The features that decide what emissive lights emit.
-std::string emitterDefines(const EmitterFeatures& features) {
+std::string emitterDefines(const materials::MaterialModel& model, const EmitterFeatures& features) {
     std::string text = "// Emissive lights\n";
-    defineFeatures(text, "GLINT_EMITTER", features.always, features.sometimes);
+    defineFeatures(text, "GLINT_EMITTER", model, features.always, features.sometimes);
     text += fmt::format("#define GLINT_EMITTER_LAYERS {}\n", features.coveredByLayers ? 1 : 0);
     return text;
 }
@@ -99,18 +101,21 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
         alphaPolicy == package::AlphaPolicy::Stochastic && has(materials::AlphaMode::Blend);
     const bool hasMasked = has(materials::AlphaMode::Mask) || hasBlended;
     const auto flag = [](bool value) { return value ? 1 : 0; };
+    const materials::FeatureMask used = usedFeatures(plan);
     std::string text = "// The scene as a whole: features of every primary surface, and of some.\n";
-    defineFeatures(text, "GLINT", plan.primaryAlways, plan.primarySometimes);
+    defineFeatures(text, "GLINT", *plan.model, plan.primaryAlways, plan.primarySometimes);
     text += "// The same of hits, which may keep fewer lobes.\n";
-    defineFeatures(text, "GLINT_HIT", plan.always, plan.sometimes);
+    defineFeatures(text, "GLINT_HIT", *plan.model, plan.always, plan.sometimes);
     // These macros are separate, so that other features of a scene do not change modules that test alpha.
     text += "// What the alpha test of rays needs of the same.\n";
     const bool passesGlass = settings.shadowThrough == package::ShadowThrough::Glass;
     const materials::FeatureMask alpha =
         alphaPolicy != package::AlphaPolicy::Opaque ? alphaFeatures(*plan.model) : 0;
     // Shadow rays that pass glass read what glass is made of, whatever hits keep.
-    defineFeatures(text, "GLINT_ALPHA", passesGlass ? plan.primaryAlways : plan.always & alpha,
+    defineFeatures(text, "GLINT_ALPHA", *plan.model, passesGlass ? plan.primaryAlways : plan.always & alpha,
                    passesGlass ? plan.primarySometimes : plan.sometimes & alpha);
+    text += "// Some key is of a model that a pack declares.\n";
+    text += fmt::format("#define GLINT_MODELS {}\n", flag(used != used.shared()));
     text += "// Settings\n";
     text += fmt::format("#define GLINT_ALPHA_TESTED {}\n", flag(alphaPolicy != package::AlphaPolicy::Opaque));
     text += fmt::format("#define GLINT_BLENDED {}\n", flag(hasBlended));
@@ -148,7 +153,7 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     text += "// Some lights are found by rays of lobes, too.\n";
     text += fmt::format("#define GLINT_SHARED_LIGHTS {}\n", flag(emissive || sky || sized));
     if (emissive) {
-        text += emitterDefines(plan.emitters);
+        text += emitterDefines(*plan.model, plan.emitters);
     }
     text += fmt::format("#define GLINT_STEPS {}\n", flag(settings.passes == package::Passes::Steps));
     text += fmt::format("#define GLINT_ANSWERS_SURFACE {}\n",
@@ -164,9 +169,9 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     text += bindingDefines(settings.bindings);
     text += effectDefines(*plan.model, plan.effects.effects);
     text += fmt::format("#define GLINT_MAY_MASK {}\n", flag(hasMasked));
-    const materials::FeatureMask maskCode =
-        maskCodeFeatures(*plan.model) & (plan.primaryAlways | plan.primarySometimes);
-    text += fmt::format("#define GLINT_MASK_STAGES {}\n", flag(hasMasked && maskCode != 0));
+    const bool hasMaskCode =
+        (maskCodeFeatures(*plan.model) & (plan.primaryAlways | plan.primarySometimes)) != 0;
+    text += fmt::format("#define GLINT_MASK_STAGES {}\n", flag(hasMasked && hasMaskCode));
     return text;
 }
 
@@ -211,7 +216,8 @@ Result<SourceSet> makeSourceSet(const gltf::SceneList& scenes, const Plan& plan,
         sources.add(source.name, source.text);
     }
     GLINT_TRY_DO(addHost(sources, settings.host));
-    sources.add("generated/features.glsl", plan.model->featureDefines());
+    const materials::FeatureMask used = usedFeatures(plan);
+    sources.add("generated/features.glsl", plan.model->featureDefines(used));
     sources.add("generated/material_record.glsl", recordDeclarations(materialLayoutOf(plan)));
     const bool surface = settings.answer == package::HitAnswer::Surface;
     sources.add("generated/answer.glsl",
@@ -221,8 +227,6 @@ Result<SourceSet> makeSourceSet(const gltf::SceneList& scenes, const Plan& plan,
     sources.add("generated/scene.glsl", sceneDefines(scenes, plan, settings));
     // A file of its own, so that modules that do not count cases stay as they are when there is one more.
     sources.add("generated/case_count.glsl", fmt::format("#define GLINT_CASE_COUNT {}\n", plan.cases.size()));
-    const materials::FeatureMask used =
-        plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
     GLINT_TRY_DO(addMaterialCode(sources, *plan.model, used, sources));
     GLINT_TRY_DO(addMaskCode(sources, *plan.model, used, sources));
     sources.add("generated/attributes.glsl", vertexAttributeCode(*plan.model, used));

@@ -81,14 +81,7 @@ Diagnostic unknownModule(const InspectedPackage& inspected, const std::string& w
 
 Result<Manifest> readManifest(const std::filesystem::path& folder) {
     GLINT_TRY(auto read, compiler::readManifest(folder));
-    Manifest manifest{std::move(read), {}, {}, {}};
-    for (const compiler::ManifestFeature& row : manifest.features) {
-        materials::Feature& feature = manifest.model.features.emplace_back();
-        feature.name = row.name;
-        feature.bit = row.bit;
-        feature.isLobe = row.lobe;
-        manifest.model.lobes |= feature.isLobe ? feature.mask() : 0;
-    }
+    Manifest manifest{std::move(read), {}, {}};
     for (const compiler::ManifestCase& shader : manifest.shaders) {
         manifest.shares[shader.id] = shader.share;
         for (const auto& [place, name] : shader.materials) {

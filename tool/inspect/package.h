@@ -20,7 +20,6 @@ namespace glint::inspect {
 
 // A manifest, and parts of it by their IDs.
 struct Manifest : compiler::Manifest {
-    materials::MaterialModel model;  // names and bits of features alone
     // Names by scene and index, for the materials that have one and that shaders list.
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::string> materialNames;
     std::map<std::uint32_t, double> shares;  // of the expected hits, by shader ID

@@ -54,7 +54,7 @@ int ModelBuilder::addFeature(const Members& members, Feature feature, Light ligh
         feature.cost = feature.texture >= 0 ? kUsualTexture : isLobe(feature) ? kUsualLobe : kUsualInput;
     }
     pending_.push_back(
-        {std::move(feature), members.number("order", kNoOrder), members.where(), light, isOfPack_});
+        {std::move(feature), members.number("order", kNoOrder), members.where(), light, isOfPack_, base_});
     return static_cast<int>(pending_.size()) - 1;
 }
 
@@ -91,6 +91,7 @@ void ModelBuilder::checkOwn(const Members& members, const Feature& feature) {
 
 void ModelBuilder::collect(File& file) {
     isOfPack_ = file.isOfPack;
+    base_ = -1;
     const Members members = membersOf(file);
     const std::string name = newName(members);
     const std::string stageName = members.text("stage");
@@ -107,6 +108,7 @@ void ModelBuilder::collect(File& file) {
         feature.isOfBase = members.flag("ofBase", false);
         checkOwn(members, feature);
         const Light light = choose(kLights, members, "light", members.text("light", "front")).light;
+        base_ = isOfPack_ && stage == Stage::Base ? static_cast<int>(pending_.size()) : -1;
         file.mainFeature = addFeature(members, std::move(feature), light);
     }
     for (const auto& [json, where] : members.list("parameters")) {

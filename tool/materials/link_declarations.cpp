@@ -14,22 +14,43 @@ void ModelBuilder::assignBits() {
     }
     std::ranges::sort(sorted, {}, [this](int i) {
         const Pending& row = pending_[static_cast<std::size_t>(i)];
-        // The bits of Glint's own features are the same with packs as without.
-        return std::tuple(row.isOfPack, !isLobe(row.feature), row.order, std::string_view(row.feature.name));
+        const Pending* const base = row.base < 0 ? nullptr : &pending_[static_cast<std::size_t>(row.base)];
+        // The bits of Glint's own features are the same with packs as without. Those of a model follow its base.
+        return std::tuple(row.isOfPack, base != nullptr, base != nullptr ? base->order : 0.0,
+                          base != nullptr ? std::string_view(base->feature.name) : std::string_view(),
+                          !isLobe(row.feature), row.order, std::string_view(row.feature.name));
     });
     std::vector<int> indexOf(pending_.size());
     int lobe = 0;
     int input = kFirstInput;
     int further = kFirstInput;  // inputs that find no place in their word go down from here
+    int own = kFirstOfModels;
     for (const int i : sorted) {
         Pending& row = pending_[static_cast<std::size_t>(i)];
+        const int index = static_cast<int>(model_.features.size());
         row.feature.isLobe = isLobe(row.feature);
-        row.feature.bit = row.feature.isLobe ? lobe++ : input < kFeatureBits ? input++ : --further;
-        if (lobe > further) {
-            failAt(row.where, fmt::format("there are more features than the {} bits of a key", kFeatureBits));
+        if (row.base >= 0) {
+            row.feature.bit = own++;
+            if (row.base == i) {
+                model_.models.push_back({row.feature.name, index, own, 0});
+            } else if (++model_.models.back().bits > kOwnFeatures) {
+                failAt(row.where, fmt::format("{} has more than {} features of its own",
+                                              model_.models.back().name, kOwnFeatures));
+            }
+            row.feature.model = static_cast<int>(model_.models.size()) - 1;
+        } else {
+            row.feature.bit = row.feature.isLobe             ? lobe++
+                              : input < kFirstOfModels ? input++
+                                                       : --further;
+        }
+        if (lobe > further || own > FeatureMask::kBits) {
+            failAt(row.where, lobe > further
+                                  ? fmt::format("there are more features than the {} bits that all models share",
+                                                kFirstOfModels)
+                                  : fmt::format("the packs have more than {} features", FeatureMask::kBits));
         }
         model_.lobes |= row.feature.isLobe ? row.feature.mask() : 0;
-        indexOf[static_cast<std::size_t>(i)] = static_cast<int>(model_.features.size());
+        indexOf[static_cast<std::size_t>(i)] = index;
         model_.unlit |= row.light == Light::None ? row.feature.mask() : 0;
         model_.bothSides |= row.light == Light::Both ? row.feature.mask() : 0;
         model_.features.push_back(std::move(row.feature));
@@ -70,6 +91,9 @@ void ModelBuilder::orderByDependence() {
         }
         if (feature.lobe >= 0) {
             needs[i].insert(feature.lobe);
+        }
+        if (feature.model >= 0 && model_.baseOf(feature) != static_cast<int>(i)) {
+            needs[i].insert(model_.baseOf(feature));
         }
         for (const Exclusion& exclusion : model_.exclusions) {
             if ((exclusion.excluded & feature.mask()) != 0) {
@@ -120,11 +144,16 @@ void ModelBuilder::excludeFromModels() {
         ofBase = code.layer.empty() ? ofBase | (code.bsdf.empty() ? 0 : own) : ofBase & ~own;
     }
     const FeatureMask models = model_.baseModels() & ~model_.unlit;
+    FeatureMask later = models;
     for (std::size_t i = 0; i < model_.features.size(); ++i) {
-        const FeatureMask later = models & ~(model_.features[i].mask() * 2 - 1);
-        if ((model_.features[i].mask() & models) != 0 && later != 0) {
-            model_.exclusions.push_back({static_cast<int>(i), later,
-                                         fmt::format("{} is the material's model", model_.features[i].name)});
+        const Feature& feature = model_.features[i];
+        if (!models.has(feature.bit)) {
+            continue;
+        }
+        later &= ~feature.mask();
+        if (later != 0) {
+            model_.exclusions.push_back(
+                {static_cast<int>(i), later, fmt::format("{} is the material's model", feature.name)});
         }
     }
     for (const FeatureCode& code : model_.code) {

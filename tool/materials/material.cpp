@@ -114,7 +114,7 @@ TextureReads Material::readsOf(int texture) const {
 
 bool Material::isUnlit() const {
     return std::ranges::any_of(model_->features, [this](const Feature& feature) {
-        return (feature.mask() & model_->unlit) != 0 && feature.object >= 0 &&
+        return model_->unlit.has(feature.bit) && feature.object >= 0 &&
                given[static_cast<std::size_t>(feature.object)] != 0;
     });
 }
@@ -197,7 +197,7 @@ std::string lostInput(const Material& material, const PrimitiveInputs& primitive
     }
     for (const Exclusion& exclusion : model.exclusions) {
         const Feature& by = model.features[static_cast<std::size_t>(exclusion.by)];
-        if ((asked & by.mask()) != 0 && (exclusion.excluded & feature.mask()) != 0) {
+        if ((asked & by.mask()) != 0 && exclusion.excluded.has(feature.bit)) {
             return {};
         }
     }
@@ -275,7 +275,7 @@ Certainty MaterialFacts::condition(int symbol) const {
     }
     if (symbol < model.symbolOfTexture(0)) {
         const Feature& feature = model.features[static_cast<std::size_t>(symbol - model.symbolOfFeature(0))];
-        return certain((key_ & feature.mask()) != 0);
+        return certain(key_.has(feature.bit));
     }
     if (symbol < model.symbolOfAttribute(0)) {
         return certain(isReadable(material_, primitive_, symbol - model.symbolOfTexture(0)));
@@ -331,7 +331,7 @@ bool MaterialFacts::turnsTangents() const {
 }
 
 bool MaterialFacts::isInKey(const Feature& feature) const {
-    return (key_ & feature.mask()) != 0;
+    return key_.has(feature.bit);
 }
 
 bool MaterialFacts::readsTexCoord(int set) const {
@@ -388,7 +388,7 @@ Certainty MaterialFacts::fact(Fact fact) const {
             return certain(readsTexCoord(1));
         case Fact::MovesTextures:
             return certain(std::ranges::any_of(model.features, [&](const Feature& feature) {
-                return feature.texture >= 0 && (key_ & feature.mask()) != 0 &&
+                return feature.texture >= 0 && key_.has(feature.bit) &&
                        isMoved(material_.textures[static_cast<std::size_t>(feature.texture)]);
             }));
         case Fact::GivesTransforms:
@@ -397,7 +397,7 @@ Certainty MaterialFacts::fact(Fact fact) const {
             }));
         case Fact::NeedsTangents:
             return certain(std::ranges::any_of(model.features, [&](const Feature& feature) {
-                return feature.needsTangents && (key_ & feature.mask()) != 0;
+                return feature.needsTangents && key_.has(feature.bit);
             }));
         case Fact::DerivesTangents:
             return certain(primitive_.derivesTangents);

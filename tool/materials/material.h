@@ -204,7 +204,7 @@ struct KeyOptions {
     package::AlphaPolicy alpha = package::AlphaPolicy::Opaque;
     // The lobes that a key may have. If a lobe is left out, inputs that only this lobe reads are left out
     // too.
-    FeatureMask keptLobes = kLobeMask;
+    FeatureMask keptLobes = kAllFeatures;
 };
 
 // Returns whether the slot has a texture whose UV set the primitive has and Glint reads.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <interop/models.h>
 #include <limits>
 #include <numbers>
 
@@ -19,6 +20,17 @@ int indexOf(const Rows& rows, std::string_view name) {
 }
 
 }  // namespace
+
+std::string toHex(const FeatureMask& mask) {
+    std::string text = "0x";
+    for (std::size_t i = mask.words().size(); i-- > 0;) {
+        const std::uint64_t word = mask.words()[i];
+        text += i == 0 || text.size() > 2 ? fmt::format("{:016x}", word)
+                : word != 0               ? fmt::format("{:x}", word)
+                                          : "";
+    }
+    return text;
+}
 
 std::string Feature::neutralText() const {
     std::vector<std::string_view> reasons;
@@ -83,7 +95,7 @@ FeatureMask MaterialModel::mask(std::string_view feature) const {
 std::vector<std::string_view> MaterialModel::names(FeatureMask mask) const {
     std::vector<std::string_view> names;
     for (const Feature& feature : features) {
-        if ((mask & feature.mask()) != 0) {
+        if (mask.has(feature.bit)) {
             names.emplace_back(feature.name);
         }
     }
@@ -98,18 +110,90 @@ FeatureMask MaterialModel::baseModels() const {
     return mask;
 }
 
-std::string MaterialModel::featureDefines() const {
-    FeatureMask sampledModels = 0;
+std::uint32_t MaterialModel::modelWord(int model) const {
+    const BaseModel& row = models[static_cast<std::size_t>(model)];
+    const int base = features[static_cast<std::size_t>(row.feature)].bit;
+    std::uint32_t word = static_cast<std::uint32_t>(model) + 1;
+    word |= unlit.has(base) ? gpu::kModelUnlit : 0U;
+    word |= bothSides.has(base) ? gpu::kModelBothSides : 0U;
+    word |= ownModels.has(base) ? gpu::kModelOwnCode : 0U;
     for (const FeatureCode& one : code) {
-        sampledModels |= one.isSampled ? features[static_cast<std::size_t>(one.feature)].mask() : 0;
+        const bool isOfModel = one.feature >= 0 && features[static_cast<std::size_t>(one.feature)].model == model;
+        word |= isOfModel && one.isSampled ? gpu::kModelSampled : 0U;
+        word |= isOfModel && !(one.coordinates.empty() && one.opacity.empty()) ? gpu::kModelChangesAlpha : 0U;
     }
+    return word;
+}
+
+package::KeyWords MaterialModel::words(const FeatureMask& mask) const {
+    package::KeyWords words{static_cast<std::uint32_t>(mask.shared()),
+                            static_cast<std::uint32_t>(mask.shared() >> 32U), 0, 0};
+    mask.forEach([&](int bit) {
+        const auto model = std::ranges::find_if(models, [bit](const BaseModel& row) {
+            return bit >= row.firstBit - 1 && bit < row.firstBit + row.bits;
+        });
+        if (bit < kFirstOfModels || model == models.end()) {
+            return;
+        }
+        const std::uint32_t word = modelWord(static_cast<int>(model - models.begin()));
+        const bool isOther = words.model != 0 && words.model != word;
+        words.model = isOther ? gpu::kAnyModel : word;
+        words.own |= bit < model->firstBit ? 0U : 1U << static_cast<unsigned>(bit - model->firstBit);
+        words.own = isOther ? ~0U : words.own;
+    });
+    return words;
+}
+
+FeatureMask MaterialModel::maskOf(const package::KeyWords& words) const {
+    FeatureMask mask = words.lobes | std::uint64_t{words.inputs} << 32U;
+    const std::uint32_t number = words.model & gpu::kModelNumber;
+    if (number > 0 && number <= models.size()) {
+        const BaseModel& model = models[number - 1];
+        mask |= FeatureMask::ofBit(model.firstBit - 1);
+        for (int i = 0; i < model.bits; ++i) {
+            const bool has = (words.own >> static_cast<unsigned>(i) & 1U) != 0;
+            mask |= has ? FeatureMask::ofBit(model.firstBit + i) : FeatureMask();
+        }
+    }
+    return mask;
+}
+
+std::pair<package::KeyWords, package::KeyWords> MaterialModel::caseWords(
+    const FeatureMask& always, const FeatureMask& sometimes) const {
+    package::KeyWords least = words(always);
+    package::KeyWords some = words(sometimes);
+    const std::uint32_t any = words(always | sometimes).model;
+    const bool isKnown = any == 0 || (any != gpu::kAnyModel && (always & baseModels()) != 0 &&
+                                      maskOf({0, 0, any, 0}) == (maskOf({0, 0, any, 0}) & always));
+    least.model = isKnown ? any : gpu::kAnyModel;
+    least.own = isKnown ? least.own : 0U;
+    some.model = least.model;
+    some.own = isKnown ? some.own : ~0U;
+    return {least, some};
+}
+
+std::string Feature::macroEnd() const {
+    return macro.substr(macro.starts_with("GLINT_PACK_") ? 11 : 6);
+}
+
+std::string MaterialModel::featureDefines(const FeatureMask& used) const {
     std::string text = fmt::format(
         "#define GLINT_LOBES 0x{:x}u\n#define GLINT_UNLIT_LOBES 0x{:x}u\n"
-        "#define GLINT_BOTH_SIDES_LOBES 0x{:x}u\n#define GLINT_MODEL_LOBES 0x{:x}u\n"
-        "#define GLINT_SAMPLED_MODEL_LOBES 0x{:x}u\n",
-        lobes, unlit, bothSides, ownModels, sampledModels);
+        "#define GLINT_BOTH_SIDES_LOBES 0x{:x}u\n",
+        lobes.shared(), unlit.shared(), bothSides.shared());
     for (const Feature& feature : features) {
-        const std::string name = feature.macro.substr(feature.macro.starts_with("GLINT_PACK_") ? 11 : 6);
+        const std::string name = feature.macroEnd();
+        if (feature.model >= 0) {
+            const package::KeyWords word = words(feature.mask());
+            const std::string rest =
+                fmt::format("{}u, 0x{:x}u)", word.model & gpu::kModelNumber, word.own);
+            text += used.has(feature.bit)
+                        ? fmt::format("#define GLINT_HAS_{0}(features) hasOwn(features, {1}\n"
+                                      "#define GLINT_KEY_HAS_{0}(features) ownOfKey(features, {1}\n",
+                                      name, rest)
+                        : "";
+            continue;
+        }
         text += fmt::format("#define {} 0x{:x}u\n", feature.macro,
                             1U << (static_cast<unsigned>(feature.bit) % 32U));
         text += fmt::format("#define GLINT_HAS_{}(features) {}(features, {})\n", name,

@@ -7,11 +7,15 @@
 #include <glint/internal/package_format.h>
 
 #include <array>
+#include <bit>
+#include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace glint::materials {
@@ -95,17 +99,95 @@ package::Effect findEffect(const std::vector<EffectDeclaration>& effects, std::s
 //
 //   bits  0..31  lobes: what light does at the surface; keys with the same lobes are one family
 //   bits 32..63  inputs: where the surface's parameters are read from
+//   bits 64...   features of base models that packs declare: of each model, its base and then its others
 //
-// If materials of a user's own have more inputs than fit, these take bits from 31 downwards.
-using FeatureMask = std::uint64_t;
+// If packs have more inputs than fit, these take bits from 31 downwards. A number stands for the first 64 bits.
+class FeatureMask {
+public:
+    static constexpr int kBits = 2048;
 
-inline constexpr FeatureMask kLobeMask = 0xFFFFFFFFULL;
+    constexpr FeatureMask() = default;
+    constexpr FeatureMask(std::uint64_t shared) : words_{shared} {}
+    static constexpr FeatureMask ofBit(int bit) {
+        FeatureMask mask;
+        mask.words_[static_cast<std::size_t>(bit) / 64] = std::uint64_t{1} << static_cast<unsigned>(bit % 64);
+        return mask;
+    }
+
+    constexpr bool has(int bit) const {
+        return (words_[static_cast<std::size_t>(bit) / 64] >> static_cast<unsigned>(bit % 64) & 1U) != 0;
+    }
+    constexpr int count() const {
+        int sum = 0;
+        for (const std::uint64_t word : words_) {
+            sum += std::popcount(word);
+        }
+        return sum;
+    }
+    // Calls use(bit) for each bit, the lowest first.
+    template <typename Use>
+    constexpr void forEach(const Use& use) const {
+        for (std::size_t i = 0; i < words_.size(); ++i) {
+            for (std::uint64_t rest = words_[i]; rest != 0; rest &= rest - 1) {
+                use(static_cast<int>(i * 64) + std::countr_zero(rest));
+            }
+        }
+    }
+    // The first 64 bits.
+    constexpr std::uint64_t shared() const {
+        return words_[0];
+    }
+    constexpr const std::array<std::uint64_t, kBits / 64>& words() const {
+        return words_;
+    }
+
+    constexpr FeatureMask& operator&=(const FeatureMask& other) {
+        for (std::size_t i = 0; i < words_.size(); ++i) {
+            words_[i] &= other.words_[i];
+        }
+        return *this;
+    }
+    constexpr FeatureMask& operator|=(const FeatureMask& other) {
+        for (std::size_t i = 0; i < words_.size(); ++i) {
+            words_[i] |= other.words_[i];
+        }
+        return *this;
+    }
+    friend constexpr FeatureMask operator&(FeatureMask a, const FeatureMask& b) {
+        return a &= b;
+    }
+    friend constexpr FeatureMask operator|(FeatureMask a, const FeatureMask& b) {
+        return a |= b;
+    }
+    constexpr FeatureMask operator~() const {
+        FeatureMask result;
+        for (std::size_t i = 0; i < words_.size(); ++i) {
+            result.words_[i] = ~words_[i];
+        }
+        return result;
+    }
+    friend constexpr bool operator==(const FeatureMask& a, const FeatureMask& b) = default;
+    // As numbers.
+    friend constexpr std::strong_ordering operator<=>(const FeatureMask& a, const FeatureMask& b) {
+        for (std::size_t i = a.words_.size(); i-- > 0;) {
+            if (a.words_[i] != b.words_[i]) {
+                return a.words_[i] <=> b.words_[i];
+            }
+        }
+        return std::strong_ordering::equal;
+    }
+
+private:
+    std::array<std::uint64_t, kBits / 64> words_{};
+};
+
+// Returns the set as a hexadecimal number of at least 16 digits.
+std::string toHex(const FeatureMask& mask);
+
+inline constexpr FeatureMask kAllFeatures = ~FeatureMask();
 inline constexpr int kFirstInput = 32;
-inline constexpr int kFeatureBits = 64;
-
-constexpr FeatureMask bitMask(int bit) {
-    return FeatureMask{1} << static_cast<unsigned>(bit);
-}
+inline constexpr int kFirstOfModels = 64;
+inline constexpr int kOwnFeatures = 32;  // of a model, at most
 
 // The stage at which a feature's GLSL runs.
 enum class Stage : std::uint8_t {
@@ -240,6 +322,7 @@ struct FeatureCost {
 
 struct Feature {
     int bit = 0;
+    int model = -1;  // index into MaterialModel::models: only keys of this base have the feature; -1: any
     bool isLobe = false;
     std::string name;       // name in the manifest: "baseColorTexture"
     std::string shortName;  // part of a case's name: "BaseTex"
@@ -259,8 +342,10 @@ struct Feature {
     bool isInDraft = false;          // The draft of first hits shows it.
     FeatureCost cost{};
 
+    // Returns the end of the macros that ask for it: "BASE_COLOR_TEXTURE".
+    std::string macroEnd() const;
     FeatureMask mask() const {
-        return bitMask(bit);
+        return FeatureMask::ofBit(bit);
     }
     // Returns when the feature is given but changes nothing, in words.
     std::string neutralText() const;
@@ -291,6 +376,15 @@ struct FeatureCode {
     bool isSampled = false;       // the model samples directions itself; otherwise they are cosine-weighted
     bool isOfPack = false;        // of a user's own
     std::string gains{};          // why more light may leave the surface than reaches it; empty: none may
+};
+
+// A base model that a pack declares. Of keys, shaders see it and its features in two words of their own, in which each
+// model numbers its features anew (package::KeyWords).
+struct BaseModel {
+    std::string name;  // of the declaration
+    int feature = -1;  // index into MaterialModel::features: the base itself
+    int firstBit = 0;  // of its further features, which follow each other
+    int bits = 0;      // how many these are, at most 32
 };
 
 // The effects of a material on light, by which effects are chosen.
@@ -344,6 +438,7 @@ public:
     std::vector<MaterialTexture> textures;
     std::vector<VertexAttribute> attributes;  // of packs
     std::vector<Feature> features;            // by bit
+    std::vector<BaseModel> models;            // of packs, by bit; their number in keys is one more
     std::vector<int> order;                   // indices into `features`, in the order of evaluation
     std::vector<Exclusion> exclusions;
     std::vector<BehaviourRule> behaviours;
@@ -368,17 +463,30 @@ public:
     FeatureMask mask(std::string_view feature) const;
     // Returns the names of the features of `mask`, in the order of bits.
     std::vector<std::string_view> names(FeatureMask mask) const;
+    // Returns the base of the model of a pack whose feature this is, as an index into `features`.
+    int baseOf(const Feature& feature) const {
+        return models[static_cast<std::size_t>(feature.model)].feature;
+    }
     // Returns the base models. Every hit needs one.
     FeatureMask baseModels() const;
     // Returns the features that have GLSL at the stage opacity.
     FeatureMask opacityFeatures() const;
-    // Returns "#define GLINT_BASE_COLOR_TEXTURE 0x1u" for every feature; lobes and inputs are numbered within
-    // their own word. GLINT_HAS_BASE_COLOR_TEXTURE(features) asks for it, and
-    // GLINT_KEY_HAS_BASE_COLOR_TEXTURE(features) where the code runs for keys that are not the module's own.
-    // GLINT_LOBES is the set of lobes; GLINT_UNLIT_LOBES, GLINT_BOTH_SIDES_LOBES, GLINT_MODEL_LOBES and
-    // GLINT_SAMPLED_MODEL_LOBES are those that take no light, that let light through, and that are models of
-    // their own, also with samples of their own.
-    std::string featureDefines() const;
+    // Returns a key as packages and shaders have it. If `mask` has no base of a pack, its model is 0.
+    package::KeyWords words(const FeatureMask& mask) const;
+    // Returns the set that the words of a key stand for.
+    FeatureMask maskOf(const package::KeyWords& words) const;
+    // Returns what the keys of a case have, and what some of them have. Cases of several models know nothing about
+    // the features of each.
+    std::pair<package::KeyWords, package::KeyWords> caseWords(const FeatureMask& always,
+                                                              const FeatureMask& sometimes) const;
+    // Returns the word by which shaders know the base of index `model`: its number and what it does.
+    std::uint32_t modelWord(int model) const;
+    // Returns "#define GLINT_BASE_COLOR_TEXTURE 0x1u" for every feature that all models share; lobes and inputs
+    // are numbered within their own word. For these and for the features of models in `used`,
+    // GLINT_HAS_BASE_COLOR_TEXTURE(features) asks for it, and GLINT_KEY_HAS_BASE_COLOR_TEXTURE(features) where
+    // the code runs for keys that are not the module's own. GLINT_LOBES is the set of shared lobes;
+    // GLINT_UNLIT_LOBES and GLINT_BOTH_SIDES_LOBES are those that take no light and that let light through.
+    std::string featureDefines(const FeatureMask& used) const;
 
     // Numbers of symbols. The kinds follow each other.
     int symbolOf(Fact fact) const;

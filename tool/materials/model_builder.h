@@ -42,6 +42,7 @@ private:
         std::string where;
         Light light = Light::Front;
         bool isOfPack = false;
+        int base = -1;  // the model whose feature it is, as an index into pending_; -1: all models share it
     };
 
     // declarations.cpp
@@ -110,6 +111,7 @@ private:
 
     MaterialModel model_;
     bool isOfPack_ = false;  // of the file that collect() reads
+    int base_ = -1;          // the model that it declares: Pending::base of its features
     std::vector<File> files_;
     std::vector<Pending> pending_;
     std::map<std::string, std::string> named_;  // where each name is declared

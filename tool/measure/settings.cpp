@@ -148,8 +148,10 @@ compiler::BenchFacts factsOf(const compiler::Build& build, std::size_t index) {
         facts.passesLight = facts.passesLight || material.alphaMode == materials::AlphaMode::Blend ||
                             compiler::passesLight(material, primitive);
         // Hits that keep only the lobes of the base lose a lobe.
-        facts.furtherLobes = facts.furtherLobes || (build.plan.primaryMaskOfPrimitive[i] &
-                                                    materials::kLobeMask & ~compiler::baseLobes()) != 0;
+        const materials::FeatureMask further =
+            materials::builtinMaterialModel().lobes & ~compiler::baseLobes();
+        facts.furtherLobes =
+            facts.furtherLobes || (build.plan.primaryMaskOfPrimitive[i] & further) != 0;
     }
     facts.textures = !scene.textures.empty();
     facts.effects = namesOfChosen(build.plan.effects);

@@ -27,8 +27,11 @@ compiler::DecidedPackage decidedBy(const Package& package, const gltf::Scene& sc
                                      .lightSamples = package.lightSamples(),
                                      .cases = {},
                                      .hits = {}};
+    const materials::MaterialModel& model =
+        scene.materials.empty() ? materials::builtinMaterialModel() : scene.materials.front().model();
     for (const package::CaseEntry& entry : package.cases()) {
-        decided.cases.push_back({entry.always, entry.sometimes, entry.keyCount == 0});
+        decided.cases.push_back(
+            {model.maskOf(entry.always), model.maskOf(entry.sometimes), entry.keyCount == 0});
     }
     if (const std::optional<std::uint32_t> index = session::sceneIn(package, scene)) {
         for (const materials::PrimitiveInputs& inputs : planningInputs(scene)) {

@@ -3,7 +3,6 @@
 #include "plan/cost_constants.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 
 namespace glint::compiler {
@@ -20,20 +19,12 @@ double idleShare(double p) {
     return std::max(0.0, 1.0 - noLane - p);
 }
 
-// Calls use(bit) for each bit of `mask`, the lowest first.
-template <typename Use>
-void forEachBit(materials::FeatureMask mask, const Use& use) {
-    for (; mask != 0; mask &= mask - 1) {
-        use(static_cast<std::size_t>(std::countr_zero(mask)));
-    }
-}
-
 // Calls use(feature) for each feature of `mask`, the lowest bit first. Bits that the model does not have are
 // skipped.
 template <typename Use>
 void forEachFeature(const materials::MaterialModel& model, materials::FeatureMask mask, const Use& use) {
     for (const materials::Feature& feature : model.features) {
-        if ((mask & feature.mask()) != 0) {
+        if (mask.has(feature.bit)) {
             use(feature);
         }
     }
@@ -58,7 +49,7 @@ double surplus(const materials::MaterialModel& model, double share, materials::F
     double cost = 0.0;
     forEachFeature(model, sometimes, [&](const materials::Feature& feature) {
         const double with = shareWith(static_cast<std::size_t>(feature.bit));
-        cost += surplusOf(feature, (feature.mask() & model.unlit) != 0, with / share);
+        cost += surplusOf(feature, model.unlit.has(feature.bit), with / share);
     });
     return share * cost;
 }
@@ -69,7 +60,7 @@ double ownCode(const materials::MaterialModel& model, double share, materials::F
                const ShareWith& shareWith) {
     double code = share * (fitted::kUnlitInstructions + fitted::kLitInstructions);
     forEachFeature(model, any, [&](const materials::Feature& feature) {
-        const bool isUnlit = (feature.mask() & model.unlit) != 0;
+        const bool isUnlit = model.unlit.has(feature.bit);
         code += shareWith(static_cast<std::size_t>(feature.bit)) *
                 (feature.cost.instructions + kFetchCost * feature.cost.fetches -
                  (isUnlit ? fitted::kLitInstructions : 0.0));
@@ -98,14 +89,14 @@ KeySet toSet(const WeightedKey& key) {
     set.any = key.mask;
     set.model = key.model;
     set.branchFactor = key.branchFactor;
-    forEachBit(key.mask, [&](std::size_t place) { set.shareWith[place] = key.share; });
+    key.mask.forEach([&](int bit) { set.shareWith[static_cast<std::size_t>(bit)] = key.share; });
     return set;
 }
 
 KeySet toSet(std::span<const int> indices, std::span<const WeightedKey> keys) {
     assert(!indices.empty());
     KeySet set;
-    set.always = ~materials::FeatureMask{0};
+    set.always = materials::kAllFeatures;
     set.model = keys[static_cast<std::size_t>(indices.front())].model;
     set.branchFactor = keys[static_cast<std::size_t>(indices.front())].branchFactor;
     for (const int index : indices) {
@@ -113,7 +104,7 @@ KeySet toSet(std::span<const int> indices, std::span<const WeightedKey> keys) {
         set.share += key.share;
         set.always &= key.mask;
         set.any |= key.mask;
-        forEachBit(key.mask, [&](std::size_t place) { set.shareWith[place] += key.share; });
+        key.mask.forEach([&](int bit) { set.shareWith[static_cast<std::size_t>(bit)] += key.share; });
     }
     return set;
 }
@@ -157,8 +148,8 @@ CodeEstimate estimateCode(materials::FeatureMask always, materials::FeatureMask 
         estimate.instructions += feature.cost.instructions;
         estimate.fetches += feature.cost.fetches;
     });
-    estimate.lobeBranches = std::popcount(sometimes & materials::kLobeMask);
-    estimate.inputBranches = std::popcount(sometimes & ~materials::kLobeMask);
+    estimate.lobeBranches = (sometimes & model.lobes).count();
+    estimate.inputBranches = (sometimes & ~model.lobes).count();
     estimate.instructions +=
         estimate.lobeBranches * fitted::kLobeBranch + estimate.inputBranches * fitted::kInputBranch;
     return estimate;
@@ -175,7 +166,7 @@ CaseCode codeOf(const KeySet& keys) {
         code.always.instructions -= feature.cost.instructions;
         code.always.fetches -= feature.cost.fetches;
         code.parts.push_back({shareOf(feature), factor * feature.cost.instructions, feature.cost.fetches});
-        if ((feature.mask() & keys.model->unlit) != 0) {
+        if (keys.model->unlit.has(feature.bit)) {
             code.always.instructions -= fitted::kLitInstructions;
             const double lit = keys.share > 0.0 ? 1.0 - shareOf(feature) : 1.0;
             code.parts.push_back({lit, factor * fitted::kLitInstructions, 0.0});

@@ -59,7 +59,7 @@ struct KeySet {
     double share = 0.0;
     materials::FeatureMask always = 0;
     materials::FeatureMask any = 0;
-    std::array<double, materials::kFeatureBits>
+    std::array<double, materials::FeatureMask::kBits>
         shareWith{};  // by bit: the total share of the keys that have it
     const materials::MaterialModel* model = &materials::builtinMaterialModel();
     double branchFactor = 1.0;

@@ -107,7 +107,7 @@ public:
 
     bool has(int feature) const {
         return feature < 0 ||
-               (key_ & material_.model().features[static_cast<std::size_t>(feature)].mask()) != 0;
+               key_.has(material_.model().features[static_cast<std::size_t>(feature)].bit);
     }
 
     double leastRoughness() const {

@@ -131,12 +131,17 @@ public:
 
 private:
     bool has(int feature) const {
-        return (key_ & model_.features[static_cast<std::size_t>(feature)].mask()) != 0;
+        return key_.has(model_.features[static_cast<std::size_t>(feature)].bit);
     }
 
     // A file requests only textures that it has. A lobe is present by its values, whether or not the file
     // gives its extension.
     Presence decide(const materials::Feature& feature) const {
+        const bool isOfOther = feature.model >= 0 && !has(model_.baseOf(feature)) &&
+                               feature.bit != model_.features[static_cast<std::size_t>(model_.baseOf(feature))].bit;
+        if (isOfOther) {
+            return {};
+        }
         const materials::TextureInfo* const info =
             feature.texture < 0 ? nullptr : &material_.textures[static_cast<std::size_t>(feature.texture)];
         if (info != nullptr && info->texture < 0) {
@@ -169,7 +174,7 @@ private:
 
     std::optional<std::string> findExclusion(const materials::Feature& feature) const {
         for (const materials::Exclusion& exclusion : model_.exclusions) {
-            if (has(exclusion.by) && (exclusion.excluded & feature.mask()) != 0) {
+            if (has(exclusion.by) && exclusion.excluded.has(feature.bit)) {
                 return exclusion.because;
             }
         }
@@ -238,7 +243,7 @@ materials::FeatureMask makeKey(const materials::Material& material,
     // First drop neutral features, and record the reasons. Then drop the lobes that hits leave out.
     const materials::MaterialModel& model = material.model();
     const materials::FeatureMask whole = KeyMaker(material, primitive, keepAllLobes(options)).make(dropped);
-    const bool keepsAll = (options.keptLobes & materials::kLobeMask) == materials::kLobeMask;
+    const bool keepsAll = (options.keptLobes & model.lobes) == model.lobes;
     const materials::FeatureMask kept =
         keepsAll ? whole : KeyMaker(material, primitive, options).make(nullptr);
     if (dropped != nullptr) {
@@ -257,7 +262,7 @@ materials::FeatureMask makeKey(const materials::Material& material,
 }
 
 materials::KeyOptions keepAllLobes(materials::KeyOptions options) {
-    options.keptLobes = materials::kLobeMask;
+    options.keptLobes = materials::kAllFeatures;
     return options;
 }
 

@@ -246,6 +246,10 @@ namespace {
 
 using Keys = std::span<const WeightedKey>;
 
+materials::FeatureMask lobesOf(Keys keys) {
+    return keys.empty() ? materials::FeatureMask() : keys.front().model->lobes;
+}
+
 // Returns the indices of the keys, those with most hits first. Equal keys are ordered by mask, ascending.
 std::vector<int> byShare(Keys keys) {
     std::vector<int> order(keys.size());
@@ -320,11 +324,11 @@ std::vector<Cluster> cheapestClusters(Keys keys, int maxCases) {
     const std::vector<int> order = byShare(keys);
     std::vector<std::vector<Cluster>> candidates;
     for (std::vector<Cluster>& start :
-         std::array{startApart(keys, order), groupBy(keys, order, materials::kLobeMask)}) {
+         std::array{startApart(keys, order), groupBy(keys, order, lobesOf(keys))}) {
         candidates.push_back(moveKeys(agglomerate(std::move(start), keys, maxCases), keys, maxCases));
     }
     if (keys.size() <= static_cast<std::size_t>(maxCases)) {
-        candidates.push_back(groupBy(keys, order, ~materials::FeatureMask{0}));
+        candidates.push_back(groupBy(keys, order, materials::kAllFeatures));
     }
     candidates.push_back(groupBy(keys, order, 0));
     const auto cost = [&](const std::vector<Cluster>& clusters) { return totalCost(clusters, keys); };
@@ -383,7 +387,7 @@ std::vector<CaseKeys> mergeByHits(Keys keys, int maxCases) {
     }
     if (!cold.empty()) {
         const std::size_t left = budget - hot - (unhit.empty() ? 0 : 1);
-        append(cases, agglomerate(groupBy(keys, cold, materials::kLobeMask), keys, static_cast<int>(left)),
+        append(cases, agglomerate(groupBy(keys, cold, lobesOf(keys)), keys, static_cast<int>(left)),
                CaseReason::Cold);
     }
     if (!unhit.empty()) {
@@ -395,9 +399,9 @@ std::vector<CaseKeys> mergeByHits(Keys keys, int maxCases) {
 std::vector<CaseKeys> mergeBy(Keys keys, MergePolicy merge, int maxCases) {
     switch (merge) {
         case MergePolicy::None:
-            return mergeByMask(keys, ~materials::FeatureMask{0}, CaseReason::Own);
+            return mergeByMask(keys, materials::kAllFeatures, CaseReason::Own);
         case MergePolicy::Family:
-            return mergeByMask(keys, materials::kLobeMask, CaseReason::Family);
+            return mergeByMask(keys, lobesOf(keys), CaseReason::Family);
         case MergePolicy::All:
             return mergeByMask(keys, 0, CaseReason::All);
         case MergePolicy::Auto:
@@ -445,7 +449,7 @@ std::vector<MergeCandidate> mergeCandidates(std::span<const WeightedKey> keys, i
             candidates.push_back({std::string(nameOf(merge)), std::move(cases)});
         }
     }
-    const std::vector<Cluster> families = groupBy(keys, byShare(keys), materials::kLobeMask);
+    const std::vector<Cluster> families = groupBy(keys, byShare(keys), lobesOf(keys));
     for (std::size_t count = 2; count < families.size() && count <= most; count *= 2) {
         std::vector<CaseKeys> cases;
         append(cases, agglomerate(families, keys, static_cast<int>(count)), CaseReason::Cost);

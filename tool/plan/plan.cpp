@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
 #include <map>
@@ -35,7 +34,7 @@ void collectKeys(std::span<const materials::Material> materials,
         const materials::FeatureMask mask =
             makeKey(materials[materialIndex], primitives[i], options, &dropped);
         masks.push_back(mask);
-        const bool keepsAll = (options.keptLobes & materials::kLobeMask) == materials::kLobeMask;
+        const bool keepsAll = (options.keptLobes & plan.model->lobes) == plan.model->lobes;
         plan.primaryMaskOfPrimitive.push_back(
             keepsAll ? mask : makeKey(materials[materialIndex], primitives[i], keepAllLobes(options)));
         Key& key = byMask[mask];
@@ -54,7 +53,7 @@ void collectKeys(std::span<const materials::Material> materials,
         indexOf[mask] = static_cast<int>(plan.keys.size());
         plan.keys.push_back(std::move(key));
     }
-    for (const materials::FeatureMask mask : masks) {
+    for (const materials::FeatureMask& mask : masks) {
         plan.keyOfPrimitive.push_back(indexOf[mask]);
     }
 }
@@ -66,8 +65,8 @@ struct FeatureSpread {
 
 FeatureSpread spreadOf(const std::vector<materials::FeatureMask>& masks) {
     materials::FeatureMask any = 0;
-    materials::FeatureMask every = masks.empty() ? 0 : ~materials::FeatureMask{0};
-    for (const materials::FeatureMask mask : masks) {
+    materials::FeatureMask every = masks.empty() ? materials::FeatureMask() : materials::kAllFeatures;
+    for (const materials::FeatureMask& mask : masks) {
         any |= mask;
         every &= mask;
     }
@@ -117,7 +116,7 @@ std::string nameCase(const materials::MaterialModel& model, const Case& shaderCa
     std::string lobes;
     std::string inputs;
     for (const materials::Feature& feature : model.features) {
-        if ((shaderCase.always & feature.mask()) == 0) {
+        if (!shaderCase.always.has(feature.bit)) {
             continue;
         }
         if (feature.isLobe) {
@@ -127,7 +126,7 @@ std::string nameCase(const materials::MaterialModel& model, const Case& shaderCa
         }
     }
     const std::string base = lobes.empty() ? "Pbr" : lobes;
-    const bool mixed = (shaderCase.sometimes & materials::kLobeMask) != 0;
+    const bool mixed = (shaderCase.sometimes & model.lobes) != 0;
     return !merged ? base + inputs : base + (mixed ? "Mixed" : "Family");
 }
 
@@ -233,7 +232,7 @@ Plan planCases(Plan plan, std::span<const materials::PrimitiveInputs> primitives
     plan.sometimes = hits.sometimes;
     plan.primaryAlways = primary.always;
     plan.primarySometimes = primary.sometimes;
-    plan.keysPossible = plan.keys.empty() ? 0.0 : std::exp2(std::popcount(hits.always | hits.sometimes));
+    plan.keysPossible = plan.keys.empty() ? 0.0 : std::exp2((hits.always | hits.sometimes).count());
     return plan;
 }
 
@@ -272,7 +271,7 @@ Case draftCase(const Plan& plan) {
     shaderCase.shaderId = -1;
     shaderCase.name = "Draft";
     for (const materials::Feature& feature : plan.model->features) {
-        shaderCase.sometimes |= feature.isInDraft ? feature.mask() : 0;
+        shaderCase.sometimes |= feature.isInDraft ? feature.mask() : materials::FeatureMask();
     }
     shaderCase.sometimes &= plan.primaryAlways | plan.primarySometimes;
     return shaderCase;
@@ -295,7 +294,7 @@ std::optional<std::string> describeExcess(const Plan& plan, const PlanOptions& o
     }
     std::set<materials::FeatureMask> families;
     for (const Key& key : plan.keys) {
-        families.insert(key.mask & materials::kLobeMask);
+        families.insert(key.mask & plan.model->lobes);
     }
     std::string advice = "raise --max-shaders";
     if (options.merge == MergePolicy::None && families.size() <= static_cast<std::size_t>(maxShaders)) {

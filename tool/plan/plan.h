@@ -122,6 +122,11 @@ inline Plan makePlan(std::span<const materials::Material> materials,
     return planCases(planKeys(materials, primitives, options.keys), primitives, options);
 }
 
+// Returns the features that hits or primary surfaces have.
+inline materials::FeatureMask usedFeatures(const Plan& plan) {
+    return plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
+}
+
 // Returns the case of materials that have no case in the plan. It has every feature of the plan as one that a
 // material may have, and no shader ID, keys or materials.
 Case fallbackCase(const Plan& plan);

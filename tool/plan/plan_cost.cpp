@@ -13,7 +13,7 @@ using Keys = std::span<const WeightedKey>;
 std::vector<BranchCost> branchesOf(const KeySet& set) {
     std::vector<BranchCost> branches;
     for (const materials::Feature& feature : set.model->features) {
-        if ((set.any & ~set.always & feature.mask()) != 0) {
+        if (set.any.has(feature.bit) && !set.always.has(feature.bit)) {
             const double with = set.shareWith[static_cast<std::size_t>(feature.bit)];
             branches.push_back(
                 {&feature, set.share > 0.0 ? with / set.share : 0.0, branchCost(set, feature)});

@@ -325,11 +325,11 @@ EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan,
         result.read |= model.mask(name);
     }
     if (result.coveredByLayers) {
-        result.read = ~materials::FeatureMask{0};
+        result.read = materials::kAllFeatures;
     }
     materials::FeatureMask any = 0;
     result.always = masks.empty() ? 0 : result.read;
-    for (const materials::FeatureMask mask : masks) {
+    for (const materials::FeatureMask& mask : masks) {
         any |= mask & result.read;
         result.always &= mask;
     }

@@ -38,10 +38,12 @@ MaterialKey keyFor(const Package& package, const materials::Material& material, 
     const materials::KeyOptions options{package.alpha(), keptLobes};
     MaterialKey key;
     key.attributes = attributes;
-    key.features = compiler::makeKey(material, inputs, compiler::keepAllLobes(options));
-    key.hitFeatures = compiler::makeKey(material, inputs, options);
+    const materials::FeatureMask hitKey = compiler::makeKey(material, inputs, options);
+    key.features =
+        material.model().words(compiler::makeKey(material, inputs, compiler::keepAllLobes(options)));
+    key.hitFeatures = material.model().words(hitKey);
     key.geometryFlags =
-        compiler::geometryFlags(material, inputs, key.hitFeatures, package.alpha(), package.shadowThrough());
+        compiler::geometryFlags(material, inputs, hitKey, package.alpha(), package.shadowThrough());
     if (package.emission() != nullptr && compiler::isEmitter(material, inputs)) {
         key.geometryFlags |= gpu::kGeometryEmitter;
     }

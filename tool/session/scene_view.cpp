@@ -291,8 +291,7 @@ compiler::MaterialLayout recordLayoutOf(const Package& package, const materials:
     materials::FeatureMask used = 0;
     for (std::uint32_t i = 0; i < package.sceneCount(); ++i) {
         for (const package::PrimitiveEntry& entry : package.scene(i).primitives) {
-            used |= materials::FeatureMask{entry.featureLobes} | materials::FeatureMask{entry.featureInputs}
-                                                                     << 32U;
+            used |= model.maskOf(entry.key);
         }
     }
     return compiler::makeMaterialLayout(model, used);

@@ -66,10 +66,6 @@ Status checkSky(const Package& package, const compiler::Settings& settings) {
                          : "give one by --environment, or compile without --environment-map");
 }
 
-materials::FeatureMask maskOf(const package::PrimitiveEntry& entry) {
-    return materials::FeatureMask{entry.featureLobes} | materials::FeatureMask{entry.featureInputs} << 32U;
-}
-
 }  // namespace
 
 Result<gltf::ImportOptions> importOptions(const compiler::Settings& settings, ImageReading images,
@@ -135,7 +131,7 @@ Status checkPackage(const Package& package, const compiler::Build& build) {
             return mismatch(settings.package, "does not know the scene's " + pointer);
         }
         if (entry->materialIndex != static_cast<std::uint32_t>(inputs.material) ||
-            maskOf(*entry) != build.plan.primaryMaskOfPrimitive[i]) {
+            build.plan.model->maskOf(entry->key) != build.plan.primaryMaskOfPrimitive[i]) {
             return mismatch(settings.package,
                             "has another material or other features for the scene's " + pointer);
         }

@@ -258,7 +258,7 @@ inline std::vector<SettingWord> effectWords() {
 
 inline std::string hitLobesOf(const Settings& settings) {
     const materials::FeatureMask kept = settings.compile.plan.keys.keptLobes;
-    if (kept == materials::kLobeMask) {
+    if (kept == materials::kAllFeatures) {
         return std::string(kAll);
     }
     const bool hasBase = (kept & baseLobes()) == baseLobes();
@@ -277,12 +277,12 @@ inline void setHitLobes(Settings& settings, std::string_view text) {
     kept = 0;
     settings.packLobes.clear();
     eachWord(text, [&](std::string_view word) {
-        if (word != kAll && word != "base" && (model.mask(word) & materials::kLobeMask) == 0) {
+        if (word != kAll && word != "base" && (model.mask(word) & model.lobes) == 0) {
             settings.packLobes.emplace_back(word);
             kept |= model.baseModels();
             return;
         }
-        kept |= word == kAll     ? materials::kLobeMask
+        kept |= word == kAll     ? materials::kAllFeatures
                 : word == "base" ? baseLobes()
                                  : model.baseModels() | model.mask(word);
     });
@@ -299,7 +299,7 @@ inline std::vector<SettingWord> hitLobeWords() {
     const materials::MaterialModel& model = materials::builtinMaterialModel();
     std::vector<SettingWord> words{{std::string(kAll), "as primary surfaces do"},
                                    {"base", fmt::format("{}", fmt::join(model.names(baseLobes()), ", "))}};
-    for (const std::string_view name : model.names(materials::kLobeMask)) {
+    for (const std::string_view name : model.names(model.lobes)) {
         words.push_back({std::string(name), ""});
     }
     return words;

@@ -12,6 +12,8 @@ struct EngineGeometry {
     uint material;
     uint featureLobes;
     uint featureInputs;
+    uint featureModel;
+    uint featureOwn;
     uint instance;
     uint pad;
 };

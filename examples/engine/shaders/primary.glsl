@@ -11,7 +11,8 @@ layout(set = 1, binding = 6) uniform sampler samplers[];
 
 GlintGeometry glintHostGeometry(const uint number) {
     EngineGeometry geometry = FRAME.geometries.data[number];
-    return GlintGeometry(geometry.shaderId, geometry.material, geometry.featureLobes, geometry.featureInputs);
+    return GlintGeometry(geometry.shaderId, geometry.material, geometry.featureLobes, geometry.featureInputs,
+                         geometry.featureModel, geometry.featureOwn);
 }
 
 mat4x3 glintHostObjectToWorld(const uint number) {

@@ -125,7 +125,7 @@ public:
     const package::OpacityEntry* opacity() const;
     // Returns the names of features of materials, in the order of bits, for messages about keys. Bits without
     // a name are left out.
-    std::vector<std::string> featureNames(std::uint64_t features) const;
+    std::vector<std::string> featureNames(const package::KeyWords& features) const;
     // Returns the fields and the textures of the records of materials, by ascending offsets.
     std::span<const package::FieldEntry> fields() const;
     // Returns the number of shader IDs, retired ones included.

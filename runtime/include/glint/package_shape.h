@@ -162,14 +162,45 @@ struct StringRef {
     std::uint32_t length;
 };
 
+// A set of the features of a material: those that every base model may have in two words, and those of a base
+// model that a pack declares in two more.
+struct KeyWords {
+    std::uint32_t lobes = 0;   // what light does at the surface
+    std::uint32_t inputs = 0;  // where its values are read from
+    // The model, as shaders/interop/models.h describes it; 0: one of glTF's. A set of the features of several
+    // models has kAnyModel, and all bits of `own`.
+    std::uint32_t model = 0;
+    std::uint32_t own = 0;  // the model's own features, which it numbers by itself
+
+    bool operator==(const KeyWords&) const = default;
+    // Returns whether the set has one of `features`, which are of one model at most. Those of a model without
+    // bits in `own` are the model itself.
+    constexpr bool hasAny(const KeyWords& features) const {
+        const bool isOfModel =
+            features.model != 0 && (features.model == model || model == ~std::uint32_t{0});
+        return ((lobes & features.lobes) | (inputs & features.inputs)) != 0 ||
+               (isOfModel && (features.own == 0 || (own & features.own) != 0));
+    }
+};
+
 // A shader ID. It is retired if a lock file keeps it and no material has it. A retired one has no keys, no
 // primitives and no modules.
 struct CaseEntry {
-    std::uint64_t always;
-    std::uint64_t sometimes;
+    KeyWords always;
+    KeyWords sometimes;  // of the same model
     StringRef name;
     std::uint32_t keyCount;  // 0: retired
-    std::uint32_t pad;
+
+    // Returns whether the case's shaders compute all features of the key.
+    constexpr bool fits(const KeyWords& key) const {
+        const auto within = [](std::uint32_t least, std::uint32_t some, std::uint32_t bits) {
+            return (least & ~bits) == 0 && (bits & ~(least | some)) == 0;
+        };
+        return within(always.lobes, sometimes.lobes, key.lobes) &&
+               within(always.inputs, sometimes.inputs, key.inputs) &&
+               (always.model == key.model || always.model == ~std::uint32_t{0}) &&
+               within(always.own, sometimes.own, key.own);
+    }
 };
 
 // One primitive of one mesh. The entries of each scene are sorted by (mesh, primitive).
@@ -178,8 +209,7 @@ struct PrimitiveEntry {
     std::uint32_t primitive;
     std::uint32_t shaderId;
     std::uint32_t materialIndex;
-    std::uint32_t featureLobes;
-    std::uint32_t featureInputs;
+    KeyWords key;                 // with all lobes
     std::uint32_t geometryFlags;  // kGeometry* of shaders/interop/scene.h
     std::uint32_t alphaMode;      // 0 opaque, 1 mask, 2 blend, as in the file
 };
@@ -207,7 +237,7 @@ struct AttributeEntry {
     std::uint32_t channels;     // 1 to 4
     std::uint32_t hasFallback;  // 1: primitives may lack it
     float fallback[4];
-    std::uint64_t feature;  // the bit of keys whose shaders read it
+    KeyWords feature;  // of the keys whose shaders read it: one
 };
 
 // A file of a package in memory. `glint compile --embed` makes such files, and Package::load() reads them.

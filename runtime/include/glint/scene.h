@@ -59,8 +59,8 @@ AttributeMask attributesOf(const Package& package, const PrimitiveView& primitiv
 // material of glTF (glint/session/material_source.h).
 struct MaterialKey {
     AttributeMask attributes = 0;
-    std::uint64_t features = 0;       // the key, with all lobes
-    std::uint64_t hitFeatures = 0;    // those that hits keep; the same unless the package has --hit-lobes
+    package::KeyWords features;       // the key, with all lobes
+    package::KeyWords hitFeatures;    // those that hits keep; the same unless the package has --hit-lobes
     std::uint32_t geometryFlags = 0;  // kGeometry* of shaders/interop/scene.h
 };
 
@@ -85,7 +85,7 @@ struct MaterialSource {
 // A material on a primitive for which the package has no shader.
 struct MissingCase {
     MaterialHandle material;
-    std::uint64_t features = 0;      // its key
+    package::KeyWords features;      // its key
     std::vector<std::string> names;  // the names of these features
 };
 

@@ -166,8 +166,10 @@ Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, 
 void takeEntry(const package::PrimitiveEntry& entry, gpu::GeometryRecord& record) {
     record.shaderId = entry.shaderId;
     record.materialIndex = entry.materialIndex;
-    record.featureLobes = entry.featureLobes;
-    record.featureInputs = entry.featureInputs;
+    record.featureLobes = entry.key.lobes;
+    record.featureInputs = entry.key.inputs;
+    record.featureModel = entry.key.model;
+    record.featureOwn = entry.key.own;
     record.flags = (record.flags & ~kEntryFlags) | entry.geometryFlags;
 }
 
@@ -253,9 +255,8 @@ std::vector<MeshPart> partitionMesh(std::span<const PartedPrimitive> primitives,
 
 std::vector<float> joinAttributes(const Package& package, const package::PrimitiveEntry& entry,
                                   const PrimitiveView& view) {
-    const std::uint64_t key = std::uint64_t{entry.featureInputs} << 32U | entry.featureLobes;
     const std::span<const package::AttributeEntry> known = package.attributes();
-    if (std::ranges::none_of(known, [&](const auto& row) { return (row.feature & key) != 0; })) {
+    if (std::ranges::none_of(known, [&](const auto& row) { return entry.key.hasAny(row.feature); })) {
         return {};
     }
     return joinAllAttributes(package, view);

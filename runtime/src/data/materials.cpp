@@ -233,19 +233,32 @@ Diagnostic fault(const MaterialView& view, const char* what) {
 
 }  // namespace
 
-std::vector<RecordField> recordFields(const Package& package) {
-    std::vector<RecordField> fields;
+const RecordField* RecordFields::find(std::string_view name, std::uint32_t model) const {
+    const auto found = std::ranges::find_if(list, [&](const RecordField& field) {
+        return field.name == name && (field.model == 0 || field.model == model);
+    });
+    return found == list.end() ? nullptr : &*found;
+}
+
+RecordFields recordFields(const Package& package, const PackageScene& known) {
+    RecordFields fields;
     for (const package::FieldEntry& entry : package.fields()) {
-        fields.push_back({std::string(package.string(entry.name)), entry.offset, entry.bytes});
+        fields.list.push_back(
+            {std::string(package.string(entry.name)), entry.offset, entry.bytes, entry.model});
+    }
+    fields.models.resize(known.materials.size());
+    for (const package::PrimitiveEntry& entry : known.primitives) {
+        fields.models[entry.materialIndex] = entry.key.model;
     }
     return fields;
 }
 
-void carryFields(std::span<const RecordField> from, std::span<const std::uint8_t> values,
-                 std::span<const RecordField> to, std::span<std::uint8_t> record) {
-    for (const RecordField& field : to) {
-        const auto same = std::ranges::find(from, field.name, &RecordField::name);
-        if (same != from.end() && same->bytes == field.bytes) {
+void carryFields(const RecordFields& from, std::uint32_t modelBefore, std::span<const std::uint8_t> values,
+                 const RecordFields& to, std::uint32_t model, std::span<std::uint8_t> record) {
+    for (const RecordField& field : to.list) {
+        const RecordField* const same =
+            field.model == 0 || field.model == model ? from.find(field.name, modelBefore) : nullptr;
+        if (same != nullptr && same->bytes == field.bytes) {
             std::memcpy(&record[field.offset], &values[same->offset], field.bytes);
         }
     }

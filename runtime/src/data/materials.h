@@ -72,18 +72,30 @@ std::vector<std::uint8_t> linearizeRgba16(std::span<const std::uint8_t> texels);
 // Converts RGBA of 16 bits a channel to the nearest values of 8 bits, in the same transfer function.
 std::vector<std::uint8_t> narrowRgba16(std::span<const std::uint8_t> texels);
 
-// A field or a texture of the records of a package, which the package need not outlive.
+// A field or a texture of the records of a package.
 struct RecordField {
     std::string name;
     std::uint32_t offset = 0;  // bytes
     std::uint32_t bytes = 0;
+    std::uint32_t model = 0;  // whose records have it; 0: all
 };
-std::vector<RecordField> recordFields(const Package& package);
+// The fields of a scene's records, which the package need not outlive.
+struct RecordFields {
+    std::vector<RecordField> list;
+    std::vector<std::uint32_t> models;  // of the scene's materials, as in keys
+
+    std::uint32_t modelOf(std::uint32_t material) const {
+        return material < models.size() ? models[material] : 0;
+    }
+    // Returns the field of that name in records of the model, or null.
+    const RecordField* find(std::string_view name, std::uint32_t model) const;
+};
+RecordFields recordFields(const Package& package, const PackageScene& known);
 
 // Copies what a record of the layout `from` has of the fields and textures of the layout `to`. The others
-// stay as they are in `record`.
-void carryFields(std::span<const RecordField> from, std::span<const std::uint8_t> values,
-                 std::span<const RecordField> to, std::span<std::uint8_t> record);
+// stay as they are in `record`. Each layout knows the record's model by its own number.
+void carryFields(const RecordFields& from, std::uint32_t modelBefore, std::span<const std::uint8_t> values,
+                 const RecordFields& to, std::uint32_t model, std::span<std::uint8_t> record);
 
 // A material of SceneView::materials with its values on the device.
 struct ChangingMaterial {

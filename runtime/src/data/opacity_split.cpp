@@ -34,7 +34,7 @@ float floatAt(const MaterialTable& materials, std::uint32_t material, std::uint3
 
 bool readsTexture(const package::OpacityEntry& opacity, const package::PrimitiveEntry& entry) {
     return opacity.texture != package::OpacityEntry::kNone &&
-           (entry.featureInputs & opacity.textureInput) != 0;
+           (entry.key.inputs & opacity.textureInput) != 0;
 }
 
 // The alpha of a texel of RGBA with 8 bits a channel, after the image's channels.
@@ -171,10 +171,10 @@ private:
     bool isDecidable(const PrimitiveView& view, const package::PrimitiveEntry& entry) const {
         constexpr std::uint32_t kOther =
             gpu::kGeometryBlended | gpu::kGeometryPassesLight | gpu::kGeometryEmitter;
-        const std::uint64_t key = std::uint64_t{entry.featureInputs} << 32U | entry.featureLobes;
+        const bool hasCode = entry.key.hasAny(opacity_.code) || (entry.key.model & gpu::kModelChangesAlpha) != 0;
         const std::size_t triangles = view.indices.size() / 3;
         return (entry.geometryFlags & gpu::kGeometryAlphaTested) != 0 &&
-               (entry.geometryFlags & kOther) == 0 && (key & opacity_.code) == 0 && triangles > 0 &&
+               (entry.geometryFlags & kOther) == 0 && !hasCode && triangles > 0 &&
                triangles <= capacity_.triangles && !mayChange(entry);
     }
 
@@ -191,7 +191,7 @@ private:
         if (readsTexture(opacity_, entry) && !addLookup(view, entry, candidate)) {
             return;
         }
-        if ((entry.featureInputs & opacity_.vertexColorInput) != 0) {
+        if ((entry.key.inputs & opacity_.vertexColorInput) != 0) {
             candidate.vertexAlpha = vertexAlphaOf(view.colors, scene_.vertices);
         }
         candidate.states.resize(view.indices.size() / 3);
@@ -212,14 +212,14 @@ private:
         lookup.wrapU = static_cast<opacity::Wrap>(sampler.wrapU);
         lookup.wrapV = static_cast<opacity::Wrap>(sampler.wrapV);
         lookup.linear = sampler.magnification != 0 || sampler.minification != 0;
-        if ((entry.featureInputs & opacity_.transformInput) != 0) {
+        if ((entry.key.inputs & opacity_.transformInput) != 0) {
             lookup.rowU = {texture.rowU.x, texture.rowU.y, texture.rowU.z};
             lookup.rowV = {texture.rowV.x, texture.rowV.y, texture.rowV.z};
         }
         candidate.material.lookup = lookup;
         candidate.model.texelSteps = alpha->steps;
-        const bool second = (entry.featureInputs & opacity_.texCoord1Input) != 0 &&
-                            ((entry.featureInputs & opacity_.texCoord0Input) == 0 || texture.texCoord != 0);
+        const bool second = (entry.key.inputs & opacity_.texCoord1Input) != 0 &&
+                            ((entry.key.inputs & opacity_.texCoord0Input) == 0 || texture.texCoord != 0);
         candidate.coordinates = coordinatesOf(second ? view.texCoords1 : view.texCoords0, scene_.vertices);
         return true;
     }
@@ -342,8 +342,10 @@ std::vector<std::uint8_t> alphaInputs(const package::OpacityEntry& opacity, cons
     constexpr auto kNone = package::OpacityEntry::kNone;
     const std::uint32_t inputs = opacity.textureInput | opacity.texCoord0Input | opacity.texCoord1Input |
                                  opacity.transformInput | opacity.vertexColorInput;
-    appendBytes(bytes, entry.featureInputs & inputs);
-    appendBytes(bytes, (std::uint64_t{entry.featureInputs} << 32U | entry.featureLobes) & opacity.code);
+    appendBytes(bytes, entry.key.inputs & inputs);
+    appendBytes(bytes, entry.key.lobes & opacity.code.lobes);
+    appendBytes(bytes, entry.key.inputs & opacity.code.inputs);
+    appendBytes(bytes, entry.key.model & gpu::kModelChangesAlpha);
     appendBytes(bytes, floatAt(materials, entry.materialIndex, opacity.factor));
     appendBytes(bytes, floatAt(materials, entry.materialIndex, opacity.cutoff));
     if (opacity.texture != kNone && readsTexture(opacity, entry)) {

@@ -50,7 +50,7 @@ Status checkAttributes(const PrimitiveView& view, const package::PrimitiveEntry&
         if (attribute.count != 0 && attribute.count != view.positions.size()) {
             return wrongCount(attribute, view, where);
         }
-        const bool needed = (entry.featureInputs & attribute.input) != 0;
+        const bool needed = (entry.key.inputs & attribute.input) != 0;
         if (needed && attribute.count == 0 && !view.positions.empty()) {
             return makeError(
                 "scene-package", where,
@@ -64,12 +64,11 @@ Status checkAttributes(const PrimitiveView& view, const package::PrimitiveEntry&
 // The attributes of packs that the primitive's key reads.
 Status checkDeclared(const Package& package, const PrimitiveView& view, const package::PrimitiveEntry& entry,
                      const std::string& where) {
-    const std::uint64_t key = std::uint64_t{entry.featureInputs} << 32U | entry.featureLobes;
     for (const package::AttributeEntry& row : package.attributes()) {
         const std::string name(package.string(row.name));
         const auto given = std::ranges::find(view.attributes, name, &AttributeView::name);
         if (given == view.attributes.end()) {
-            if ((row.feature & key) != 0 && row.hasFallback == 0 && !view.positions.empty()) {
+            if (entry.key.hasAny(row.feature) && row.hasFallback == 0 && !view.positions.empty()) {
                 return makeError("scene-package", where,
                                  "the package's key reads " + name + ", the primitive has none", kSameScene);
             }

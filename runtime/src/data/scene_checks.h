@@ -15,7 +15,7 @@
 
 namespace glint {
 
-// Bits of PrimitiveEntry::featureInputs that say which attributes shading reads. They are the high words of
+// Bits of KeyWords::inputs that say which attributes shading reads. They are the high words of
 // the compiler's features of the same names (shaders/materials/attributes). A test compares the two.
 inline constexpr std::uint32_t kInputTexCoord0 = 1U << 6;
 inline constexpr std::uint32_t kInputTexCoord1 = 1U << 7;

@@ -139,10 +139,10 @@ std::span<const package::FieldEntry> Package::fields() const {
     return state_->fields;
 }
 
-std::vector<std::string> Package::featureNames(std::uint64_t features) const {
+std::vector<std::string> Package::featureNames(const package::KeyWords& features) const {
     std::vector<std::string> names;
     for (const package::FeatureEntry& entry : state_->features) {
-        if ((features & entry.mask) != 0) {
+        if (features.hasAny(entry.feature)) {
             names.emplace_back(string(entry.name));
         }
     }

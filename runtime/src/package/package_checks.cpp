@@ -166,7 +166,11 @@ Status checkCases(const Package::State& state, const std::string& where) {
         if (!inStrings(state, entry.name)) {
             return altered(where, "the name of a case is out of range");
         }
-        if ((entry.always & entry.sometimes) != 0) {
+        const package::KeyWords& always = entry.always;
+        const package::KeyWords& sometimes = entry.sometimes;
+        if (((always.lobes & sometimes.lobes) | (always.inputs & sometimes.inputs) |
+             (always.own & sometimes.own)) != 0 ||
+            always.model != sometimes.model) {
             return altered(where, "a case has a feature both always and sometimes");
         }
     }
@@ -185,7 +189,6 @@ Status checkPrimitive(const Package::State& state, const package::SceneEntry& sc
         return altered(where, name + " has material " + std::to_string(entry.materialIndex) + " of " +
                                   std::to_string(scene.materialCount));
     }
-    const std::uint64_t key = std::uint64_t{entry.featureInputs} << 32 | entry.featureLobes;
     const package::CaseEntry& shadedBy = state.cases[entry.shaderId];
     if (shadedBy.keyCount == 0) {
         return altered(where,
@@ -193,7 +196,11 @@ Status checkPrimitive(const Package::State& state, const package::SceneEntry& sc
     }
     // The key may have features that its case does not know: lobes that primary surfaces have and hits do not
     // keep.
-    if ((shadedBy.always & ~key) != 0) {
+    const package::KeyWords& always = shadedBy.always;
+    const bool isOfModel = always.model == entry.key.model || always.model == gpu::kAnyModel;
+    if (((always.lobes & ~entry.key.lobes) | (always.inputs & ~entry.key.inputs) |
+         (always.own & ~entry.key.own)) != 0 ||
+        !isOfModel) {
         return altered(where, name + " lacks features that its case takes for granted");
     }
     if ((entry.geometryFlags & ~kEntryFlags) != 0 || entry.alphaMode > kLastAlphaMode) {
@@ -303,9 +310,16 @@ Status checkSamplers(const Package::State& state, const std::string& where) {
     return okStatus();
 }
 
+// A model alone is a feature, too.
+bool isOneFeature(const package::KeyWords& features) {
+    const int shared = std::popcount(features.lobes) + std::popcount(features.inputs);
+    const int own = std::popcount(features.own);
+    return features.model == 0 ? shared == 1 && own == 0 : shared == 0 && own <= 1;
+}
+
 Status checkAttributes(const Package::State& state, const std::string& where) {
     for (const package::AttributeEntry& entry : state.attributes) {
-        const bool isBit = entry.feature != 0 && (entry.feature & (entry.feature - 1)) == 0;
+        const bool isBit = isOneFeature(entry.feature);
         const bool isFinite =
             std::ranges::all_of(entry.fallback, [](float value) { return std::isfinite(value); });
         if (!inStrings(state, entry.name) || entry.channels == 0 || entry.channels > 4 || !isBit ||
@@ -318,7 +332,7 @@ Status checkAttributes(const Package::State& state, const std::string& where) {
 
 Status checkFeatures(const Package::State& state, const std::string& where) {
     for (const package::FeatureEntry& entry : state.features) {
-        if (!std::has_single_bit(entry.mask) || !inStrings(state, entry.name)) {
+        if (!isOneFeature(entry.feature) || !inStrings(state, entry.name)) {
             return altered(where, "the name of a feature is not well formed");
         }
     }
@@ -327,8 +341,11 @@ Status checkFeatures(const Package::State& state, const std::string& where) {
 
 Status checkFields(const Package::State& state, const std::string& where) {
     std::uint64_t end = 0;
+    std::uint32_t model = 0;
     for (const package::FieldEntry& entry : state.fields) {
-        const bool isInOrder = entry.offset >= end && entry.offset % 4 == 0 && entry.bytes % 4 == 0;
+        const bool isInOrder = (entry.model != model || entry.offset >= end) && entry.offset % 4 == 0 &&
+                               entry.bytes % 4 == 0;
+        model = entry.model;
         end = std::uint64_t{entry.offset} + entry.bytes;
         if (!inStrings(state, entry.name) || !isInOrder || entry.bytes == 0 ||
             end > state.materials.recordBytes) {

@@ -7,6 +7,7 @@
 
 #include <bit>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 namespace glint {
@@ -25,27 +26,43 @@ constexpr NamedFlag kNamedFlags[] = {{gpu::kGeometryAlphaTested, "alpha that ray
                                      {gpu::kGeometryPassesLight, "light that passes the surface"},
                                      {gpu::kGeometryEmitter, "triangles that are lights"}};
 
-std::uint64_t entryKey(const package::PrimitiveEntry& entry) {
-    return std::uint64_t{entry.featureInputs} << 32U | entry.featureLobes;
+// The features of a key, of which there may be too many.
+package::KeyWords without(const package::KeyWords& features, const package::KeyWords& others) {
+    return {features.lobes & ~others.lobes, features.inputs & ~others.inputs, 0, 0};
+}
+
+bool isEmpty(const package::KeyWords& features) {
+    return features == package::KeyWords{};
+}
+
+int countOf(const package::KeyWords& features) {
+    return std::popcount(features.lobes) + std::popcount(features.inputs) + std::popcount(features.own);
 }
 
 }  // namespace
+
+bool CaseTable::Less::operator()(const package::KeyWords& a, const package::KeyWords& b) const {
+    return std::tie(a.model, a.own, a.inputs, a.lobes) < std::tie(b.model, b.own, b.inputs, b.lobes);
+}
 
 CaseTable::CaseTable(std::shared_ptr<const Package> package)
     : package_(std::move(package)), fallback_(package_->shape().fallback) {
     for (std::uint32_t scene = 0; scene < package_->sceneCount(); ++scene) {
         for (const package::PrimitiveEntry& entry : package_->scene(scene).primitives) {
-            shaderOfKey_.emplace(entryKey(entry), entry.shaderId);
-            known_ |= entryKey(entry);
-            always_ &= entryKey(entry);
+            shaderOfKey_.emplace(entry.key, entry.shaderId);
+            known_.lobes |= entry.key.lobes;
+            known_.inputs |= entry.key.inputs;
+            knownOwn_[entry.key.model] |= entry.key.own;
+            always_.lobes &= entry.key.lobes;
+            always_.inputs &= entry.key.inputs;
             flags_ |= entry.geometryFlags;
         }
     }
     // With a fallback no shader takes a feature for granted that a case does not.
-    always_ = fallback_ || shaderOfKey_.empty() ? 0 : always_;
+    always_ = fallback_ || shaderOfKey_.empty() ? package::KeyWords{} : always_;
 }
 
-std::string CaseTable::namesOf(std::uint64_t features) const {
+std::string CaseTable::namesOf(const package::KeyWords& features) const {
     std::string text;
     for (const std::string& name : package_->featureNames(features)) {
         text += (text.empty() ? "" : ", ") + name;
@@ -73,17 +90,19 @@ Status CaseTable::checkAttributes(const MaterialKey& key, const std::string& whe
                   {kInputTexCoord0, kAttributeTexCoords0},
                   {kInputTexCoord1, kAttributeTexCoords1},
                   {kInputVertexColor, kAttributeColors}};
-    std::uint64_t lacking = 0;
+    package::KeyWords lacking;
     for (const auto& [input, attribute] : kReads) {
-        const std::uint64_t feature = std::uint64_t{input} << 32U;
-        lacking |= (key.attributes & attribute) == 0 ? key.features & feature : 0;
+        lacking.inputs |= (key.attributes & attribute) == 0 ? key.features.inputs & input : 0;
     }
     std::uint32_t bit = kDeclaredAttributesShift;
     for (const package::AttributeEntry& row : package_->attributes()) {
         const bool given = (key.attributes >> bit++ & 1U) != 0 || row.hasFallback != 0;
-        lacking |= given ? 0 : key.features & row.feature;
+        if (!given && key.features.hasAny(row.feature)) {
+            lacking = {lacking.lobes | row.feature.lobes, lacking.inputs | row.feature.inputs,
+                       lacking.model | row.feature.model, lacking.own | row.feature.own};
+        }
     }
-    if (lacking != 0) {
+    if (!isEmpty(lacking)) {
         return makeError(
             "scene-edit-key", where,
             "a key has features that read attributes which it says are not there: " + namesOf(lacking),
@@ -93,7 +112,13 @@ Status CaseTable::checkAttributes(const MaterialKey& key, const std::string& whe
 }
 
 Status CaseTable::checkKnown(const MaterialKey& key, const std::string& where) const {
-    if (const std::uint64_t unknown = (key.features | key.hitFeatures) & ~known_; unknown != 0) {
+    package::KeyWords unknown = without(key.features, known_);
+    const auto own = knownOwn_.find(key.features.model);
+    if (own == knownOwn_.end() || (key.features.own & ~own->second) != 0) {
+        unknown.model = key.features.model;
+        unknown.own = key.features.own & ~(own == knownOwn_.end() ? 0 : own->second);
+    }
+    if (!isEmpty(unknown)) {
         return makeError("scene-edit-feature", where,
                          "no material of the package has these features: " + namesOf(unknown), kCompileAgain);
     }
@@ -111,19 +136,31 @@ Status CaseTable::checkEmitter(const MaterialKey& key, const std::string& where)
     if (emission == nullptr || (key.geometryFlags & gpu::kGeometryEmitter) == 0) {
         return okStatus();
     }
-    const auto inputs = [](std::uint32_t bits) { return std::uint64_t{bits} << 32U; };
-    std::uint64_t read = emission->read;
-    const bool layered = read == ~std::uint64_t{0};
-    if (!layered && (key.features & inputs(emission->textureInput)) == 0) {
+    package::KeyWords read = emission->read;
+    const bool layered = read.lobes == ~0U && read.inputs == ~0U;
+    if (!layered && (key.features.inputs & emission->textureInput) == 0) {
         // Shaders read nothing at these coordinates.
-        read &= ~inputs(emission->texCoord0Input | emission->texCoord1Input) | emission->always;
+        read.inputs &= ~(emission->texCoord0Input | emission->texCoord1Input) | emission->always.inputs;
     }
-    const std::uint64_t unlike = (emission->always & ~key.features) |
-                                 (key.features & read & ~(emission->always | emission->sometimes));
-    if (unlike != 0) {
+    const package::KeyWords& always = emission->always;
+    const package::KeyWords& sometimes = emission->sometimes;
+    const auto unlike = [](std::uint32_t has, std::uint32_t reads, std::uint32_t least, std::uint32_t some) {
+        return (least & ~has) | (has & reads & ~(least | some));
+    };
+    package::KeyWords differing{unlike(key.features.lobes, read.lobes, always.lobes, sometimes.lobes),
+                                unlike(key.features.inputs, read.inputs, always.inputs, sometimes.inputs), 0,
+                                0};
+    if (read.model != 0 && always.model != gpu::kAnyModel) {
+        const bool isOther = always.model != key.features.model;
+        const std::uint32_t own = unlike(key.features.own, read.own, always.own, sometimes.own);
+        differing.model = isOther || own != 0 ? key.features.model : 0;
+        differing.own = isOther ? 0 : own;
+    }
+    if (!isEmpty(differing)) {
         return makeError(
             "scene-edit-case", where,
-            "the package has no shader that samples lights that differ from its own in: " + namesOf(unlike),
+            "the package has no shader that samples lights that differ from its own in: " +
+                namesOf(differing),
             "compile the package with --fallback, or from a scene that has such a light");
     }
     return okStatus();
@@ -139,11 +176,11 @@ Result<Shading> CaseTable::find(const MaterialKey& key, const std::string& where
     }
     std::optional<std::uint32_t> best;
     const std::span<const package::CaseEntry> cases = package_->cases();
-    for (std::uint32_t id = 0; id < cases.size() && (key.features & always_) == always_; ++id) {
+    const bool hasUsual = isEmpty(without(always_, key.features));
+    for (std::uint32_t id = 0; id < cases.size() && hasUsual; ++id) {
         const package::CaseEntry& entry = cases[id];
-        const bool fits = entry.keyCount > 0 && (entry.always & ~key.hitFeatures) == 0 &&
-                          (key.hitFeatures & ~(entry.always | entry.sometimes)) == 0;
-        if (fits && (!best || std::popcount(entry.sometimes) < std::popcount(cases[*best].sometimes))) {
+        if (entry.keyCount > 0 && entry.fits(key.hitFeatures) &&
+            (!best || countOf(entry.sometimes) < countOf(cases[*best].sometimes))) {
             best = id;
         }
     }

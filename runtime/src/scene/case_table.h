@@ -8,14 +8,14 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <unordered_map>
+#include <map>
 #include <vector>
 
 namespace glint {
 
 // The fields of a geometry record that follow from its material's key.
 struct Shading {
-    std::uint64_t features = 0;
+    package::KeyWords features;
     std::uint32_t geometryFlags = 0;
     std::uint32_t shaderId = 0;
     bool missing = false;  // no case has the key: the fallback shades it
@@ -38,7 +38,7 @@ public:
 
     // The shader IDs of the shader binding table of a strategy: those of the cases, then one for all others.
     std::vector<std::uint32_t> shaderIds() const;
-    std::string namesOf(std::uint64_t features) const;
+    std::string namesOf(const package::KeyWords& features) const;
     const Package& package() const {
         return *package_;
     }
@@ -50,10 +50,15 @@ private:
 
     std::shared_ptr<const Package> package_;
     bool fallback_;
-    std::unordered_map<std::uint64_t, std::uint32_t> shaderOfKey_;  // of the package's primitives
-    std::uint64_t known_ = 0;                                       // features of some primitive
-    std::uint64_t always_ = ~0ULL;  // features of every primitive, which no shader asks for
-    std::uint32_t flags_ = 0;       // geometry flags of some primitive
+    struct Less {
+        bool operator()(const package::KeyWords& a, const package::KeyWords& b) const;
+    };
+    std::map<package::KeyWords, std::uint32_t, Less> shaderOfKey_;  // of the package's primitives
+    package::KeyWords known_;                                       // shared features of some primitive
+    std::map<std::uint32_t, std::uint32_t> knownOwn_;               // features of models of some primitive
+    // Shared features of every primitive, which no shader asks for.
+    package::KeyWords always_{~0U, ~0U, 0, 0};
+    std::uint32_t flags_ = 0;  // geometry flags of some primitive
 };
 
 }  // namespace glint

@@ -4,8 +4,6 @@
 #include "scene/scene_store.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <utility>
 
 namespace glint {
@@ -18,38 +16,33 @@ Diagnostic otherContent(std::string where, std::string what) {
     return makeError("scene-package", std::move(where), std::move(what), kCompileFor);
 }
 
-// The bits of one package's features in the keys of another, by their names.
+// The features of one package in the keys of another, by their names.
 class FeatureMap {
 public:
-    FeatureMap(const Package& from, const Package& to) : from_(from) {
-        for (std::uint32_t bit = 0; bit < bits_.size(); ++bit) {
-            const std::vector<std::string> names = from.featureNames(std::uint64_t{1} << bit);
-            for (std::uint32_t other = 0; other < bits_.size() && !names.empty(); ++other) {
-                // Most packages have the same bits.
-                const std::uint64_t mask = std::uint64_t{1} << (bit + other) % bits_.size();
-                if (to.featureNames(mask) == names) {
-                    bits_[bit] = mask;
-                    break;
-                }
-            }
-        }
-    }
+    FeatureMap(const Package& from, const Package& to) : from_(from), to_(to) {}
+
     // Error "scene-edit-feature".
-    Result<std::uint64_t> find(std::uint64_t features, const std::string& where) const {
-        std::uint64_t found = 0;
-        std::uint64_t unknown = 0;
-        for (std::uint64_t rest = features; rest != 0; rest &= rest - 1) {
-            const std::uint64_t mask = bits_[static_cast<std::size_t>(std::countr_zero(rest))];
-            found |= mask;
-            unknown |= mask == 0 ? rest & ~(rest - 1) : 0;
-        }
-        if (unknown != 0) {
-            std::string names;
-            for (const std::string& name : from_.featureNames(unknown)) {
-                names += (names.empty() ? "" : ", ") + name;
+    Result<package::KeyWords> find(const package::KeyWords& features, const std::string& where) const {
+        package::KeyWords found;
+        std::string unknown;
+        for (const package::FeatureEntry& feature : from_.state().features) {
+            if (!features.hasAny(feature.feature)) {
+                continue;
             }
+            const std::string_view name = from_.string(feature.name);
+            const auto& known = to_.state().features;
+            const auto same = std::ranges::find_if(
+                known, [&](const package::FeatureEntry& other) { return to_.string(other.name) == name; });
+            if (same == known.end()) {
+                unknown += (unknown.empty() ? "" : ", ") + std::string(name);
+                continue;
+            }
+            found = {found.lobes | same->feature.lobes, found.inputs | same->feature.inputs,
+                     found.model | same->feature.model, found.own | same->feature.own};
+        }
+        if (!unknown.empty()) {
             return makeError("scene-edit-feature", where,
-                             "the package does not know these features: " + names,
+                             "the package does not know these features: " + unknown,
                              "compile the package with the packs of the one before");
         }
         return found;
@@ -57,7 +50,7 @@ public:
 
 private:
     const Package& from_;
-    std::array<std::uint64_t, 64> bits_{};
+    const Package& to_;
 };
 
 class TableMaker {
@@ -68,7 +61,7 @@ public:
           package_(*package),
           known_(known),
           layout_(package->scene(0).materials.part(0, 0)),
-          fields_(recordFields(*package)),
+          fields_(recordFields(*package, known)),
           features_(store.cases->package(), *package),
           tables_{
               CaseTable(package), store.materialSlots, store.firstMaterials, recordsLike(store), {}, {}, {}} {
@@ -128,10 +121,12 @@ private:
         return status;
     }
 
-    // The fields that the old record has too.
-    void carry(std::uint32_t index, std::span<std::uint8_t> record) const {
+    // The fields that the old record has too. The models are those of the material in each package.
+    void carry(std::uint32_t index, std::uint32_t before, std::uint32_t after,
+               std::span<std::uint8_t> record) const {
         if (store_.materialSlots.has(index)) {
-            carryFields(store_.scene.package.fields, store_.materials.at(index), fields_, record);
+            carryFields(store_.scene.package.fields, before, store_.materials.at(index), fields_, after,
+                        record);
         }
     }
 
@@ -144,6 +139,8 @@ private:
                                 "an edit has made the material, and the packages differ in how rays treat "
                                 "alpha or glass, on which its keys depend");
         }
+        const auto modelOf = [&] { return material.keys.empty() ? 0 : material.keys.front().features.model; };
+        const std::uint32_t modelBefore = modelOf();
         for (MaterialKey& key : material.keys) {
             GLINT_TRY(key.features, features_.find(key.features, where));
             GLINT_TRY(key.hitFeatures, features_.find(key.hitFeatures, where));
@@ -151,14 +148,14 @@ private:
         }
         std::vector<TextureUse> uses;
         for (TextureUse use : material.textures) {
-            if (const std::optional<std::uint32_t> slot = slotOf(use.slot)) {
+            if (const std::optional<std::uint32_t> slot = slotOf(use.slot, modelBefore, modelOf())) {
                 use.slot = *slot;
                 uses.push_back(use);
             }
         }
         material.textures = std::move(uses);
         std::vector<std::uint8_t> record(layout_.recordBytes);
-        carry(index, record);
+        carry(index, modelBefore, modelOf(), record);
         settleTextures(store_, layout_, material.textures, record);
         write(index, record);
         return okStatus();
@@ -176,7 +173,7 @@ private:
         std::vector<std::uint8_t> record(given.begin(), given.end());
         if (material.hasOwnValues) {
             std::vector<std::uint8_t> values = record;
-            carry(index, values);
+            carry(index, store_.scene.package.fields.modelOf(number), fields_.modelOf(number), values);
             takeValues(values, layout_, record);
         }
         settleTextures(store_, layout_, material.textures, record);
@@ -193,15 +190,17 @@ private:
     }
 
     // Returns the place in the new records of a texture of the old ones, if they have it.
-    std::optional<std::uint32_t> slotOf(std::uint32_t slot) const {
+    std::optional<std::uint32_t> slotOf(std::uint32_t slot, std::uint32_t modelBefore,
+                                        std::uint32_t model) const {
         const MaterialTable& before = store_.scene.materialLayout;
         const auto offset =
             static_cast<std::uint32_t>(before.textureOffset + slot * sizeof(gpu::TextureRecord));
-        const std::vector<RecordField>& fields = store_.scene.package.fields;
-        const auto old = std::ranges::find(fields, offset, &RecordField::offset);
-        const auto field =
-            old == fields.end() ? fields_.end() : std::ranges::find(fields_, old->name, &RecordField::name);
-        if (field == fields_.end() || field->offset < layout_.textureOffset) {
+        const std::vector<RecordField>& fields = store_.scene.package.fields.list;
+        const auto old = std::ranges::find_if(fields, [&](const RecordField& field) {
+            return field.offset == offset && (field.model == 0 || field.model == modelBefore);
+        });
+        const RecordField* const field = old == fields.end() ? nullptr : fields_.find(old->name, model);
+        if (field == nullptr || field->offset < layout_.textureOffset) {
             return std::nullopt;
         }
         return static_cast<std::uint32_t>((field->offset - layout_.textureOffset) /
@@ -292,7 +291,7 @@ private:
     const Package& package_;
     const PackageScene& known_;
     MaterialTable layout_;
-    std::vector<RecordField> fields_;
+    RecordFields fields_;
     FeatureMap features_;
     EditedTables tables_;
 };
@@ -301,8 +300,7 @@ private:
 
 void addKey(StoredMaterial& material, const package::PrimitiveEntry& entry, AttributeMask attributes) {
     if (std::ranges::find(material.keys, attributes, &MaterialKey::attributes) == material.keys.end()) {
-        const std::uint64_t features = std::uint64_t{entry.featureInputs} << 32U | entry.featureLobes;
-        material.keys.push_back({attributes, features, features, entry.geometryFlags});
+        material.keys.push_back({attributes, entry.key, entry.key, entry.geometryFlags});
     }
 }
 

@@ -73,7 +73,7 @@ struct ScenePackage {
     bool isEmpty = false;  // the scene began without anything: kNoPackageScene
     std::string scene;     // name in the package
     std::vector<package::PrimitiveEntry> entries;
-    std::vector<RecordField> fields;
+    RecordFields fields;
     std::vector<package::TextureEntry> textures;
     std::vector<std::array<float, 2>> texels;  // sizes of the textures
     std::vector<package::SamplerEntry> samplers;

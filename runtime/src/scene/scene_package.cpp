@@ -63,7 +63,7 @@ std::vector<ScenePackage::Emission> emissionsOf(const Package& package, const Ma
 // Takes what follows from the package alone.
 void takeTables(const Package& package, const PackageScene& known, ScenePackage& described) {
     described.entries.assign(known.primitives.begin(), known.primitives.end());
-    described.fields = recordFields(package);
+    described.fields = recordFields(package, known);
     described.emission.reset();
     if (package.emission() != nullptr) {
         described.emission = *package.emission();
@@ -74,18 +74,17 @@ void takeTables(const Package& package, const PackageScene& known, ScenePackage&
 // Checks that the attributes that the package's key reads were uploaded.
 Status checkAttributes(const GpuPrimitive& uploaded, const Package& package,
                        const package::PrimitiveEntry& entry) {
-    const std::uint64_t key = std::uint64_t{entry.featureInputs} << 32U | entry.featureLobes;
     const bool readsDeclared = std::ranges::any_of(
-        package.attributes(), [&](const auto& attribute) { return (attribute.feature & key) != 0; });
+        package.attributes(), [&](const auto& attribute) { return entry.key.hasAny(attribute.feature); });
     const struct {
         const char* name;
         bool needed;
         VkDeviceAddress address;
-    } attributes[] = {{"normals", (entry.featureInputs & kInputNormals) != 0, uploaded.normals},
-                      {"tangents", (entry.featureInputs & kInputTangents) != 0, uploaded.tangents},
-                      {"texCoords0", (entry.featureInputs & kInputTexCoord0) != 0, uploaded.texCoords0},
-                      {"texCoords1", (entry.featureInputs & kInputTexCoord1) != 0, uploaded.texCoords1},
-                      {"colors", (entry.featureInputs & kInputVertexColor) != 0, uploaded.colors},
+    } attributes[] = {{"normals", (entry.key.inputs & kInputNormals) != 0, uploaded.normals},
+                      {"tangents", (entry.key.inputs & kInputTangents) != 0, uploaded.tangents},
+                      {"texCoords0", (entry.key.inputs & kInputTexCoord0) != 0, uploaded.texCoords0},
+                      {"texCoords1", (entry.key.inputs & kInputTexCoord1) != 0, uploaded.texCoords1},
+                      {"colors", (entry.key.inputs & kInputVertexColor) != 0, uploaded.colors},
                       {"attributes of packs", readsDeclared, uploaded.attributes}};
     for (const auto& [name, needed, address] : attributes) {
         if (needed && address == 0 && uploaded.triangleCount > 0) {
@@ -176,7 +175,7 @@ Status checkEmission(const GpuScene::State& scene, const Package& package, const
 Result<std::vector<ChangingMaterial>> keepHostValues(const GpuScene::State& scene, const Package& package,
                                                      const PackageScene& known,
                                                      std::span<std::uint8_t> records) {
-    const std::vector<RecordField> fields = recordFields(package);
+    const RecordFields fields = recordFields(package, known);
     std::vector<std::vector<std::uint8_t>> values;
     std::vector<MaterialView> views;
     for (const ChangingMaterial& material : scene.changing) {
@@ -186,7 +185,8 @@ Result<std::vector<ChangingMaterial>> keepHostValues(const GpuScene::State& scen
         }
         const std::span<const std::uint8_t> given = known.materials.part(material.material, 1).bytes;
         std::vector<std::uint8_t>& record = values.emplace_back(given.begin(), given.end());
-        carryFields(scene.package.fields, material.record, fields, record);
+        carryFields(scene.package.fields, scene.package.fields.modelOf(material.material), material.record,
+                    fields, fields.modelOf(material.material), record);
         views.push_back({material.material, record});
     }
     return replaceMaterials(views, known.materials, records);
@@ -211,8 +211,11 @@ Status checkDecided(const GpuScene::State& scene, const Package& package, const 
 
 // Writes the geometry records that differ from what the package says.
 void writeEntries(SceneStore& store) {
-    const auto keyOf = [](const auto& from) {
-        return std::tie(from.shaderId, from.materialIndex, from.featureLobes, from.featureInputs);
+    const auto isSame = [](const gpu::GeometryRecord& record, const package::PrimitiveEntry& entry) {
+        const package::KeyWords key{record.featureLobes, record.featureInputs, record.featureModel,
+                                    record.featureOwn};
+        return record.shaderId == entry.shaderId && record.materialIndex == entry.materialIndex &&
+               key == entry.key;
     };
     store.instanceSlots.forEach([&](InstanceHandle handle, const StoredInstance& instance) {
         const StoredMesh& mesh = *store.meshes.find(instance.mesh);
@@ -224,8 +227,8 @@ void writeEntries(SceneStore& store) {
                 auto record = store.geometries.read<gpu::GeometryRecord>(geometry);
                 if (store.editable) {
                     const bool isSeenAlike = (record.flags & kEntryFlags) == entry.geometryFlags;
-                    changes = changes || !isSeenAlike || keyOf(record) != keyOf(entry);
-                } else if (keyOf(record) != keyOf(entry)) {
+                    changes = changes || !isSeenAlike || !isSame(record, entry);
+                } else if (!isSame(record, entry)) {
                     takeEntry(entry, record);
                     store.geometries.write(geometry, record);
                 }

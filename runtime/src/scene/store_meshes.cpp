@@ -480,8 +480,7 @@ package::PrimitiveEntry entryOf(const SceneStore& store, const StoredInstance& i
     package::PrimitiveEntry entry{};
     entry.shaderId = shading.shaderId;
     entry.materialIndex = material.index;
-    entry.featureLobes = static_cast<std::uint32_t>(shading.features);
-    entry.featureInputs = static_cast<std::uint32_t>(shading.features >> 32U);
+    entry.key = shading.features;
     entry.geometryFlags = shading.geometryFlags;
     return entry;
 }

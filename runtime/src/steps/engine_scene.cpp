@@ -59,7 +59,7 @@ Result<const package::PrimitiveEntry*> entryOf(const PackageScene& known, std::s
                          "compile the package from the scene that is traced");
     }
     for (const NamedAddress& one : kAddresses) {
-        const bool needed = one.input == 0 || (entry->featureInputs & one.input) != 0;
+        const bool needed = one.input == 0 || (entry->key.inputs & one.input) != 0;
         if (needed && record.*one.address == 0) {
             return makeError("engine-scene", geometryPlace(index),
                              std::string("the package's key reads ") + one.name + ", whose address is 0",
@@ -243,7 +243,7 @@ Result<PackageContent> makeContent(const Context::State& context, const Package&
 
 // Carries the host's values into records of a package. What these have beside is the package's.
 Status carryValues(const Package& package, const PackageScene& known, EngineScene::State::Host& host) {
-    std::vector<RecordField> fields = recordFields(package);
+    RecordFields fields = recordFields(package, known);
     for (ChangingMaterial& one : host.materials) {
         if (one.material >= known.materials.size()) {
             return makeError("scene-package", "material " + std::to_string(one.material),
@@ -252,7 +252,8 @@ Status carryValues(const Package& package, const PackageScene& known, EngineScen
         }
         const std::span<const std::uint8_t> own = known.materials.part(one.material, 1).bytes;
         const std::vector<std::uint8_t> given = std::exchange(one.record, {own.begin(), own.end()});
-        carryFields(host.fields, given, fields, one.record);
+        carryFields(host.fields, host.fields.modelOf(one.material), given, fields,
+                    fields.modelOf(one.material), one.record);
     }
     host.fields = std::move(fields);
     return okStatus();
@@ -334,7 +335,7 @@ Status recordContent(EngineScene::State& state, VkCommandBuffer commands, const 
                      {scene.samplers.begin(), scene.samplers.end()},
                      {scene.hitRecords.begin(), scene.hitRecords.end()},
                      {},
-                     recordFields(package)};
+                     recordFields(package, package.scene(scene.packageScene))};
     std::uint32_t leastInstances = 0;
     for (const EngineGeometryView& view : scene.geometries) {
         host.primitives.push_back({view.mesh, view.primitive, view.material});

@@ -84,7 +84,7 @@ struct EngineScene::State final : DrawnScene {
         std::vector<EngineSamplerView> samplers;
         std::vector<std::uint32_t> hitRecords;
         std::vector<ChangingMaterial> materials;  // in records with these fields
-        std::vector<RecordField> fields;
+        RecordFields fields;
     };
     Host host;
     std::string name;  // of the scene in the package

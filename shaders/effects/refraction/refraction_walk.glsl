@@ -38,9 +38,10 @@ struct Walker {
 
 // The features of a surface that is met from either side.
 Features walkFeatures(HostGeometry geometry) {
-    return Features(GLINT_ALWAYS_LOBES & kWalkedLobes, GLINT_ALWAYS_INPUTS, GLINT_SOMETIMES_LOBES & kWalkedLobes,
-                    (GLINT_SOMETIMES_INPUTS | GLINT_DOUBLE_SIDED) & ~GLINT_ALWAYS_INPUTS, geometry.featureLobes,
-                    geometry.featureInputs | GLINT_DOUBLE_SIDED);
+    return GLINT_FEATURES_OF_GLTF(
+        GLINT_ALWAYS_LOBES & kWalkedLobes, GLINT_ALWAYS_INPUTS, GLINT_SOMETIMES_LOBES & kWalkedLobes,
+        (GLINT_SOMETIMES_INPUTS | GLINT_DOUBLE_SIDED) & ~GLINT_ALWAYS_INPUTS, geometry.featureLobes,
+        geometry.featureInputs | GLINT_DOUBLE_SIDED);
 }
 
 float channelOf(vec3 color, uint channel) {

@@ -5,12 +5,15 @@ struct HostGeometry {
     uint materialIndex;
     uint featureLobes;
     uint featureInputs;
+    uint featureModel;
+    uint featureOwn;
     uint number;
 };
 
 HostGeometry hostGeometry(uint geometry) {
     GlintGeometry given = glintHostGeometry(geometry);
-    return HostGeometry(given.shaderId, given.material, given.featureLobes, given.featureInputs, geometry);
+    return HostGeometry(given.shaderId, given.material, given.featureLobes, given.featureInputs,
+                        given.featureModel, given.featureOwn, geometry);
 }
 
 InstanceRecord hostInstance(HostGeometry geometry) {

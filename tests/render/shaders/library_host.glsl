@@ -5,7 +5,8 @@
 
 GlintGeometry glintHostGeometry(const uint geometry) {
     GeometryRecord record = GLINT_FRAME.geometries.data[geometry];
-    return GlintGeometry(record.shaderId, record.materialIndex, record.featureLobes, record.featureInputs);
+    return GlintGeometry(record.shaderId, record.materialIndex, record.featureLobes, record.featureInputs,
+                         record.featureModel, record.featureOwn);
 }
 
 mat4x3 glintHostObjectToWorld(const uint geometry) {

@@ -106,8 +106,8 @@ TEST(Cost, OfACaseIsThatOfItsBranches) {
 TEST(Cost, OfAPairGrowsWithTheHitsOfEither) {
     const materials::FeatureMask masks[] = {kBase, bit("unlit"), kBase | bit("clearcoat"),
                                             kBase | bit("sheen") | bit("baseColorTexture")};
-    for (const materials::FeatureMask a : masks) {
-        for (const materials::FeatureMask b : masks) {
+    for (const materials::FeatureMask& a : masks) {
+        for (const materials::FeatureMask& b : masks) {
             double last = 0.0;
             for (int step = 0; step < 22; ++step) {
                 const double weight = 1e-4 * std::pow(1.7, step);

@@ -109,7 +109,7 @@ void checkSurvivors(const compiler::LockedIds& earlier, const compiler::Plan& pl
     std::map<int, std::set<int>> successors;
     std::map<int, std::set<int>> predecessors;
     for (const auto& [id, keys] : keysById(plan)) {
-        for (const materials::FeatureMask mask : keys) {
+        for (const materials::FeatureMask& mask : keys) {
             if (const auto found = earlier.find(mask); found != earlier.end()) {
                 successors[found->second].insert(id);
                 predecessors[id].insert(found->second);

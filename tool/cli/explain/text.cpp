@@ -347,7 +347,7 @@ std::set<materials::FeatureMask> primaryMasksOf(const compiler::Build& build, co
 
 base::Json primaryToJson(const compiler::Build& build, const compiler::Key& key, int material) {
     base::Json list = base::Json::array();
-    for (const materials::FeatureMask mask : primaryMasksOf(build, key, material)) {
+    for (const materials::FeatureMask& mask : primaryMasksOf(build, key, material)) {
         list.push_back(featuresToJson(*build.plan.model, mask));
     }
     return list;
@@ -416,7 +416,7 @@ Rows materialRows(const compiler::Build& build, int material, Detail detail) {
         const compiler::Case& shader = caseOf(build, key->shaderId);
         rows.push_back({"  key", fmt::format("0x{:016x}", key->mask)});
         rows.push_back({"    features", featureList(*build.plan.model, key->mask)});
-        for (const materials::FeatureMask mask : primaryMasksOf(build, *key, material)) {
+        for (const materials::FeatureMask& mask : primaryMasksOf(build, *key, material)) {
             if (mask != key->mask) {
                 rows.push_back({"    primary only", featureList(*build.plan.model, mask & ~key->mask)});
             }

@@ -133,6 +133,9 @@ std::string cppLiteral(std::string_view text) {
 mustache::data featureList(const materials::MaterialModel& model) {
     mustache::data list(mustache::data::type::list);
     for (const materials::Feature& info : model.features) {
+        if (info.model >= 0) {
+            continue;
+        }
         std::string name(info.name);
         name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
         mustache::data entry;
@@ -149,8 +152,10 @@ mustache::data caseMasks(const Plan& plan) {
     for (const Case& shaderCase : plan.cases) {
         mustache::data entry;
         entry.set("name", shaderCase.name);
-        entry.set("always", fmt::format("{:#x}ULL", shaderCase.always));
-        entry.set("sometimes", fmt::format("{:#x}ULL", shaderCase.sometimes));
+        const auto [always, sometimes] = plan.model->caseWords(shaderCase.always, shaderCase.sometimes);
+        entry.set("always", fmt::format("{:#x}ULL", shaderCase.always.shared()));
+        entry.set("sometimes", fmt::format("{:#x}ULL", shaderCase.sometimes.shared()));
+        entry.set("own", fmt::format("{:#x}U, {:#x}U, {:#x}U", always.model, always.own, sometimes.own));
         list.push_back(entry);
     }
     return list;
@@ -191,9 +196,14 @@ mustache::data materialMembers(const MaterialLayout& layout) {
         members.push_back(entry);
     };
     for (const RecordField& field : layout.fields) {
-        add(field.name, field.offset);
+        if (field.model < 0) {
+            add(field.name, field.offset);
+        }
     }
-    if (!layout.textures.empty()) {
+    if (layout.ownFloats() > 0) {
+        add("own", layout.ownOffset);
+    }
+    if (layout.textureCount > 0) {
         add("textures", layout.textureOffset);
     }
     return members;

@@ -294,12 +294,11 @@ std::vector<ManifestCase> casesOf(const gltf::SceneList& scenes, const CompiledP
 
 // The attributes of packs that shaders read, in the order of their values.
 std::vector<ManifestAttribute> attributesOf(const Plan& plan) {
-    const materials::FeatureMask used =
-        plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
+    const materials::FeatureMask used = usedFeatures(plan);
     std::vector<ManifestAttribute> list;
     for (const materials::VertexAttribute& attribute : plan.model->attributes) {
         const materials::Feature& feature = plan.model->features[static_cast<std::size_t>(attribute.feature)];
-        if ((feature.mask() & used) == 0) {
+        if (!used.has(feature.bit)) {
             continue;
         }
         list.push_back({attribute.name, attribute.gltf, feature.name, attribute.channels, {}});
@@ -350,7 +349,7 @@ Manifest manifestOf(const gltf::SceneList& scenes, const CompiledPackage& packag
         }
     }
     for (const Key& key : plan.keys) {
-        manifest.keys.push_back({namesOf(model, key.mask), fmt::format("{:#018x}", key.mask),
+        manifest.keys.push_back({namesOf(model, key.mask), toHex(key.mask),
                                  key.primitives.size(), placesOf(scenes, key.materials),
                                  roundedShare(key.share), static_cast<std::uint32_t>(key.shaderId)});
     }
@@ -403,7 +402,7 @@ static base::Fields fieldsOf(const ManifestScene*) {
 static base::Fields fieldsOf(const ManifestFeature*) {
     using T = ManifestFeature;
     return {field<&T::name>("name", "Name of the feature."),
-            field<&T::bit>("bit", "The feature's bit in masks.", {.most = materials::kFeatureBits - 1}),
+            field<&T::bit>("bit", "The feature's bit in masks.", {.most = materials::FeatureMask::kBits - 1}),
             field<&T::lobe>("lobe", "Whether it is a lobe; else it is an input."),
             output<&T::macro>("macro", "Name of the GLSL macro."),
             output<&T::gltf>("gltf", "Property of glTF that holds it."),

@@ -99,9 +99,7 @@ std::vector<PrimitiveEntry> makePrimitives(const gltf::SceneList& scenes, gltf::
         entry.primitive = static_cast<std::uint32_t>(inputs.primitive);
         entry.shaderId = static_cast<std::uint32_t>(key.shaderId);
         entry.materialIndex = static_cast<std::uint32_t>(scenes.place(inputs.material).index);
-        const materials::FeatureMask primary = plan.primaryMaskOfPrimitive[i];
-        entry.featureLobes = static_cast<std::uint32_t>(primary & materials::kLobeMask);
-        entry.featureInputs = static_cast<std::uint32_t>(primary >> 32U);
+        entry.key = plan.model->words(plan.primaryMaskOfPrimitive[i]);
         const bool emits = settings.emissiveLights == EmissiveLights::On && isEmitter(material, inputs);
         entry.geometryFlags =
             geometryFlags(material, inputs, key.mask, settings.plan.keys.alpha, settings.shadowThrough) |
@@ -115,13 +113,11 @@ std::vector<PrimitiveEntry> makePrimitives(const gltf::SceneList& scenes, gltf::
 }
 
 std::vector<AttributeEntry> makeAttributes(const Plan& plan, StringTable& strings) {
-    const materials::FeatureMask used =
-        plan.always | plan.sometimes | plan.primaryAlways | plan.primarySometimes;
+    const materials::FeatureMask used = usedFeatures(plan);
     std::vector<AttributeEntry> entries;
     for (const materials::VertexAttribute& attribute : plan.model->attributes) {
-        const materials::FeatureMask feature =
-            plan.model->features[static_cast<std::size_t>(attribute.feature)].mask();
-        if ((feature & used) == 0) {
+        const materials::Feature& feature = plan.model->features[static_cast<std::size_t>(attribute.feature)];
+        if (!used.has(feature.bit)) {
             continue;
         }
         AttributeEntry entry{};
@@ -129,7 +125,7 @@ std::vector<AttributeEntry> makeAttributes(const Plan& plan, StringTable& string
         entry.channels = static_cast<std::uint32_t>(attribute.channels);
         entry.hasFallback = attribute.fallback ? 1 : 0;
         std::ranges::copy(attribute.fallback.value_or(std::array<float, 4>{}), entry.fallback);
-        entry.feature = feature;
+        entry.feature = plan.model->words(feature.mask());
         entries.push_back(entry);
     }
     return entries;
@@ -138,23 +134,28 @@ std::vector<AttributeEntry> makeAttributes(const Plan& plan, StringTable& string
 std::vector<FeatureEntry> makeFeatures(const materials::MaterialModel& model, StringTable& strings) {
     std::vector<FeatureEntry> entries;
     for (const materials::Feature& feature : model.features) {
-        entries.push_back({feature.mask(), strings.add(feature.name)});
+        entries.push_back({model.words(feature.mask()), strings.add(feature.name)});
     }
     return entries;
 }
 
 std::vector<FieldEntry> makeFields(const MaterialLayout& layout, StringTable& strings) {
     std::vector<FieldEntry> entries;
+    const auto wordOf = [&](int model) { return model < 0 ? 0U : layout.model->modelWord(model); };
     for (const RecordField& field : layout.fields) {
         entries.push_back({strings.add(field.name), field.offset,
-                           static_cast<std::uint32_t>(field.channels * sizeof(float))});
+                           static_cast<std::uint32_t>(field.channels * sizeof(float)), wordOf(field.model)});
     }
-    std::uint32_t offset = layout.textureOffset;
-    for (const int texture : layout.textures) {
-        const std::string& name = layout.model->textures[static_cast<std::size_t>(texture)].name;
-        entries.push_back({strings.add(name), offset, sizeof(gpu::TextureRecord)});
-        offset += sizeof(gpu::TextureRecord);
+    for (const TextureSlot& row : layout.textures) {
+        const std::string& name = layout.model->textures[static_cast<std::size_t>(row.texture)].name;
+        const auto slot = static_cast<std::uint32_t>(row.slot);
+        entries.push_back({strings.add(name),
+                           layout.textureOffset + slot * static_cast<std::uint32_t>(sizeof(gpu::TextureRecord)),
+                           sizeof(gpu::TextureRecord), wordOf(row.model)});
     }
+    std::ranges::stable_sort(entries, {}, [](const FieldEntry& entry) {
+        return std::pair(entry.model & gpu::kModelNumber, entry.offset);
+    });
     return entries;
 }
 
@@ -166,17 +167,18 @@ EmissionEntry emissionOf(const MaterialLayout& layout, const EmitterFeatures& fe
     };
     const int slot = layout.slotOf(model.findTexture("emissiveTexture"));
     const auto inputOf = [&](std::string_view name) {
-        return static_cast<std::uint32_t>(model.mask(name) >> 32U);
+        return model.words(model.mask(name)).inputs;
     };
+    const auto [always, sometimes] = model.caseWords(features.always, features.sometimes);
     return {offsetOf("emissiveFactor"),
             offsetOf("emissiveStrength"),
             slot < 0 ? EmissionEntry::kNone : static_cast<std::uint32_t>(slot),
             inputOf("emissiveTexture"),
             inputOf("texCoord0"),
             inputOf("texCoord1"),
-            features.read,
-            features.always,
-            features.sometimes};
+            model.words(features.read),
+            always,
+            sometimes};
 }
 
 // Returns nothing if records lack what an alpha test reads: no material is tested.
@@ -189,7 +191,7 @@ std::optional<OpacityEntry> opacityOf(const MaterialLayout& layout) {
     }
     const int slot = layout.slotOf(model.findTexture("baseColorTexture"));
     const auto inputOf = [&](std::string_view name) {
-        return static_cast<std::uint32_t>(model.mask(name) >> 32U);
+        return model.words(model.mask(name)).inputs;
     };
     constexpr std::uint32_t kAlpha = 3 * sizeof(float);  // after red, green and blue
     return OpacityEntry{factor->offset + kAlpha,
@@ -200,7 +202,7 @@ std::optional<OpacityEntry> opacityOf(const MaterialLayout& layout) {
                         inputOf("texCoord1"),
                         inputOf("textureTransform"),
                         inputOf("vertexColor"),
-                        maskCodeFeatures(model)};
+                        model.words(maskCodeFeatures(model).shared())};
 }
 
 std::vector<EffectEntry> makeEffects(const Plan& plan, StringTable& strings) {
@@ -322,7 +324,7 @@ PackageHeader makeTablesHeader(const gltf::SceneList& scenes, const Plan& plan,
     header.alpha = settings.plan.keys.alpha;
     header.shadowThrough = settings.shadowThrough;
     header.materialTextureOffset = layout.textureOffset;
-    header.materialTextureCount = static_cast<std::uint32_t>(layout.textures.size());
+    header.materialTextureCount = layout.textureCount;
     header.caseCount = static_cast<std::uint32_t>(plan.cases.size());
     header.interopHash = static_cast<std::uint32_t>(interopSourceHash());
     return header;
@@ -340,8 +342,9 @@ base::Bytes makeTables(const gltf::SceneList& scenes, const Plan& plan,
     }
     std::vector<CaseEntry> cases;
     for (const Case& shaderCase : plan.cases) {
-        cases.push_back({shaderCase.always, shaderCase.sometimes, strings.add(shaderCase.name),
-                         static_cast<std::uint32_t>(shaderCase.keys.size()), 0});
+        const auto [always, sometimes] = plan.model->caseWords(shaderCase.always, shaderCase.sometimes);
+        cases.push_back({always, sometimes, strings.add(shaderCase.name),
+                         static_cast<std::uint32_t>(shaderCase.keys.size())});
     }
     const MaterialLayout layout = materialLayoutOf(plan);
     SceneTables tables;
@@ -414,7 +417,8 @@ MaterialTables makeMaterialTables(const gltf::Scene& scene, const MaterialLayout
                 tables.textures.push_back(entry);
             }
             const int slot = layout.slotOf(static_cast<int>(i));
-            if (slot < 0) {
+            const int model = material.model().features[static_cast<std::size_t>(material.model().textures[i].feature)].model;
+            if (slot < 0 || !isOfModel(material, model)) {
                 continue;
             }
             std::uint8_t* const target =

@@ -135,7 +135,7 @@ void showKeys(const ViewInput& input, ViewValues& values) {
     Filler filler(input, values);
     std::set<std::uint32_t> known;
     for (const package::PrimitiveEntry& primitive : input.package->scene(input.scene).primitives) {
-        known.insert(primitive.featureLobes);
+        known.insert(primitive.key.lobes);
     }
     const std::vector<std::uint32_t>& lobes = integersOf(input, "lobes");
     known.insert(lobes.begin(), lobes.end());
@@ -153,7 +153,7 @@ void showKeys(const ViewInput& input, ViewValues& values) {
         }
         const auto place = std::ranges::lower_bound(ordered, lobes[i]) - ordered.begin();
         filler.category(i, static_cast<std::uint32_t>(place), [&] {
-            const std::vector<std::string> names = input.package->featureNames(lobes[i]);
+            const std::vector<std::string> names = input.package->featureNames({lobes[i], 0, 0, 0});
             return fmt::format("{}", fmt::join(names, " "));
         });
     }
@@ -316,14 +316,13 @@ void showCost(const ViewInput& input, ViewValues& values) {
     Filler filler(input, values);
     std::map<std::uint32_t, double> ofMaterial;
     for (const package::PrimitiveEntry& primitive : input.package->scene(input.scene).primitives) {
-        const materials::FeatureMask key = materials::FeatureMask{primitive.featureLobes} |
-                                           materials::FeatureMask{primitive.featureInputs} << 32U;
+        const materials::FeatureMask key = input.model->maskOf(primitive.key);
         double& weight = ofMaterial[primitive.materialIndex];
         weight = std::max(weight, weightOfFeatures(key, 0, input));
     }
     std::vector<double> ofCase;
     for (const package::CaseEntry& entry : input.package->cases()) {
-        ofCase.push_back(weightOfFeatures(entry.always, entry.sometimes, input));
+        ofCase.push_back(weightOfFeatures(input.model->maskOf(entry.always), input.model->maskOf(entry.sometimes), input));
     }
     const std::vector<std::uint32_t>& materials = integersOf(input, "material");
     std::vector<const std::vector<std::uint32_t>*> hits;  // of each effect

@@ -80,7 +80,7 @@ constexpr void forEachEffect(std::uint32_t effects, const Visit& visit) {
 // --- The file ---
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 23;
+inline constexpr std::uint32_t kVersion = 24;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -222,16 +222,16 @@ struct EmissionEntry {
     std::uint32_t factor;    // offset of three floats; kNone: they are 0
     std::uint32_t strength;  // offset of a float; kNone: it is 1
     std::uint32_t texture;   // slot of the texture; kNone if no record has one
-    // Bits of PrimitiveEntry::featureInputs: the key reads the texture; it reads UV set 0 or 1.
+    // Bits of KeyWords::inputs: the key reads the texture; it reads UV set 0 or 1.
     std::uint32_t textureInput;
     std::uint32_t texCoord0Input;
     std::uint32_t texCoord1Input;
-    // Features, inputs in the high half and lobes in the low one. Shaders that compute the emission of a
-    // triangle use the features of `read` only. They take those of `always` for granted, and decide about
-    // those of `sometimes` by the key.
-    std::uint64_t read;
-    std::uint64_t always;
-    std::uint64_t sometimes;
+    // Shaders that compute the emission of a triangle use the features of `read` only; its model is 0 if they
+    // use none of a model's own. They take those of `always` for granted, and decide about those of
+    // `sometimes` by the key.
+    KeyWords read;
+    KeyWords always;
+    KeyWords sometimes;
 };
 
 // The facts about a material's record by which the runtime proves where its alpha test lets rays through.
@@ -241,21 +241,22 @@ struct OpacityEntry {
     std::uint32_t factor;   // offset of the float that scales alpha
     std::uint32_t cutoff;   // offset of a float
     std::uint32_t texture;  // slot of the texture whose alpha counts; kNone if no record has one
-    // Bits of PrimitiveEntry::featureInputs: the key reads the texture; it reads UV set 0 or 1; it transforms
+    // Bits of KeyWords::inputs: the key reads the texture; it reads UV set 0 or 1; it transforms
     // UVs; it reads the vertices' alpha.
     std::uint32_t textureInput;
     std::uint32_t texCoord0Input;
     std::uint32_t texCoord1Input;
     std::uint32_t transformInput;
     std::uint32_t vertexColorInput;
-    // Features whose code changes UVs or opacity. The alpha of a key that has one is unknown.
-    std::uint64_t code;
+    // Features whose code changes UVs or opacity. The alpha of a key that has one is unknown, as is that of a
+    // model with kModelChangesAlpha.
+    KeyWords code;
 };
 
 // The name of a feature of materials, for messages about keys.
 struct FeatureEntry {
-    std::uint64_t mask;  // one bit of keys
-    StringRef name;      // in the manifest: "baseColorTexture"
+    KeyWords feature;  // one bit, or a model alone
+    StringRef name;    // in the manifest: "baseColorTexture"
 };
 
 // A field of the records of materials, or one of their textures, by which values find their place in the
@@ -264,21 +265,23 @@ struct FieldEntry {
     StringRef name;        // of the parameter or the texture: "clearcoatFactor"
     std::uint32_t offset;  // in a record, bytes
     std::uint32_t bytes;
+    // The model whose records have it, as in keys; 0: all have it. Fields of different models share their places.
+    std::uint32_t model;
 };
 
 static_assert(sizeof(PackageHeader) == 160);
 static_assert(sizeof(PackageSection) == 24);
 static_assert(sizeof(ModuleEntry) == 40);
-static_assert(sizeof(CaseEntry) == 32);
+static_assert(sizeof(CaseEntry) == 44);
 static_assert(sizeof(SceneEntry) == 40);
-static_assert(sizeof(PrimitiveEntry) == 32);
+static_assert(sizeof(PrimitiveEntry) == 40);
 static_assert(sizeof(TextureEntry) == 8);
 static_assert(sizeof(SamplerEntry) == 24);
-static_assert(sizeof(AttributeEntry) == 40);
+static_assert(sizeof(AttributeEntry) == 48);
 static_assert(sizeof(EffectEntry) == 24);
-static_assert(sizeof(EmissionEntry) == 48);
-static_assert(sizeof(FeatureEntry) == 16);
-static_assert(sizeof(FieldEntry) == 16);
-static_assert(sizeof(OpacityEntry) == 40);
+static_assert(sizeof(EmissionEntry) == 72);
+static_assert(sizeof(FeatureEntry) == 24);
+static_assert(sizeof(FieldEntry) == 20);
+static_assert(sizeof(OpacityEntry) == 48);
 
 }  // namespace glint::package
