@@ -296,11 +296,11 @@ Result<FeatureProof> compileFeatureProof(const compiler::Build& build, const mat
     context.set("type", type);
     context.set("inputs", std::to_string(inputs.count));
     context.set("outputs", std::to_string(kProofOutputs));
-    const package::KeyWords words = plan.model->words(mask);
-    context.set("lobes", std::to_string(words.lobes));
-    context.set("inputBits", std::to_string(words.inputs));
-    context.set("model", fmt::format("{:#x}u", words.model));
-    context.set("own", fmt::format("{:#x}u", words.own));
+    const package::KeyWords key = plan.model->words(mask);
+    context.set("lobes", std::to_string(key.lobes));
+    context.set("inputBits", std::to_string(key.inputs));
+    context.set("model", fmt::format("{:#x}u", key.model));
+    context.set("own", fmt::format("{:#x}u", key.own));
     GLINT_TRY(const auto text, compiler::renderTemplate(sources, kProofTemplate, context));
     GLINT_TRY(const auto glsl,
               compiler::flatten(kProofName, text, sources.lookup(), compiler::FlattenSide::Glsl));

@@ -486,7 +486,7 @@ public:
     // GLINT_HAS_BASE_COLOR_TEXTURE(features) asks for it, and GLINT_KEY_HAS_BASE_COLOR_TEXTURE(features) where
     // the code runs for keys that are not the module's own. GLINT_LOBES is the set of shared lobes;
     // GLINT_UNLIT_LOBES and GLINT_BOTH_SIDES_LOBES are those that take no light and that let light through.
-    std::string featureDefines(const FeatureMask& used) const;
+    std::string featureDefines(const FeatureMask& used = kAllFeatures) const;
 
     // Numbers of symbols. The kinds follow each other.
     int symbolOf(Fact fact) const;

@@ -408,7 +408,7 @@ TEST(Manifest, HoldsTheSettingsAndTheVariant) {
     settings.strategies = package::kStrategyUber;
     const nlohmann::json usual = manifestOf(compileSample(settings));
     EXPECT_EQ(usual["settings"]["hitLobes"].size(),
-              materials::builtinMaterialModel().names(materials::kLobeMask).size());
+              materials::builtinMaterialModel().names(materials::builtinMaterialModel().lobes).size());
     EXPECT_EQ(usual["settings"]["lights"], "all");
     EXPECT_EQ(usual["settings"]["energyCompensation"], true);
     EXPECT_EQ(usual["settings"]["textureLod"], "cones");

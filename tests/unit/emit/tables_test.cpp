@@ -108,7 +108,8 @@ TEST(MaterialLayout, HasTheFieldsOfTheFeaturesThatAreUsed) {
     EXPECT_TRUE(has(coated, "clearcoatFactor"));
     EXPECT_TRUE(has(coated, "normalScale"));
     EXPECT_FALSE(has(coated, "clearcoatNormalScale"));
-    EXPECT_EQ(coated.textures, std::vector{model.findTexture("normalTexture")});
+    ASSERT_EQ(coated.textures.size(), 1U);
+    EXPECT_EQ(coated.textures[0].texture, model.findTexture("normalTexture"));
     EXPECT_EQ(coated.bytes, coated.textureOffset + sizeof(gpu::TextureRecord));
     EXPECT_LT(plain.bytes, 64U);
 }
@@ -365,8 +366,7 @@ TEST(Tables, GivePrimitivesTheFlagsOfTheirMaterial) {
             EXPECT_EQ(primitives[i].primitive, i);
             EXPECT_EQ(primitives[i].materialIndex, i);
             const compiler::Key& key = compiled.plan.keys[compiled.plan.keyOfPrimitive[i]];
-            EXPECT_EQ(primitives[i].featureLobes | materials::FeatureMask{primitives[i].featureInputs} << 32U,
-                      key.mask);
+            EXPECT_EQ(compiled.plan.model->maskOf(primitives[i].key), key.mask);
             EXPECT_EQ(primitives[i].shaderId, static_cast<std::uint32_t>(key.shaderId));
         }
     }
@@ -409,10 +409,10 @@ TEST(Tables, GivePrimitivesTheirPrimaryMask) {
     const base::Bytes bytes = makeTables(scenes, plan, {}, settings);
     const auto primitives = TableReader(bytes).read<package::PrimitiveEntry>(SectionKind::Primitives);
     ASSERT_EQ(primitives.size(), 4U);
-    EXPECT_EQ(primitives[0].featureLobes, bit("clearcoat"));
+    EXPECT_EQ(primitives[0].key.lobes, bit("clearcoat").shared());
     EXPECT_EQ((plan.always | plan.sometimes) & bit("clearcoat"), 0U);
     for (std::size_t i = 0; i < 4; ++i) {
-        EXPECT_EQ(primitives[i].featureLobes | materials::FeatureMask{primitives[i].featureInputs} << 32U,
+        EXPECT_EQ(plan.model->maskOf(primitives[i].key),
                   plan.primaryMaskOfPrimitive[i]);
     }
 }

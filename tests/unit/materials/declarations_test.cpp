@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <interop/models.h>
 #include <iterator>
 #include <regex>
 #include <set>
@@ -21,12 +22,12 @@ namespace {
 using namespace glint;
 
 // Glint's own declarations with one more.
-Result<materials::MaterialModel> modelWith(const std::string& text) {
+Result<materials::MaterialModel> modelWith(const std::string& text, bool isOfPack = false) {
     std::vector<materials::DeclarationFile> files;
     for (const base::BuiltinFile& file : materials::declarationFiles()) {
         files.push_back({file.name, file.text});
     }
-    files.push_back({"materials/wet/wet.json", text});
+    files.push_back({"materials/wet/wet.json", text, isOfPack});
     return readDeclarations(files);
 }
 
@@ -83,7 +84,7 @@ TEST(Declarations, OneFileAddsAFeature) {
         "effects": [{"does": "reflects", "when": "wetness > 0", "roughness": "0.02", "text": "is wet"}]})");
     ASSERT_TRUE(model.ok()) << toString(model.error());
     const materials::FeatureMask wet = model->mask("wet");
-    EXPECT_NE(wet & materials::kLobeMask, 0U);
+    EXPECT_NE(wet & materials::builtinMaterialModel().lobes, 0U);
     EXPECT_NE(model->featureDefines().find("#define GLINT_WET_TEXTURE "), std::string::npos);
     materials::Material material(*model);
     material["metallicFactor"] = 0.0F;
@@ -224,13 +225,13 @@ TEST(Declarations, ModelsReplaceABase) {
     const std::string whole = R"("extension": "EXT_wet", "replaces": {"object": "pbrMetallicRoughness"}, )";
     const std::string files = R"("bsdf": "wet.glsl", "model": "wet.glsl")";
     const Result<materials::MaterialModel> model =
-        modelWith(declared("base", whole + R"("light": "both", )", files + R"(, "sampled": true)"));
+        modelWith(declared("base", whole + R"("light": "both", )", files + R"(, "sampled": true)"), true);
     ASSERT_TRUE(model.ok()) << toString(model.error());
     EXPECT_EQ(model->ownModels, model->mask("wet"));
     EXPECT_NE(model->bothSides & model->mask("wet"), 0U);
-    EXPECT_NE(
-        model->featureDefines().find(fmt::format("GLINT_SAMPLED_MODEL_LOBES 0x{:x}u\n", model->mask("wet"))),
-        std::string::npos);
+    EXPECT_EQ(model->modelWord(0), 1U | gpu::kModelOwnCode | gpu::kModelBothSides | gpu::kModelSampled);
+    EXPECT_NE(model->featureDefines().find("#define GLINT_HAS_WET(features) hasOwn(features, 1u, 0x0u)\n"),
+              std::string::npos);
     EXPECT_NE(refusal(declared("layer", R"("extension": "EXT_wet", )", files))
                   .find("#/glsl/model: needs a declaration whose"),
               std::string::npos);

@@ -215,7 +215,7 @@ TEST_F(MaterialPacks, DivisionByZeroDropsNothing) {
 
 // Inputs that find no place among the inputs take bits of the lobes' word, and there is an end to these, too.
 TEST_F(MaterialPacks, FeaturesFillTheKey) {
-    const std::size_t room = materials::kFeatureBits - materials::builtinMaterialModel().features.size();
+    const std::size_t room = materials::kFirstOfModels - materials::builtinMaterialModel().features.size();
     for (std::size_t i = 0; i < room; ++i) {
         write(fmt::format("f{}.json", i),
               fmt::format(R"({{"name": "f{}", "extension": "EXT_f{}", "stage": "surface"}})", i, i));
@@ -228,7 +228,7 @@ TEST_F(MaterialPacks, FeaturesFillTheKey) {
         EXPECT_EQ(feature.isLobe, ((*model)->lobes & feature.mask()) != 0) << feature.name;
         all |= feature.mask();
     }
-    EXPECT_EQ(all, ~materials::FeatureMask{0});
+    EXPECT_EQ(all, ~std::uint64_t{0});
     EXPECT_EQ((*model)->lobes, materials::builtinMaterialModel().lobes);
     write("more.json", R"({"name": "more", "extension": "EXT_more", "stage": "surface"})");
     expectError("declaration", "#", "more features than");

@@ -140,7 +140,7 @@ std::vector<compiler::WeightedKey> wildKeys(std::mt19937& random, std::size_t co
     for (const materials::Feature& info : materials::builtinMaterialModel().features) {
         known |= info.mask();
     }
-    const auto word = [&] { return materials::FeatureMask{random()} << 32U | random(); };
+    const auto word = [&] { return std::uint64_t{random()} << 32U | random(); };
     std::map<materials::FeatureMask, double> weights;
     while (weights.size() < count) {
         const materials::FeatureMask some = word();

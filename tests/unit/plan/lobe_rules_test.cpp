@@ -32,8 +32,8 @@ TEST(LobeKey, SpecularGlossinessExcludesTheOthersButNotTheCore) {
     material.give("KHR_materials_pbrSpecularGlossiness");
     Dropped dropped;
     const materials::FeatureMask key = compiler::makeKey(material, fullPrimitive(), kTested, &dropped);
-    EXPECT_EQ(key & materials::kLobeMask, bit("specularGlossiness"));
-    for (const std::string_view lobe : materials::builtinMaterialModel().names(materials::kLobeMask)) {
+    EXPECT_EQ(key & materials::builtinMaterialModel().lobes, bit("specularGlossiness"));
+    for (const std::string_view lobe : materials::builtinMaterialModel().names(materials::builtinMaterialModel().lobes)) {
         const bool is = lobe == "unlit" || lobe == "specularGlossiness";
         EXPECT_EQ(reasonFor(dropped, std::string(lobe)).empty(), is) << lobe;
     }
@@ -65,7 +65,7 @@ TEST(LobeKey, UnlitWinsOverSpecularGlossiness) {
     material.give("KHR_materials_unlit");
     material.give("KHR_materials_pbrSpecularGlossiness");
     Dropped dropped;
-    EXPECT_EQ(compiler::makeKey(material, fullPrimitive(), kTested, &dropped) & materials::kLobeMask,
+    EXPECT_EQ(compiler::makeKey(material, fullPrimitive(), kTested, &dropped) & materials::builtinMaterialModel().lobes,
               bit("unlit"));
     EXPECT_FALSE(reasonFor(dropped, "specularGlossiness").empty());
 }
@@ -149,7 +149,7 @@ TEST(LobeKey, EveryTextureCountsForUvSetsAndTransforms) {
 
 TEST(HitLobes, ALobeThatHitsDoNotKeepTakesItsInputsWithIt) {
     for (const materials::Feature& info : materials::builtinMaterialModel().features) {
-        const materials::FeatureMask lobe = info.mask() & materials::kLobeMask;
+        const materials::FeatureMask lobe = info.mask() & materials::builtinMaterialModel().lobes;
         if (lobe == 0 || info.name == "unlit" || info.name == "specularGlossiness") {
             continue;
         }
@@ -157,7 +157,7 @@ TEST(HitLobes, ALobeThatHitsDoNotKeepTakesItsInputsWithIt) {
         const materials::FeatureMask whole = compiler::makeKey(fullMaterial(), fullPrimitive(), kTested);
         const materials::FeatureMask kept =
             compiler::makeKey(fullMaterial(), fullPrimitive(),
-                              {package::AlphaPolicy::Tested, materials::kLobeMask & ~lobe}, &dropped);
+                              {package::AlphaPolicy::Tested, materials::builtinMaterialModel().lobes & ~lobe}, &dropped);
         EXPECT_EQ(kept & lobe, 0U) << info.name;
         EXPECT_EQ(kept & ~whole, 0U) << info.name;
         EXPECT_NE(reasonFor(dropped, std::string(info.name)).find("hits do not keep it"), std::string::npos);
@@ -170,7 +170,7 @@ TEST(HitLobes, ALobeThatHitsDoNotKeepTakesItsInputsWithIt) {
 TEST(HitLobes, NoneLeavesTheCoreAndTheBaseModels) {
     const materials::KeyOptions none{package::AlphaPolicy::Tested, 0};
     const materials::FeatureMask core = compiler::makeKey(fullMaterial(), fullPrimitive(), none);
-    EXPECT_EQ(core & materials::kLobeMask, 0U);
+    EXPECT_EQ(core & materials::builtinMaterialModel().lobes, 0U);
     for (const char* const texture : {"baseColorTexture", "metallicRoughnessTexture", "normalTexture",
                                       "occlusionTexture", "emissiveTexture"}) {
         EXPECT_NE(core & bit(texture), 0U);
@@ -178,10 +178,10 @@ TEST(HitLobes, NoneLeavesTheCoreAndTheBaseModels) {
     EXPECT_EQ(core & (bit("clearcoatTexture") | bit("thicknessTexture")), 0U);
     materials::Material other = fullMaterial();
     other.give("KHR_materials_pbrSpecularGlossiness");
-    EXPECT_EQ(compiler::makeKey(other, fullPrimitive(), none) & materials::kLobeMask,
+    EXPECT_EQ(compiler::makeKey(other, fullPrimitive(), none) & materials::builtinMaterialModel().lobes,
               bit("specularGlossiness"));
     other.give("KHR_materials_unlit");
-    EXPECT_EQ(compiler::makeKey(other, fullPrimitive(), none) & materials::kLobeMask, bit("unlit"));
+    EXPECT_EQ(compiler::makeKey(other, fullPrimitive(), none) & materials::builtinMaterialModel().lobes, bit("unlit"));
 }
 
 }  // namespace

@@ -289,8 +289,8 @@ compiler::LockedIds randomIds(std::mt19937& random, std::size_t count) {
     }
     compiler::LockedIds ids;
     while (ids.size() < count) {
-        const materials::FeatureMask mask = (materials::FeatureMask{random()} << 32U | random()) & known;
-        ids[mask & (materials::FeatureMask{random()} << 32U | random())] = static_cast<int>(random() % 65536);
+        const materials::FeatureMask mask = (std::uint64_t{random()} << 32U | random()) & known;
+        ids[mask & (std::uint64_t{random()} << 32U | random())] = static_cast<int>(random() % 65536);
     }
     return ids;
 }

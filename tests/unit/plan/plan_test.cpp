@@ -164,7 +164,7 @@ TEST(Plan, AutoMergesByCountedHits) {
 TEST(Plan, TakesTheSharesOfAProfile) {
     const SmallScene scene;
     compiler::PlanOptions options{{}, compiler::MergePolicy::Profile};
-    options.hits = {{kNormals, 30}, {kTextured | kNormals, 10}, {materials::FeatureMask{1} << 63U, 1000}};
+    options.hits = {{kNormals, 30}, {kTextured | kNormals, 10}, {std::uint64_t{1} << 63U, 1000}};
     const compiler::Plan plan = makePlan(scene.materials, scene.primitives, options);
     EXPECT_DOUBLE_EQ(plan.keys[3].share, 0.75);
     EXPECT_DOUBLE_EQ(plan.keys[4].share, 0.25);
@@ -307,7 +307,7 @@ TEST(Plan, KeysOfHitsArePartOfPrimaryMasks) {
     for (int i = 0; i < 50; ++i) {
         const materials::KeyOptions keys{
             package::AlphaPolicy::Tested,
-            static_cast<materials::FeatureMask>(random()) & materials::kLobeMask};
+            static_cast<materials::FeatureMask>(random()) & materials::builtinMaterialModel().lobes};
         const compiler::Plan plan =
             compiler::makePlan(scene.materials, scene.primitives, {keys, compiler::MergePolicy::Family});
         const materials::FeatureMask whole = plan.primaryAlways | plan.primarySometimes;

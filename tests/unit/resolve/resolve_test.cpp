@@ -214,7 +214,7 @@ TEST(Resolve, KeepsWhatNeedsAnotherBuild) {
 std::string explained(const Build& build) {
     std::string text = fmt::format("{} {}", fmt::join(effectsOf(build), ","), build.excess.value_or(""));
     for (const Key& key : build.plan.keys) {
-        text += fmt::format(" {:x}:{}", key.mask, key.shaderId);
+        text += fmt::format(" {}:{}", toHex(key.mask), key.shaderId);
     }
     if (const std::optional<StrategyAdvice>& advice = build.settings.compile.strategyChoice) {
         for (const StrategyEstimate& estimate : advice->choice.estimates) {

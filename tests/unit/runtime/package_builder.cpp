@@ -18,6 +18,11 @@ using package::ModuleRole;
 
 namespace {
 
+// Lobes are in the low half, inputs in the high one.
+package::KeyWords wordsOf(std::uint64_t features) {
+    return {static_cast<std::uint32_t>(features), static_cast<std::uint32_t>(features >> 32U), 0, 0};
+}
+
 struct NamedRole {
     ModuleRole role;
     const char* name;
@@ -188,7 +193,7 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     }
     std::vector<package::CaseEntry> cases;
     for (const CaseSpec& entry : spec.cases) {
-        cases.push_back({entry.always, entry.sometimes, addString(strings, entry.name), entry.keyCount, 0});
+        cases.push_back({wordsOf(entry.always), wordsOf(entry.sometimes), addString(strings, entry.name), entry.keyCount});
     }
     const std::vector<package::SceneEntry> scenes = makeScenes(spec, strings);
     std::vector<package::EffectEntry> effects = spec.effects;

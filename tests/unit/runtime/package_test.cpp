@@ -50,7 +50,7 @@ PackageSpec makeRichSpec() {
     spec.samplers = {{0, 1, 1, 1, 1, 1}};
     spec.materials[0].textures[0].textureIndex = 1;
     spec.primitives = {test::makePrimitive(0, 0, gpu::kGeometryAlphaTested), test::makePrimitive(2, 1)};
-    spec.fields = {{{}, 0, 4}, {{}, 4, sizeof(gpu::TextureRecord)}};
+    spec.fields = {{{}, 0, 4, 0}, {{}, 4, sizeof(gpu::TextureRecord), 0}};
     return spec;
 }
 
@@ -71,7 +71,7 @@ TEST_F(PackageTest, LoadsAValidPackage) {
     first.key.index = 1;
     spec.modules.push_back(first);
     spec.primitives[1].shaderId = 1;
-    spec.primitives[1].featureLobes = 0b11;
+    spec.primitives[1].key.lobes = 0b11;
     write(spec);
     const Result<Package> loaded = Package::load(folder_.path());
     ASSERT_TRUE(loaded) << toString(loaded.error());

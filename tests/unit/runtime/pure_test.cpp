@@ -95,11 +95,11 @@ TEST(SceneMaterialTest, TakesValuesAndKeepsTextures) {
 
 // The runtime knows these bits of a key, because it fills the geometry records.
 TEST(FeatureBits, AreThoseOfTheDeclarations) {
-    EXPECT_EQ(kInputTexCoord0, bit("texCoord0") >> 32U);
-    EXPECT_EQ(kInputTexCoord1, bit("texCoord1") >> 32U);
-    EXPECT_EQ(kInputVertexColor, bit("vertexColor") >> 32U);
-    EXPECT_EQ(kInputNormals, bit("normals") >> 32U);
-    EXPECT_EQ(kInputTangents, bit("tangents") >> 32U);
+    EXPECT_EQ(kInputTexCoord0, bit("texCoord0").shared() >> 32U);
+    EXPECT_EQ(kInputTexCoord1, bit("texCoord1").shared() >> 32U);
+    EXPECT_EQ(kInputVertexColor, bit("vertexColor").shared() >> 32U);
+    EXPECT_EQ(kInputNormals, bit("normals").shared() >> 32U);
+    EXPECT_EQ(kInputTangents, bit("tangents").shared() >> 32U);
 }
 
 double dot(const gpu::vec4& row, const std::array<double, 3>& p) {

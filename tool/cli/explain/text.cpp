@@ -175,7 +175,7 @@ base::Json toJson(const compiler::CodeEstimate& code) {
 
 base::Json keyToJson(const compiler::Build& build, const compiler::KeyCost& cost) {
     const compiler::Key& key = build.plan.keys[static_cast<std::size_t>(cost.key)];
-    return {{"mask", fmt::format("0x{:016x}", key.mask)},
+    return {{"mask", toHex(key.mask)},
             {"features", featuresToJson(*build.plan.model, key.mask)},
             {"materials", materialsToJson(*build.scenes, key.materials)},
             {"share", compiler::roundedShare(key.share)},
@@ -381,7 +381,7 @@ base::Json materialToJson(const compiler::Build& build, int material) {
     base::Json keys = base::Json::array();
     for (const compiler::Key* key : keysOf(build, material)) {
         const compiler::Case& shader = caseOf(build, key->shaderId);
-        keys.push_back(base::Json{{"mask", fmt::format("0x{:016x}", key->mask)},
+        keys.push_back(base::Json{{"mask", toHex(key->mask)},
                                   {"features", featuresToJson(*build.plan.model, key->mask)},
                                   {"onPrimarySurfaces", primaryToJson(build, *key, material)},
                                   {"share", compiler::roundedShare(key->share)},
@@ -414,7 +414,7 @@ Rows materialRows(const compiler::Build& build, int material, Detail detail) {
     Rows rows;
     for (const compiler::Key* key : keys) {
         const compiler::Case& shader = caseOf(build, key->shaderId);
-        rows.push_back({"  key", fmt::format("0x{:016x}", key->mask)});
+        rows.push_back({"  key", toHex(key->mask)});
         rows.push_back({"    features", featureList(*build.plan.model, key->mask)});
         for (const materials::FeatureMask& mask : primaryMasksOf(build, *key, material)) {
             if (mask != key->mask) {
