@@ -13,7 +13,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <numbers>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -187,6 +189,81 @@ TEST(Models, AreAsTheDocumentsPrintThem) {
     ASSERT_TRUE(list) << toString(list.error());
     EXPECT_TRUE(list->warnings.empty()) << toString(list->warnings.front());
     EXPECT_EQ(list->materials.size(), 4U);
+}
+
+// Copies the model leaf under the name leaf<i>, with three textures of its own.
+void writeLeaf(const std::filesystem::path& folder, int number) {
+    const std::filesystem::path from = GLINT_SOURCE_DIR "/examples/materials/models/leaf";
+    const std::string name = "leaf" + std::to_string(number);
+    std::filesystem::create_directory(folder / name);
+    for (const char* const ending : {".json", ".glsl", "_surface.glsl"}) {
+        const Result<base::Bytes> bytes = base::readFile(from / (std::string("leaf") + ending));
+        ASSERT_TRUE(bytes);
+        std::string text(bytes->begin(), bytes->end());
+        for (const auto& [word, by] : {std::pair<std::string, std::string>{"leaf", name},
+                                       {"Leaf", "L" + name.substr(1)},
+                                       {"LEAF", "LEAF" + std::to_string(number)}}) {
+            text = std::regex_replace(text, std::regex(word), by);
+        }
+        std::string textures = "\"textures\": [";
+        for (const char* const map : {"A", "B", "C"}) {
+            textures += "{\"name\": \"" + name + map + "\"}, ";
+        }
+        text = std::regex_replace(text, std::regex("\"textures\": \\["), textures);
+        ASSERT_TRUE(base::writeFile(folder / name / (name + ending), text));
+    }
+}
+
+// Each of forty models has a base and three textures, which is more than the 64 bits that models share.
+TEST(Models, OneOfManyGivesThePictureOfOneAlone) {
+    constexpr int kCount = 40;
+    const test::TemporaryFolder folder;
+    for (int i = 0; i < kCount; ++i) {
+        writeLeaf(folder.path(), i);
+    }
+    const Result<const materials::MaterialModel*> many =
+        materials::loadMaterialModel(std::vector{folder.path().string()});
+    ASSERT_TRUE(many) << toString(many.error());
+    EXPECT_EQ((*many)->models.size(), static_cast<std::size_t>(kCount));
+    const auto wall = [](const materials::MaterialModel& model, const std::string& name, float passed) {
+        materials::Material material(model);
+        material.give("EXAMPLE_materials_" + name);
+        material[name + "Passed"] = {passed, passed, 0.0F};
+        material["baseColorFactor"] = {kColor[0], kColor[1], kColor[2], 1.0F};
+        return material;
+    };
+    for (const auto& [merge, strategy] :
+         {std::pair{compiler::MergePolicy::None, package::kStrategyVisibility},
+          {compiler::MergePolicy::All, package::kStrategyUber}}) {
+        LinearImage reference;
+        for (const bool ofMany : {false, true}) {
+            const materials::MaterialModel& model = ofMany ? **many : models();
+            gltf::Scene scene = emptyScene();
+            addCamera(scene);
+            const std::string first = ofMany ? "leaf3" : "leaf";
+            const std::string second = ofMany ? "leaf39" : "leaf";
+            addQuad(scene, wall(model, first, 0.2F), {-3, -1, -6}, {6, 0, 0}, {0, 4, 0});
+            addQuad(scene, wall(model, second, 0.6F), {-3, -1, 1}, {6, 0, 0}, {0, 0, -7});
+            materials::Material mirror(model);
+            mirror["roughnessFactor"] = 0.0F;
+            addQuad(scene, mirror, {0.5F, -0.9F, -5}, {1, 0, 1}, {0, 1.5F, 0});
+            addDirectionalLight(scene, {0.3F, -0.8F, -0.52F}, 1.5F);
+            compiler::CompileSettings settings;
+            settings.plan.merge = merge;
+            settings.strategies = strategy;
+            settings.effects = {false, compiler::builtinEffects({"shadow", "reflection"})};
+            const LoadedScene loaded(scene, settings);
+            ASSERT_TRUE(loaded.ok());
+            const LinearImage image = loaded.render(strategy, defaultSetup(scene, 24, 24));
+            ASSERT_FALSE(image.pixels.empty());
+            if (ofMany) {
+                expectSameImage(image, reference, "merged by " + std::string(nameOf(merge)));
+                EXPECT_GT(meanOf(image), 0.05);
+            }
+            reference = image;
+        }
+    }
+    expectNoValidationMessages();
 }
 
 // A material has one model: the first that it names. That leaves out what changes glTF's base, and keeps

@@ -194,7 +194,7 @@ PackageFile fileOf(const std::string& name, std::string_view text) {
 Result<std::vector<PackageFile>> makeLibrary(const gltf::SceneList& scenes, const Plan& plan,
                                              const CompileSettings& settings, const ModuleCache* cache) {
     GLINT_TRY(const auto sources, librarySources(scenes, plan, settings));
-    MaterialCodeOfCases codeOfCases(sources, *plan.model);
+    MaterialCodeOfCases codeOfCases(sources, plan);
     std::vector<PackageFile> files{fileOf("glint_host.glsl", hostText(sources))};
     const auto add = [&](const mustache::data& context, materials::FeatureMask features,
                          const std::string& name) -> Status {

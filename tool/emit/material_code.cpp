@@ -324,6 +324,12 @@ Result<const SourceSet*> MaterialCodeOfCases::find(materials::FeatureMask used) 
     const auto [place, isNew] = made_.try_emplace(used & withCode);
     if (isNew) {
         GLINT_TRY_DO(addMaterialCode(sources_, model_, used, place->second));
+        if (!model_.models.empty()) {
+            // Whatever the case, rays meet surfaces whose opacity is the code of another one.
+            const materials::FeatureMask named = model_.withBases(used | maskCodeFeatures(model_));
+            place->second.add("generated/features.glsl", model_.featureDefines(named));
+            place->second.add("generated/material_record.glsl", recordDeclarations(layout_, named));
+        }
     }
     return &place->second;
 }

@@ -1,6 +1,7 @@
 // The generated GLSL that calls the code of material features.
 #pragma once
 
+#include "emit/material_layout.h"
 #include "emit/source_set.h"
 #include "materials/material_model.h"
 
@@ -38,8 +39,8 @@ Diagnostic explainGlslError(Diagnostic error, const materials::MaterialModel& mo
 class MaterialCodeOfCases {
 public:
     // Both must outlive this.
-    MaterialCodeOfCases(const SourceSet& sources, const materials::MaterialModel& model)
-        : sources_(sources), model_(model) {}
+    MaterialCodeOfCases(const SourceSet& sources, const Plan& plan)
+        : sources_(sources), model_(*plan.model), layout_(materialLayoutOf(plan)) {}
 
     // Returns the files for keys with features of `used` alone. They are valid as long as this. Has the
     // errors of renderTemplate().
@@ -48,6 +49,7 @@ public:
 private:
     const SourceSet& sources_;
     const materials::MaterialModel& model_;
+    MaterialLayout layout_;
     std::map<materials::FeatureMask, SourceSet> made_;  // by the features that have code
 };
 

@@ -238,8 +238,16 @@ std::string recordStruct(const MaterialLayout& layout, std::string_view scope) {
     return text + "};\n";
 }
 
-std::string recordDeclarations(const MaterialLayout& layout) {
+std::string recordDeclarations(const MaterialLayout& layout, const materials::FeatureMask& used) {
     const materials::MaterialModel& model = *layout.model;
+    // Whether shaders with those features may name what belongs to the feature.
+    const auto isNamed = [&](int feature) {
+        const int owner = feature < 0 ? -1 : model.features[static_cast<std::size_t>(feature)].model;
+        return owner < 0 ||
+               used.has(model.features[static_cast<std::size_t>(
+                                           model.models[static_cast<std::size_t>(owner)].feature)]
+                            .bit);
+    };
     std::string text =
         "// The values of a material that the scenes of the package need.\n" + recordStruct(layout, "");
     text +=
@@ -248,11 +256,9 @@ std::string recordDeclarations(const MaterialLayout& layout) {
         "data[]; };\n";
     text += "// The textures of a record.\n";
     for (std::size_t i = 0; i < model.textures.size(); ++i) {
-        const int slot = layout.slotOf(static_cast<int>(i));
-        const bool isShared = model.features[static_cast<std::size_t>(model.textures[i].feature)].model < 0;
-        if (isShared || slot >= 0) {
+        if (isNamed(model.textures[i].feature)) {
             text += fmt::format("const uint {} = {}u;\n", textureConstant(model.textures[i].name),
-                                std::max(0, slot));
+                                std::max(0, layout.slotOf(static_cast<int>(i))));
         }
     }
     text += "#define GLINT_TEXTURE(record, slot) ";
@@ -265,11 +271,9 @@ std::string recordDeclarations(const MaterialLayout& layout) {
     const auto define = [&](const std::string& name, const std::string& type, int feature,
                             std::span<const float> fallback) {
         const auto field = std::ranges::find(layout.fields, name, &RecordField::name);
-        const bool isShared = feature < 0 || model.features[static_cast<std::size_t>(feature)].model < 0;
-        if (field != layout.fields.end()) {
-            text += fieldMacros(name, readOf(layout, *field));
-        } else if (isShared) {
-            text += fieldMacros(name, literalOf(type, fallback));
+        if (isNamed(feature)) {
+            text += fieldMacros(name, field != layout.fields.end() ? readOf(layout, *field)
+                                                                   : literalOf(type, fallback));
         }
     };
     for (const materials::Parameter& parameter : model.parameters) {

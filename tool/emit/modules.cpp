@@ -280,7 +280,7 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
                                                     const SourceSet& sources, const CompileSettings& settings,
                                                     WarmModules* warm) {
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
-    MaterialCodeOfCases codeOfCases(sources, *plan.model);
+    MaterialCodeOfCases codeOfCases(sources, plan);
     const materials::FeatureMask ofEmitters = emitterMask(plan, settings);
     const SourceSet none;
     const Case fallback = fallbackCase(plan);

@@ -218,7 +218,7 @@ Result<SourceSet> makeSourceSet(const gltf::SceneList& scenes, const Plan& plan,
     GLINT_TRY_DO(addHost(sources, settings.host));
     const materials::FeatureMask used = usedFeatures(plan);
     sources.add("generated/features.glsl", plan.model->featureDefines(used));
-    sources.add("generated/material_record.glsl", recordDeclarations(materialLayoutOf(plan)));
+    sources.add("generated/material_record.glsl", recordDeclarations(materialLayoutOf(plan), used));
     const bool surface = settings.answer == package::HitAnswer::Surface;
     sources.add("generated/answer.glsl",
                 fmt::format("#include \"hit/answer_{}.glsl\"\n", package::nameOf(settings.answer)));

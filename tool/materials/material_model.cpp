@@ -77,6 +77,15 @@ int MaterialModel::findAttribute(std::string_view name) const {
     return indexOf(attributes, name);
 }
 
+FeatureMask MaterialModel::withBases(FeatureMask mask) const {
+    for (const BaseModel& model : models) {
+        for (int bit = model.firstBit; bit < model.firstBit + model.bits; ++bit) {
+            mask |= mask.has(bit) ? FeatureMask::ofBit(model.firstBit - 1) : FeatureMask();
+        }
+    }
+    return mask;
+}
+
 FeatureMask MaterialModel::opacityFeatures() const {
     FeatureMask mask = 0;
     for (const FeatureCode& row : code) {
@@ -187,7 +196,7 @@ std::string MaterialModel::featureDefines(const FeatureMask& used) const {
             const package::KeyWords word = words(feature.mask());
             const std::string rest =
                 fmt::format("{}u, 0x{:x}u)", word.model & gpu::kModelNumber, word.own);
-            text += used.has(feature.bit)
+            text += used.has(features[static_cast<std::size_t>(baseOf(feature))].bit)
                         ? fmt::format("#define GLINT_HAS_{0}(features) hasOwn(features, {1}\n"
                                       "#define GLINT_KEY_HAS_{0}(features) ownOfKey(features, {1}\n",
                                       name, rest)

@@ -469,6 +469,8 @@ public:
     }
     // Returns the base models. Every hit needs one.
     FeatureMask baseModels() const;
+    // Returns the set with the base of each feature of a model.
+    FeatureMask withBases(FeatureMask mask) const;
     // Returns the features that have GLSL at the stage opacity.
     FeatureMask opacityFeatures() const;
     // Returns a key as packages and shaders have it. If `mask` has no base of a pack, its model is 0.
@@ -482,7 +484,7 @@ public:
     // Returns the word by which shaders know the base of index `model`: its number and what it does.
     std::uint32_t modelWord(int model) const;
     // Returns "#define GLINT_BASE_COLOR_TEXTURE 0x1u" for every feature that all models share; lobes and inputs
-    // are numbered within their own word. For these and for the features of models in `used`,
+    // are numbered within their own word. For these and for all features of the models of `used`,
     // GLINT_HAS_BASE_COLOR_TEXTURE(features) asks for it, and GLINT_KEY_HAS_BASE_COLOR_TEXTURE(features) where
     // the code runs for keys that are not the module's own. GLINT_LOBES is the set of shared lobes;
     // GLINT_UNLIT_LOBES and GLINT_BOTH_SIDES_LOBES are those that take no light and that let light through.

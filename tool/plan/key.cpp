@@ -150,15 +150,18 @@ private:
                            : isBeyond     ? materials::missingAttribute(material_, primitive_, feature)
                                           : ""};
         }
-        const std::optional<std::string> neutral = findNeutral(feature);
-        const std::optional<std::string> excluded = findExclusion(feature);
         // The presence of an extension without reasons changes the shading by itself.
         const bool asksByValue = feature.object < 0 || !feature.neutral.empty();
         const bool given = isGiven(feature);
-        if (!neutral && !excluded && (asksByValue || given)) {
+        if (!given && !asksByValue) {
+            return {};
+        }
+        const std::optional<std::string> neutral = findNeutral(feature);
+        const std::optional<std::string> excluded = findExclusion(feature);
+        if (!neutral && !excluded) {
             return {true, {}};
         }
-        const bool reports = given || (!neutral && asksByValue);
+        const bool reports = given || !neutral;
         return {false, !reports ? "" : excluded ? *excluded : neutral.value_or("")};
     }
 
