@@ -1,13 +1,6 @@
 // Samples directions in proportion to the BSDF, one lobe of a mixture at a time, and gives the density of the mixture.
 #include "bsdf/bsdf.glsl"
 
-#if GLINT_MODELS
-// Returns whether the model samples itself.
-bool samplesModel(Features features) {
-    return samplesModel(features);
-}
-#endif
-
 struct BsdfSample {
     vec3 direction;  // unit vector, in the frame of the surface
     vec3 weight;     // BSDF |n·l| / pdf

@@ -41,19 +41,19 @@ std::string hasFeature(const materials::Feature& feature, Asked asked) {
 }
 
 // The condition under which code runs; empty if it always runs.
-std::string conditionOf(const materials::MaterialModel& model, const materials::FeatureCode& code,
-                        Asked asked) {
+std::string conditionOf(const materials::MaterialModel& model, const materials::FeatureMask& used,
+                        const materials::FeatureCode& code, Asked asked) {
     const auto feature = [&](int index) { return model.features[static_cast<std::size_t>(index)]; };
     std::string text = code.feature < 0 ? "" : hasFeature(feature(code.feature), asked);
     for (const materials::Feature& other : model.features) {
-        if (code.unless.has(other.bit)) {
+        if (code.unless.has(other.bit) && used.has(other.bit)) {
             text += fmt::format("{}!{}", text.empty() ? "" : " && ", hasFeature(other, asked));
         }
     }
     return text;
 }
 
-mustache::data stageOf(const materials::MaterialModel& model,
+mustache::data stageOf(const materials::MaterialModel& model, const materials::FeatureMask& used,
                        const std::vector<const materials::FeatureCode*>& code,
                        std::string materials::FeatureCode::*file, Asked asked = Asked::OfModule) {
     mustache::data list(mustache::data::type::list);
@@ -61,7 +61,7 @@ mustache::data stageOf(const materials::MaterialModel& model,
         if ((one->*file).empty()) {
             continue;
         }
-        const std::string condition = conditionOf(model, *one, asked);
+        const std::string condition = conditionOf(model, used, *one, asked);
         list.push_back(mustache::object{
             {"name", one->name},
             {"when", condition.empty() ? mustache::data(false) : mustache::data(condition)}});
@@ -90,7 +90,7 @@ mustache::data includesOf(const std::vector<const materials::FeatureCode*>& code
 
 // Sets `layers`, from the lowest to the highest, and `mirrors`, those that rays may trace.
 void addLayers(mustache::data& context, const materials::MaterialModel& model,
-               const std::vector<const materials::FeatureCode*>& code) {
+               const materials::FeatureMask& used, const std::vector<const materials::FeatureCode*>& code) {
     mustache::data layers(mustache::data::type::list);
     mustache::data mirrors(mustache::data::type::list);
     std::vector<const materials::FeatureCode*> lower;
@@ -99,13 +99,13 @@ void addLayers(mustache::data& context, const materials::MaterialModel& model,
         if (layer->layer.empty()) {
             continue;
         }
-        mustache::data entry(
-            mustache::object{{"name", layer->name},
-                             {"type", typeName(layer->name)},
-                             {"has", hasMacro(model.features[static_cast<std::size_t>(layer->feature)], Asked::OfModule)},
-                             {"file", layer->layer},
-                             {"coversEmission", layer->coversEmission},
-                             {"isMirror", layer->isTraced}});
+        mustache::data entry(mustache::object{
+            {"name", layer->name},
+            {"type", typeName(layer->name)},
+            {"has", hasMacro(model.features[static_cast<std::size_t>(layer->feature)], Asked::OfModule)},
+            {"file", layer->layer},
+            {"coversEmission", layer->coversEmission},
+            {"isMirror", layer->isTraced}});
         mustache::data below(mustache::data::type::list);
         mustache::data mirrorsBelow(mustache::data::type::list);
         for (const materials::FeatureCode* const one : lower) {
@@ -131,18 +131,18 @@ void addLayers(mustache::data& context, const materials::MaterialModel& model,
             diffuse.push_back(mustache::object{{"name", one->name},
                                                {"type", typeName(one->name)},
                                                {"file", one->diffuse},
-                                               {"when", conditionOf(model, *one, Asked::OfModule)}});
+                                               {"when", conditionOf(model, used, *one, Asked::OfModule)}});
         }
     }
     mustache::data models(mustache::data::type::list);
     for (const materials::FeatureCode* const one : code) {
         if (!one->model.empty()) {
-            models.push_back(
-                mustache::object{{"name", one->name},
-                                 {"type", typeName(one->name)},
-                                 {"file", one->model},
-                                 {"has", hasMacro(model.features[static_cast<std::size_t>(one->feature)], Asked::OfModule)},
-                                 {"isSampled", mustache::data(one->isSampled)}});
+            models.push_back(mustache::object{
+                {"name", one->name},
+                {"type", typeName(one->name)},
+                {"file", one->model},
+                {"has", hasMacro(model.features[static_cast<std::size_t>(one->feature)], Asked::OfModule)},
+                {"isSampled", mustache::data(one->isSampled)}});
         }
     }
     context.set("hasModels", mustache::data(!models.is_empty_list()));
@@ -239,8 +239,9 @@ Status addMaskCode(const SourceSet& sources, const materials::MaterialModel& mod
     constexpr CodeFile kStages[] = {&materials::FeatureCode::coordinates, &materials::FeatureCode::opacity};
     mustache::data context;
     context.set("includes", includesOf(code, kStages));
-    context.set("coordinates", stageOf(model, code, &materials::FeatureCode::coordinates, Asked::OfAnyKey));
-    context.set("opacity", stageOf(model, code, &materials::FeatureCode::opacity, Asked::OfAnyKey));
+    context.set("coordinates",
+                stageOf(model, used, code, &materials::FeatureCode::coordinates, Asked::OfAnyKey));
+    context.set("opacity", stageOf(model, used, code, &materials::FeatureCode::opacity, Asked::OfAnyKey));
     GLINT_TRY(auto text, renderTemplate(sources, fmt::format("{}.mustache", kMaskTemplate), context));
     generated.add(fmt::format("generated/{}", kMaskTemplate), std::move(text));
     return okStatus();
@@ -262,15 +263,15 @@ Status addMaterialCode(const SourceSet& sources, const materials::MaterialModel&
     constexpr CodeFile kStages[] = {&materials::FeatureCode::coordinates, &materials::FeatureCode::surface,
                                     &materials::FeatureCode::bsdf, &materials::FeatureCode::emission};
     mustache::data context;
-    addLayers(context, model, code);
+    addLayers(context, model, used, code);
     context.set("includes", includesOf(code, kStages));
-    context.set("coordinates", stageOf(model, code, &materials::FeatureCode::coordinates));
+    context.set("coordinates", stageOf(model, used, code, &materials::FeatureCode::coordinates));
     const bool changesCoordinates = std::ranges::any_of(
         code, [](const materials::FeatureCode* one) { return !one->coordinates.empty(); });
     context.set("changesCoordinates", mustache::data(changesCoordinates));
-    context.set("surface", stageOf(model, code, &materials::FeatureCode::surface));
-    context.set("bsdf", stageOf(model, code, &materials::FeatureCode::bsdf));
-    context.set("emission", stageOf(model, code, &materials::FeatureCode::emission));
+    context.set("surface", stageOf(model, used, code, &materials::FeatureCode::surface));
+    context.set("bsdf", stageOf(model, used, code, &materials::FeatureCode::bsdf));
+    context.set("emission", stageOf(model, used, code, &materials::FeatureCode::emission));
     for (const std::string_view name : kTemplates) {
         GLINT_TRY(auto text, renderTemplate(sources, fmt::format("{}.mustache", name), context));
         generated.add(fmt::format("generated/{}", name), std::move(text));
