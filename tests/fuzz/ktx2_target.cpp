@@ -2,7 +2,6 @@
 // behind them if the build has it.
 #include "fuzz/fuzz_target.h"
 #include "gltf/codecs/basisu.h"
-#include "gltf/codecs/block_file.h"
 #include "gltf/codecs/codecs.h"
 #include "gltf/texels/fit.h"
 

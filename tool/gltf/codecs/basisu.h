@@ -2,7 +2,7 @@
 // every build has the sources that this needs; every function then fails.
 #pragma once
 
-#include "gltf/codecs/block_file.h"
+#include "gltf/codecs/codecs.h"
 
 #include <array>
 #include <cstdint>

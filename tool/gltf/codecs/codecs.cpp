@@ -1,12 +1,9 @@
 #include "gltf/codecs/codecs.h"
 
 #include "gltf/codecs/basisu.h"
-#include "gltf/texels/block_decode.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <span>
 #include <string_view>
 #include <utility>
 #include <webp/decode.h>
@@ -100,32 +97,6 @@ const char* foreignFormat(ByteView bytes) {
 }
 
 // ---- KTX2 and DDS ----
-
-Result<BlockFile> readBlockFile(ByteView bytes) {
-    return findCodec(bytes) == &kDds ? readDds(bytes) : readKtx2(bytes);
-}
-
-Result<base::Bytes> blocksOf(const BlockFile& file, ByteView bytes) {
-    const auto width = static_cast<std::uint32_t>(file.width);
-    const auto height = static_cast<std::uint32_t>(file.height);
-    base::Bytes blocks(static_cast<std::size_t>(
-        bytesOfLevels(*file.format, width, height, static_cast<std::uint32_t>(file.levels))));
-    std::span<std::uint8_t> rest(blocks);
-    for (std::uint32_t level = 0; level < file.places.size(); ++level) {
-        const BlockFile::Level& place = file.places[level];
-        const ByteView from =
-            bytes.subspan(static_cast<std::size_t>(place.offset), static_cast<std::size_t>(place.bytes));
-        const std::span<std::uint8_t> to =
-            rest.first(static_cast<std::size_t>(bytesOfLevel(*file.format, width, height, level)));
-        if (!file.isZstandard) {
-            std::ranges::copy(from, to.begin());
-        } else if (!unpackZstandard(from, to)) {
-            return imageFault(fmt::format("the data of level {} are damaged", level));
-        }
-        rest = rest.subspan(to.size());
-    }
-    return blocks;
-}
 
 namespace {
 

@@ -1,12 +1,24 @@
 // The image formats that Glint decodes, which it recognises by their first bytes.
 #pragma once
 
-#include "gltf/codecs/block_file.h"
+#include "gltf/document/files.h"
 #include "gltf/scene.h"
 
+#include <glint/result.h>
+#include <glint/scene_view.h>
+
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace glint::gltf {
+
+// Returns the fault of a file. Its place and a hint are added where the image is known.
+inline Diagnostic imageFault(std::string message) {
+    return makeError("image-decode", "", std::move(message));
+}
 
 // Describes one format. The errors of both functions have the decoder's message (imageFault()).
 struct Codec {
@@ -26,6 +38,32 @@ extern const Codec kWebp;
 extern const Codec kBasisu;
 extern const Codec kDds;
 
+// Returns the codec that matches the first bytes, or null if there is none.
+const Codec* findCodec(ByteView bytes);
+
+// Returns the name of the format if Glint recognises it but does not read it, and an empty text otherwise.
+const char* foreignFormat(ByteView bytes);
+
+// ---- Images in block formats, as KTX2 and DDS files hold them ----
+
+// The checked header of a file: every level lies in the file and is as long as its blocks are.
+struct BlockFile {
+    int width = 0;  // all sizes are in pixels
+    int height = 0;
+    int levels = 0;  // from 1 up to the levels of a full pyramid
+    Transfer transfer = Transfer::Unknown;
+    std::optional<TexelFormat> format;  // none: data of Basis Universal, in KTX2 alone
+    bool hasAlpha = true;               // false: alpha is 1 whatever the blocks say
+    bool isZstandard = false;           // each level is compressed by Zstandard
+    struct Level {
+        std::uint64_t offset = 0;  // bytes
+        std::uint64_t bytes = 0;
+    };
+    std::vector<Level> places;  // of each level, from the largest
+    // Where the file breaks rules, and what Glint does then; each is one clause.
+    std::vector<std::string> deviations;
+};
+
 // Reads a file of the two by its first bytes. Allocates nothing that depends on the file's sizes.
 Result<BlockFile> readBlockFile(ByteView bytes);
 
@@ -33,10 +71,10 @@ Result<BlockFile> readBlockFile(ByteView bytes);
 // have a format.
 Result<base::Bytes> blocksOf(const BlockFile& file, ByteView bytes);
 
-// Returns the codec that matches the first bytes, or null if there is none.
-const Codec* findCodec(ByteView bytes);
-
-// Returns the name of the format if Glint recognises it but does not read it, and an empty text otherwise.
-const char* foreignFormat(ByteView bytes);
+// Returns width * height pixels of a level, row by row from the top; `blocks` has bytesOfLevel() bytes. A
+// colour that the format lacks is 0, and alpha 1, as a shader reads them. `srgb`: colours are in sRGB, and
+// stay so. The error says that this build lacks what BC7 and ASTC need (hasBasisu()).
+Result<base::Bytes> decodeBlocks(TexelFormat format, bool srgb, std::uint32_t width, std::uint32_t height,
+                                 ByteView blocks);
 
 }  // namespace glint::gltf

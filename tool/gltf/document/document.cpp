@@ -1,8 +1,6 @@
 #include "gltf/document/document.h"
 
 #include "base/json.h"
-#include "gltf/document/material_list.h"
-#include "gltf/document/materialx.h"
 #include "gltf/document/validate.h"
 
 #include <fmt/format.h>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "gltf/document/files.h"
-#include "gltf/document/material_expansion.h"
+#include "gltf/document/material_list.h"
 #include "gltf/document/model.h"
 #include "gltf/import_options.h"
 

@@ -18,7 +18,6 @@
 
 #include "gltf/scene.h"
 #include "gltf/texels/levels.h"
-#include "gltf/texels/texture_use.h"
 #include "materials/interval.h"
 
 #include <array>

@@ -1,5 +1,3 @@
-#include "gltf/texels/block_decode.h"
-
 #include "gltf/codecs/basisu.h"
 
 #include <algorithm>
