@@ -281,8 +281,8 @@ bool hasJointNumbers(const Document& document, int accessor) {
 
 class AttributeReader {
 public:
-    AttributeReader(const PrimitiveSource& source, Primitive& primitive)
-        : document_(source.document), file_(source.file), primitive_(primitive) {}
+    AttributeReader(Document& document, const tinygltf::Primitive& file, Primitive& primitive)
+        : document_(document), file_(file), primitive_(primitive) {}
 
     Result<std::vector<std::uint32_t>> read(bool& isList) {
         if (const Value* const extension = extensionOf(file_.extensions, kDracoExtension)) {
@@ -546,9 +546,9 @@ private:
 
 }  // namespace
 
-Result<std::vector<std::uint32_t>> readVertices(const PrimitiveSource& source, Primitive& primitive,
-                                                bool& isList) {
-    return AttributeReader(source, primitive).read(isList);
+Result<std::vector<std::uint32_t>> readVertices(Document& document, const tinygltf::Primitive& file,
+                                                Primitive& primitive, bool& isList) {
+    return AttributeReader(document, file, primitive).read(isList);
 }
 
 }  // namespace glint::gltf

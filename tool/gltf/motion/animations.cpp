@@ -55,8 +55,8 @@ struct PointerTarget {
     Verdict verdict = Verdict::Unknown;
     std::string why{};
     AnimationPath path = AnimationPath::Translation;
-    int property = 0;          // as AnimationChannel::property
-    std::vector<int> targets;  // as AnimationChannel::target; empty if the scene shows none
+    int property = 0;            // as AnimationChannel::property
+    std::vector<int> targets{};  // as AnimationChannel::target; empty if the scene shows none
     std::size_t width = 0;
     ValueKind kind = ValueKind::Vector;
 };
@@ -64,27 +64,27 @@ struct PointerTarget {
 using Verdict = PointerTarget::Verdict;
 using Tokens = std::span<const std::string>;
 
+// Returns how many numbers a part of a transform has.
+std::size_t numbersOf(AnimationPath path) {
+    return path == AnimationPath::Rotation ? 4 : 3;
+}
+
 PointerTarget unknown() {
     return {};
 }
 
 PointerTarget wrong(std::string why) {
-    PointerTarget target;
-    target.verdict = Verdict::Wrong;
-    target.why = std::move(why);
-    return target;
+    return {.verdict = Verdict::Wrong, .why = std::move(why)};
 }
 
 PointerTarget known(AnimationPath path, std::size_t width, std::vector<int> targets, int property = 0,
                     ValueKind kind = ValueKind::Vector) {
-    PointerTarget target;
-    target.verdict = Verdict::Known;
-    target.path = path;
-    target.property = property;
-    target.targets = std::move(targets);
-    target.width = width;
-    target.kind = kind;
-    return target;
+    return {.verdict = Verdict::Known,
+            .path = path,
+            .property = property,
+            .targets = std::move(targets),
+            .width = width,
+            .kind = kind};
 }
 
 // Splits "/a/b~1c" into "a" and "b/c" (RFC 6901). Returns nothing if the text does not start with a slash or
@@ -248,16 +248,14 @@ private:
         if (name == "matrix" || name == "globalMatrix") {
             return wrong("is a matrix, which can only be read");
         }
-        const bool isTransform = name == "translation" || name == "rotation" || name == "scale";
-        if (!isTransform) {
+        const std::optional<AnimationPath> path = valueNamed<AnimationPath>(name);
+        if (!path || !drivesTransform(*path)) {
             return unknown();
         }
         if (!file_.nodes[index].matrix.empty()) {
             return wrong("animates a node whose transform is a matrix, which glTF forbids");
         }
-        return name == "rotation"
-                   ? known(AnimationPath::Rotation, 4, targets)
-                   : known(name == "scale" ? AnimationPath::Scale : AnimationPath::Translation, 3, targets);
+        return known(*path, numbersOf(*path), targets);
     }
 
     // These are the default weights. They apply to the nodes that have no weights of their own.
@@ -412,7 +410,7 @@ private:
             leaveOut(pointer, "animates a node whose transform is a matrix, which glTF forbids");
             return 0;
         }
-        return path == AnimationPath::Rotation ? 4 : 3;
+        return numbersOf(path);
     }
 
     void readChannel(const tinygltf::AnimationChannel& channel, const std::string& pointer) {
@@ -465,9 +463,7 @@ private:
                      AnimationPath path) {
         const int output = file_.samplers[static_cast<std::size_t>(channel.sampler)].output;
         const tinygltf::Accessor& values = document_.accessor(output);
-        const std::size_t components = path == AnimationPath::Weights    ? 1
-                                       : path == AnimationPath::Rotation ? 4
-                                                                         : 3;
+        const std::size_t components = path == AnimationPath::Weights ? 1 : numbersOf(path);
         const bool mayBeFractions = path == AnimationPath::Weights || path == AnimationPath::Rotation;
         if (componentsOf(values) != components || isMatrix(values) ||
             (values.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT &&

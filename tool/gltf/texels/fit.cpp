@@ -97,10 +97,6 @@ std::vector<std::uint8_t> narrowed(const std::vector<std::uint8_t>& wide) {
     return narrow;
 }
 
-bool isPowerOfTwo(int size) {
-    return std::has_single_bit(static_cast<std::uint32_t>(size));
-}
-
 class Fitter {
 public:
     Fitter(const Scene& scene, const Image& image, const ImageUse& use, const FitOptions& options)

@@ -5,6 +5,7 @@
 #include "materials/interval.h"
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -43,6 +44,10 @@ struct Texels {
 
 constexpr int sizeOfLevel(int size, int level) {
     return size >> level > 1 ? size >> level : 1;
+}
+
+constexpr bool isPowerOfTwo(int size) {
+    return std::has_single_bit(static_cast<std::uint32_t>(size));
 }
 
 // Returns how many texels come before one, row by row.
