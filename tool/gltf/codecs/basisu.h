@@ -1,5 +1,5 @@
 // Basis Universal: transcodes KTX2 images (KHR_texture_basisu), and encodes and decodes blocks. Not
-// every build has the sources that this needs; every function then fails.
+// every build has the sources that this needs: functions that can fail then do, and others do nothing.
 #pragma once
 
 #include "gltf/codecs/codecs.h"
@@ -28,14 +28,13 @@ Result<base::Bytes> transcodeBasis(const BlockFile& file, ByteView bytes, TexelF
 using BlockTexels = std::array<std::array<std::uint8_t, 4>, 16>;
 
 // Unpacks a block of BC7.
-bool unpackBc7(const std::uint8_t* block, BlockTexels& texels);
+void unpackBc7(const std::uint8_t* block, BlockTexels& texels);
 // Unpacks a block of ASTC to width * height texels. Values are those that a device reads of the format with
 // colours in sRGB or without. Blocks that are not valid, or hold numbers above 1, are magenta.
-bool unpackAstc(const std::uint8_t* block, std::uint32_t width, std::uint32_t height, bool srgb,
+void unpackAstc(const std::uint8_t* block, std::uint32_t width, std::uint32_t height, bool srgb,
                 std::uint8_t* texels);
-// Packs a block: Bc1 (alpha is lost), Bc3, Bc4, Bc5 (of the given channels) or Bc7. Returns false for other
-// formats.
-bool packBlock(TexelFormat format, const BlockTexels& texels, const std::array<int, 2>& channels,
+// Packs a block: Bc1 (alpha is lost), Bc3, Bc4, Bc5 (of the given channels) or Bc7.
+void packBlock(TexelFormat format, const BlockTexels& texels, const std::array<int, 2>& channels,
                std::uint8_t* block);
 
 // Unpacks data that must be as long as `to`.

@@ -393,21 +393,21 @@ Status checkMetadata(const FileReader& file, BlockFile& image) {
     if (length == 0) {
         return okStatus();
     }
-    constexpr const char* kDamaged = "its metadata are damaged";
+    constexpr const char* kDamagedMetadata = "its metadata are damaged";
     if (place < kHeaderBytes || !file.has(place, length)) {
-        return imageFault(kDamaged);
+        return imageFault(kDamagedMetadata);
     }
     const std::uint64_t end = place + length;
     while (end - place > 4) {
         const std::uint64_t bytes = file.word(place);
         place += 4;
         if (bytes < 2 || bytes > end - place) {
-            return imageFault(kDamaged);
+            return imageFault(kDamagedMetadata);
         }
         const std::string_view pair = file.text(place, bytes);
         const std::size_t split = pair.find('\0');
         if (split == std::string_view::npos) {
-            return imageFault(kDamaged);
+            return imageFault(kDamagedMetadata);
         }
         const std::string_view key = pair.substr(0, split);
         std::string_view value = pair.substr(split + 1);

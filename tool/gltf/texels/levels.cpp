@@ -205,6 +205,13 @@ void complete(Texels& texels, const LevelFilters& filters) {
     }
 }
 
+materials::ValueInterval widened(const materials::ValueInterval& value, double share) {
+    const bool isWhite = value.low == 1.0;
+    const bool isBlack = value.high == 0.0;
+    return {isWhite ? 1.0 : value.low * (1.0 - share),
+            isBlack ? 0.0 : std::min(value.high * (1.0 + share), 1.0)};
+}
+
 }  // namespace
 
 double decodeSrgb(double encoded) {
@@ -276,30 +283,18 @@ std::vector<ImageUse> imageUses(const Scene& scene) {
     return uses;
 }
 
-namespace {
-
-using materials::ValueInterval;
-
-ValueInterval widened(ValueInterval value, double share) {
-    const bool isWhite = value.low == 1.0;
-    const bool isBlack = value.high == 0.0;
-    return {isWhite ? 1.0 : value.low * (1.0 - share),
-            isBlack ? 0.0 : std::min(value.high * (1.0 + share), 1.0)};
-}
-
-}  // namespace
-
 double numberAsRead(double stored, bool isColor) {
     return isColor ? decodeSrgb(stored) : stored;
 }
 
-std::array<ValueInterval, 4> contentAsRead(const std::array<ValueInterval, 4>& stored, bool isColor) {
+std::array<materials::ValueInterval, 4> contentAsRead(const std::array<materials::ValueInterval, 4>& stored,
+                                                      bool isColor) {
     // Filters in single precision, and llvmpipe's sRGB, which is off by up to 0.7 %.
     constexpr double kFilter = 1e-5;
     constexpr double kSrgb = 0.01;
-    std::array<ValueInterval, 4> read{};
+    std::array<materials::ValueInterval, 4> read{};
     for (std::size_t channel = 0; channel < 4; ++channel) {
-        const ValueInterval& value = stored[channel];
+        const materials::ValueInterval& value = stored[channel];
         read[channel] = isColor && channel < 3
                             ? widened({decodeSrgb(value.low), decodeSrgb(value.high)}, kSrgb)
                             : widened(value, kFilter);
