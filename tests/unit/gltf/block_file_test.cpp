@@ -1,6 +1,5 @@
 // Tests images in block formats: DDS (MSFT_texture_dds) and KTX2.
 
-#include "gltf/codecs/basisu.h"
 #include "gltf/codecs/codecs.h"
 #include "unit/gltf/block_files.h"
 #include "unit/gltf/gltf_builder.h"

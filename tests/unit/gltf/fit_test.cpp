@@ -1,7 +1,6 @@
 // Tests how images become what a device reads: levels, formats by their use, and packed blocks.
 #include "gltf/texels/fit.h"
 
-#include "gltf/codecs/basisu.h"
 #include "gltf/codecs/codecs.h"
 #include "gltf/texels/levels.h"
 #include "unit/gltf/block_files.h"

@@ -1,6 +1,5 @@
 // Tests KTX2 images (KHR_texture_basisu): which are decoded, which are refused and why, and which source of a
 // texture is used. ktx2/make.py made the files.
-#include "gltf/codecs/basisu.h"
 #include "gltf/codecs/codecs.h"
 #include "unit/gltf/gltf_builder.h"
 

@@ -1,5 +1,5 @@
 // Basis Universal: its transcoder, and the packers and unpackers of blocks that it has for itself.
-#include "gltf/codecs/basisu.h"
+#include "gltf/codecs/codecs.h"
 
 #include <fmt/format.h>
 

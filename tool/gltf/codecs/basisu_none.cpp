@@ -1,5 +1,5 @@
 // Replaces basisu.cpp in a build without the sources of Basis Universal.
-#include "gltf/codecs/basisu.h"
+#include "gltf/codecs/codecs.h"
 
 namespace glint::gltf {
 

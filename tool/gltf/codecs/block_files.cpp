@@ -1,5 +1,5 @@
 // Checks the statements of DDS and KTX2 files about themselves before a decoder sees any of them.
-#include "gltf/codecs/basisu.h"
+#include "gltf/codecs/codecs.h"
 
 #include <fmt/format.h>
 

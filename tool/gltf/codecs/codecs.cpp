@@ -1,7 +1,5 @@
 #include "gltf/codecs/codecs.h"
 
-#include "gltf/codecs/basisu.h"
-
 #include <fmt/format.h>
 
 #include <string_view>

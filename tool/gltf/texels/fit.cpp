@@ -1,6 +1,6 @@
 #include "gltf/texels/fit.h"
 
-#include "gltf/codecs/basisu.h"
+#include "gltf/codecs/codecs.h"
 #include "gltf/texels/levels.h"
 #include "gltf/textures.h"
 
