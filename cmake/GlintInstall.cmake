@@ -25,7 +25,7 @@ if(GLINT_BUILD_COMPILER)
                  emit/material_layout.h
                  emit/package/compiled_package.h gltf/animation.h gltf/import.h gltf/import_options.h gltf/material_set.h
                  gltf/planning_inputs.h gltf/scene.h gltf/scene_list.h gltf/texels/fit.h gltf/texels/levels.h
-                 gltf/texels/texture_use.h image/compare.h image/png.h image/text.h materials/expression.h
+                 image/compare.h image/png.h image/text.h materials/expression.h
                  materials/interval.h materials/material.h materials/material_model.h plan/cost.h plan/effects.h
                  plan/frame_rounds.h plan/gpu_costs.h plan/key.h plan/lock.h plan/merge.h plan/plan.h
                  plan/strategy_cost.h resolve/build.h resolve/resolve.h settings/descriptor.h settings/settings.h

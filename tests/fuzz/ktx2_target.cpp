@@ -1,8 +1,6 @@
 // Fuzzes KTX2 and DDS images of glTF scenes, what unpacks their blocks, and the transcoder of Basis Universal
 // behind them if the build has it.
 #include "fuzz/fuzz_target.h"
-#include "gltf/codecs/basisu.h"
-#include "gltf/codecs/block_file.h"
 #include "gltf/codecs/codecs.h"
 #include "gltf/texels/fit.h"
 

@@ -117,7 +117,8 @@ TEST(TexelBoundsOfDevice, EncloseEveryLookup) {
             gltf::LookupKind kind{scene.samplers[material]};
             kind.anisotropic = ray.coneWidth > 0.0F;
             const gltf::TexCoordBox box{{ray.origin.x, ray.origin.y}, {ray.origin.x, ray.origin.y}};
-            const gltf::TexelRange range = bounds.over(box, kind);
+            gltf::TexelRange range;
+            bounds.joinOver(box, kind, range);
             tight += range.encloses(bounds.whole()) ? 0 : 1;
             for (std::size_t channel = 0; channel < 4; ++channel) {
                 const auto value = static_cast<double>(std::bit_cast<float>((*words)[4 * k + channel]));

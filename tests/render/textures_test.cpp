@@ -1,7 +1,6 @@
 // Tests textures on the device: block formats against the same blocks unpacked on the CPU, levels that arrive
 // while frames are drawn, and the report of the levels that a frame reads.
-#include "gltf/codecs/basisu.h"
-#include "gltf/texels/block_decode.h"
+#include "gltf/codecs/codecs.h"
 #include "gltf/texels/fit.h"
 #include "gltf/texels/levels.h"
 #include "render/edited_scene.h"

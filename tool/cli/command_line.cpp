@@ -2,7 +2,7 @@
 
 #include "cli/options/options.h"
 #include "cli/options/setting_options.h"
-#include "gltf/codecs/basisu.h"
+#include "gltf/codecs/codecs.h"
 #include "spirv/compiler.h"
 
 #include <glint/internal/package_format.h>

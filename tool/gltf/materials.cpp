@@ -19,26 +19,15 @@ namespace glint::gltf {
 
 namespace {
 
-// One object of a checked document, and its JSON pointer.
-class ObjectReader {
-public:
-    ObjectReader(Document& document, const Json& object, std::string pointer)
-        : document_(document), object_(object), pointer_(std::move(pointer)) {}
+// One object of a checked document.
+struct ObjectSource {
+    Document& document;
+    const Json& json;
+    std::string pointer;
 
-    const Json& json() const {
-        return object_;
+    std::string pointerTo(std::string_view member) const {
+        return fmt::format("{}/{}", pointer, member);
     }
-    // Returns the JSON pointer of a member.
-    std::string pointerTo(std::string_view member) const;
-    // Reads the texture info of that name into `info`. If there is none, or none that can be used, `info`
-    // stays as it is.
-    Status texture(std::string_view member, TextureTable& textures, materials::TextureInfo& info) const;
-    void warn(std::string_view member, std::string message, std::string hint) const;
-
-private:
-    Document& document_;
-    const Json& object_;
-    std::string pointer_;
 };
 
 std::array<float, 2> pairAt(const Json& object, std::string_view name, std::array<float, 2> fallback) {
@@ -48,17 +37,11 @@ std::array<float, 2> pairAt(const Json& object, std::string_view name, std::arra
                                           static_cast<float>((*member)[1].get<double>())};
 }
 
-std::string ObjectReader::pointerTo(std::string_view member) const {
-    return fmt::format("{}/{}", pointer_, member);
-}
-
-void ObjectReader::warn(std::string_view member, std::string message, std::string hint) const {
-    document_.warn("material-range", pointerTo(member), std::move(message), std::move(hint));
-}
-
-Status ObjectReader::texture(std::string_view member, TextureTable& textures,
-                             materials::TextureInfo& info) const {
-    const Json* json = find(object_, member);
+// Reads the texture info of that name into `info`. If there is none, or none that can be used, `info` stays
+// as it is.
+Status readTexture(const ObjectSource& object, std::string_view member, TextureTable& textures,
+                   materials::TextureInfo& info) {
+    const Json* json = find(object.json, member);
     if (json == nullptr) {
         return okStatus();
     }
@@ -77,10 +60,11 @@ Status ObjectReader::texture(std::string_view member, TextureTable& textures,
     }
     read.texCoord = texCoord == nullptr ? 0 : texCoord->get<int>();
     if (read.texCoord > 1) {
-        document_.warn("texture-uv-set", pointerTo(member),
-                       fmt::format("uses UV set {}; Glint reads sets 0 and 1, and leaves the texture out",
-                                   read.texCoord),
-                       "move the coordinates to TEXCOORD_0 or TEXCOORD_1");
+        object.document.warn(
+            "texture-uv-set", object.pointerTo(member),
+            fmt::format("uses UV set {}; Glint reads sets 0 and 1, and leaves the texture out",
+                        read.texCoord),
+            "move the coordinates to TEXCOORD_0 or TEXCOORD_1");
         info.texCoord = read.texCoord;  // planning says why there is no texture
         return okStatus();
     }
@@ -115,8 +99,8 @@ Status readTextures(Document& document, TextureTable& textures, const Json& json
             if (object == nullptr || !material.reads(place.object)) {
                 continue;
             }
-            const ObjectReader reader(document, *object, pointerOf(pointer, owner));
-            GLINT_TRY_DO(reader.texture(place.member, textures, material.textures[slot]));
+            GLINT_TRY_DO(readTexture({document, *object, pointerOf(pointer, owner)}, place.member, textures,
+                                     material.textures[slot]));
         }
     }
     return okStatus();
@@ -177,9 +161,9 @@ std::string rangeHint(const materials::Parameter& parameter) {
                : fmt::format("use {}{} to {}", also, parameter.low, parameter.high);
 }
 
-void readParameter(const ObjectReader& reader, const materials::Parameter& parameter,
+void readParameter(const ObjectSource& object, const materials::Parameter& parameter,
                    materials::Material& material) {
-    const Json* const json = findBelow(reader.json(), parameter.place);
+    const Json* const json = findBelow(object.json, parameter.place);
     for (int i = 0; i < parameter.channels; ++i) {
         float& target = material.values[static_cast<std::size_t>(parameter.first + i)];
         if (json == nullptr) {
@@ -192,8 +176,8 @@ void readParameter(const ObjectReader& reader, const materials::Parameter& param
         if (!parameter.isValid(value)) {
             const std::string place =
                 json->is_array() ? fmt::format("{}/{}", parameter.place, i) : parameter.place;
-            reader.warn(
-                place,
+            object.document.warn(
+                "material-range", object.pointerTo(place),
                 fmt::format("is {}; {} is used", value, std::clamp(value, parameter.low, parameter.high)),
                 rangeHint(parameter));
         }

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 namespace glint::gltf {
@@ -166,12 +167,16 @@ void repairTangents(Document& document, Primitive& primitive) {
     }
 }
 
-template <std::size_t N>
-void replaceNonFinite(Document& document, const Primitive& primitive,
-                      std::vector<std::array<float, N>>& values, float substitute, const char* attribute) {
+// The values are numbers or arrays of them.
+template <typename Value>
+void replaceNonFinite(Document& document, const Primitive& primitive, std::vector<Value>& values,
+                      float substitute, std::string_view attribute) {
     std::size_t count = 0;
-    for (std::array<float, N>& value : values) {
-        if (!base::isFinite(value)) {
+    for (Value& value : values) {
+        if constexpr (std::is_same_v<Value, float>) {
+            count += std::isfinite(value) ? 0 : 1;
+            value = std::isfinite(value) ? value : substitute;
+        } else if (!base::isFinite(value)) {
             value.fill(substitute);
             ++count;
         }
@@ -179,22 +184,6 @@ void replaceNonFinite(Document& document, const Primitive& primitive,
     if (count > 0) {
         document.warn("attribute-not-finite", fmt::format("{}/attributes/{}", primitive.pointer, attribute),
                       fmt::format("{} values are not finite; {} is used", count, substitute), kRepairHint);
-    }
-}
-
-// Values of packs' attributes, one by one.
-void repairDeclared(Document& document, Primitive& primitive) {
-    for (VertexValues& attribute : primitive.attributes) {
-        std::size_t count = 0;
-        for (float& value : attribute.values) {
-            count += std::isfinite(value) ? 0 : 1;
-            value = std::isfinite(value) ? value : 0.0F;
-        }
-        if (count > 0) {
-            document.warn("attribute-not-finite",
-                          fmt::format("{}/attributes/{}", primitive.pointer, attribute.name),
-                          fmt::format("{} values are not finite; 0 is used", count), kRepairHint);
-        }
     }
 }
 
@@ -209,7 +198,9 @@ void repairPrimitive(Document& document, Primitive& primitive) {
     replaceNonFinite(document, primitive, primitive.texCoords0, 0.0F, "TEXCOORD_0");
     replaceNonFinite(document, primitive, primitive.texCoords1, 0.0F, "TEXCOORD_1");
     replaceNonFinite(document, primitive, primitive.colors, 1.0F, "COLOR_0");
-    repairDeclared(document, primitive);
+    for (VertexValues& declared : primitive.attributes) {
+        replaceNonFinite(document, primitive, declared.values, 0.0F, declared.name);
+    }
     for (MorphTarget& target : primitive.targets) {
         replaceNonFinite(document, primitive, target.positions, 0.0F, "POSITION of a morph target");
         replaceNonFinite(document, primitive, target.normals, 0.0F, "NORMAL of a morph target");
@@ -233,44 +224,43 @@ materials::ColorContent contentOf(const std::vector<Float4>& colors) {
 }
 
 // Returns whether the mode of the primitive makes triangles. Otherwise it warns or fails.
-Result<bool> isDrawable(const PrimitiveSource& source, const std::string& pointer) {
-    const int mode = source.file.mode;
+Result<bool> isDrawable(Document& document, const tinygltf::Primitive& file, const std::string& pointer) {
+    const int mode = file.mode;
     if (mode < 0 || mode > TINYGLTF_MODE_TRIANGLE_FAN) {
-        return source.document.error("primitive-mode", pointer + "/mode", fmt::format("{} is no mode", mode),
-                                     "export the mesh again");
+        return document.error("primitive-mode", pointer + "/mode", fmt::format("{} is no mode", mode),
+                              "export the mesh again");
     }
     if (mode < TINYGLTF_MODE_TRIANGLES) {
-        source.document.warn("primitive-skipped", pointer,
-                             "points and lines have no surface that a ray can hit; they are skipped");
+        document.warn("primitive-skipped", pointer,
+                      "points and lines have no surface that a ray can hit; they are skipped");
         return false;
     }
-    if (!source.file.attributes.contains("POSITION")) {
-        return source.document.error("position-missing", pointer + "/attributes", "has no POSITION",
-                                     "export the mesh again, or delete the primitive");
+    if (!file.attributes.contains("POSITION")) {
+        return document.error("position-missing", pointer + "/attributes", "has no POSITION",
+                              "export the mesh again, or delete the primitive");
     }
     return true;
 }
 
 // Reads the primitive. Returns whether it has anything to draw.
-Result<bool> readPrimitive(const PrimitiveSource& source, Primitive& primitive) {
-    Result<bool> drawable = isDrawable(source, primitive.pointer);
+Result<bool> readPrimitive(Document& document, const tinygltf::Primitive& file, Primitive& primitive) {
+    Result<bool> drawable = isDrawable(document, file, primitive.pointer);
     if (!drawable || !*drawable) {
         return drawable;
     }
     bool isList = false;
-    GLINT_TRY(auto order, readVertices(source, primitive, isList));
-    const int mode = isList ? TINYGLTF_MODE_TRIANGLES : source.file.mode;
+    GLINT_TRY(auto order, readVertices(document, file, primitive, isList));
+    const int mode = isList ? TINYGLTF_MODE_TRIANGLES : file.mode;
     TriangleList list = makeTriangles(mode, std::move(order));
     if (list.leftOver > 0) {
-        source.document.warn(
-            "triangle-incomplete", primitive.pointer,
-            fmt::format("the last {} vertices make no triangle and are dropped", list.leftOver));
+        document.warn("triangle-incomplete", primitive.pointer,
+                      fmt::format("the last {} vertices make no triangle and are dropped", list.leftOver));
     }
     primitive.indices = std::move(list.indices);
-    GLINT_TRY_DO(readTargets(source.document, source.file, primitive));
-    repairPrimitive(source.document, primitive);
+    GLINT_TRY_DO(readTargets(document, file, primitive));
+    repairPrimitive(document, primitive);
     if (primitive.indices.empty()) {
-        source.document.warn("primitive-empty", primitive.pointer, "has no triangle and is skipped");
+        document.warn("primitive-empty", primitive.pointer, "has no triangle and is skipped");
         return false;
     }
     return true;
@@ -285,7 +275,7 @@ Result<Mesh> readMesh(Document& document, std::size_t index, int defaultMaterial
         Primitive primitive;
         primitive.pointer = fmt::format("/meshes/{}/primitives/{}", index, i);
         primitive.material = file.primitives[i].material < 0 ? defaultMaterial : file.primitives[i].material;
-        const Result<bool> drawn = readPrimitive({document, file.primitives[i]}, primitive);
+        const Result<bool> drawn = readPrimitive(document, file.primitives[i], primitive);
         // A file may leave it to others to provide data (glTF 2.0, section 3.6.1.1), so this is not the
         // file's fault.
         if (!drawn && drawn.error().id == kNoData) {

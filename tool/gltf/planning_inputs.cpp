@@ -110,6 +110,22 @@ double medianOf(const std::vector<std::vector<double>>& areas) {
     return *middle;
 }
 
+// Returns a bit for each of the model's attributes that the primitive has.
+std::uint64_t attributesOf(const Scene& scene, const Primitive& primitive) {
+    if (primitive.attributes.empty()) {
+        return 0;
+    }
+    const std::vector<materials::VertexAttribute>& known =
+        scene.materials[static_cast<std::size_t>(primitive.material)].model().attributes;
+    std::uint64_t bits = 0;
+    for (std::size_t i = 0; i < known.size(); ++i) {
+        const bool given = std::ranges::find(primitive.attributes, known[i].gltf, &VertexValues::name) !=
+                           primitive.attributes.end();
+        bits |= std::uint64_t{given} << i;
+    }
+    return bits;
+}
+
 }  // namespace
 
 void expectHits(const Scene& scene, std::vector<materials::PrimitiveInputs>& inputs) {
@@ -147,26 +163,6 @@ SceneInFile sceneInFile(const Scene& scene) {
     const int index = scene.sceneInFile;
     return {index, index < 0 ? "" : scene.scenesInFile[static_cast<std::size_t>(index)]};
 }
-
-namespace {
-
-// Returns a bit for each of the model's attributes that the primitive has.
-std::uint64_t attributesOf(const Scene& scene, const Primitive& primitive) {
-    if (primitive.attributes.empty()) {
-        return 0;
-    }
-    const std::vector<materials::VertexAttribute>& known =
-        scene.materials[static_cast<std::size_t>(primitive.material)].model().attributes;
-    std::uint64_t bits = 0;
-    for (std::size_t i = 0; i < known.size(); ++i) {
-        const bool given = std::ranges::find(primitive.attributes, known[i].gltf, &VertexValues::name) !=
-                           primitive.attributes.end();
-        bits |= std::uint64_t{given} << i;
-    }
-    return bits;
-}
-
-}  // namespace
 
 materials::PrimitiveInputs inputsOf(const Scene& scene, std::size_t mesh, std::size_t index) {
     const Primitive& primitive = scene.meshes[mesh].primitives[index];

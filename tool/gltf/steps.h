@@ -79,18 +79,12 @@ Status importMeshes(Document& document, const std::vector<bool>& placed, Scene& 
 // warning "morph-attribute" says that the weights do not stay as they are.
 void settleColors(Document& document, Scene& scene);
 
-// One primitive while it is imported.
-struct PrimitiveSource {
-    Document& document;
-    const tinygltf::Primitive& file;
-};
-
 // Fills the attribute arrays of `primitive`, whose pointer is set. The values are those of the file, before
 // repairs. Returns the order in which the primitive's mode uses the vertices; each index is below the number
 // of positions. Sets `isList` if that order is a triangle list whatever the mode is. Requires POSITION
 // (attributes.cpp).
-Result<std::vector<std::uint32_t>> readVertices(const PrimitiveSource& source, Primitive& primitive,
-                                                bool& isList);
+Result<std::vector<std::uint32_t>> readVertices(Document& document, const tinygltf::Primitive& file,
+                                                Primitive& primitive, bool& isList);
 
 // ---- Morph targets and skins (motion/deformation.cpp) ----
 
@@ -124,7 +118,7 @@ Status importMorphWeights(Document& document, Scene& scene);
 // "skin-joint-range", "skin-matrices", "skin-joints".
 Status importSkins(Document& document, Scene& scene);
 
-// ---- Instances (motion/instancing.cpp) ----
+// ---- Instances (motion/deformation.cpp) ----
 
 // Fills scene.instancings and Node::instancing (EXT_mesh_gpu_instancing). Call it after importing meshes and
 // skins. A note ("node-instances") names attributes that Glint does not use. Errors: "attribute-type",

@@ -1,7 +1,7 @@
 #include "base/files.h"
 #include "base/parallel.h"
+#include "gltf/texels/levels.h"
 #include "gltf/texels/texel_bounds.h"
-#include "gltf/texels/texture_use.h"
 #include "gltf/textures.h"
 #include "gltf/trusted_textures.h"
 

@@ -1,6 +1,6 @@
 #include "gltf/textures.h"
 
-#include "gltf/codecs/basisu.h"
+#include "gltf/codecs/codecs.h"
 #include "gltf/document/validate.h"
 
 #include <fmt/format.h>

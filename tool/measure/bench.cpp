@@ -1,4 +1,4 @@
-#include "gltf/codecs/basisu.h"
+#include "gltf/codecs/codecs.h"
 #include "measure/measurer.h"
 
 #include <glint/measure/bench.h>

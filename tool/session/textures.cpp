@@ -2,7 +2,6 @@
 #include "base/files.h"
 #include "base/parallel.h"
 #include "cache/store.h"
-#include "gltf/codecs/basisu.h"
 #include "gltf/codecs/codecs.h"
 
 #include <glint/session/textures.h>

@@ -1,9 +1,6 @@
 // Tests images in block formats: DDS (MSFT_texture_dds) and KTX2.
-#include "gltf/codecs/block_file.h"
 
-#include "gltf/codecs/basisu.h"
 #include "gltf/codecs/codecs.h"
-#include "gltf/texels/block_decode.h"
 #include "unit/gltf/block_files.h"
 #include "unit/gltf/gltf_builder.h"
 

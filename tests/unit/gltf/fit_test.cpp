@@ -1,8 +1,7 @@
 // Tests how images become what a device reads: levels, formats by their use, and packed blocks.
 #include "gltf/texels/fit.h"
 
-#include "gltf/codecs/basisu.h"
-#include "gltf/texels/block_decode.h"
+#include "gltf/codecs/codecs.h"
 #include "gltf/texels/levels.h"
 #include "unit/gltf/block_files.h"
 #include "unit/gltf/gltf_builder.h"

@@ -1,7 +1,7 @@
 // Tests image formats: PNG of every kind, WebP, and which source of a texture is used. ktx2_test.cpp tests
 // KTX2.
+#include "gltf/texels/levels.h"
 #include "gltf/texels/texel_bounds.h"
-#include "gltf/texels/texture_use.h"
 #include "unit/gltf/packed_scenes.h"
 #include "unit/gltf/png_writer.h"
 

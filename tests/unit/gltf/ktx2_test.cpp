@@ -1,7 +1,5 @@
 // Tests KTX2 images (KHR_texture_basisu): which are decoded, which are refused and why, and which source of a
 // texture is used. ktx2/make.py made the files.
-#include "gltf/codecs/basisu.h"
-#include "gltf/codecs/block_file.h"
 #include "gltf/codecs/codecs.h"
 #include "unit/gltf/gltf_builder.h"
 
@@ -203,7 +201,7 @@ using Change = std::function<void(base::Bytes&)>;
 std::string problemOf(const std::string& name, const Change& change) {
     base::Bytes bytes = readKtx2File(name);
     change(bytes);
-    const auto file = gltf::readKtx2(bytes);
+    const auto file = gltf::readBlockFile(bytes);
     return file ? "" : file.error().message;
 }
 
@@ -285,7 +283,7 @@ TEST(GltfKtx2Header, DeviationsAreTold) {
     const auto deviationsOf = [](const Change& change, const std::string& name = "etc1s") {
         base::Bytes bytes = readKtx2File(name);
         change(bytes);
-        const auto file = gltf::readKtx2(bytes);
+        const auto file = gltf::readBlockFile(bytes);
         EXPECT_TRUE(file);
         return file && !file->deviations.empty() ? file->deviations[0] : std::string();
     };

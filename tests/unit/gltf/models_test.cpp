@@ -1,7 +1,7 @@
 // Tests scenes by others: each is imported, or causes a diagnostic that says why not.
 #include "support/models.h"
 
-#include "gltf/codecs/basisu.h"
+#include "gltf/codecs/codecs.h"
 #include "gltf/import.h"
 #include "plan/plan.h"
 #include "support/features.h"

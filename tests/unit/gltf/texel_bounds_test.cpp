@@ -111,6 +111,13 @@ private:
     std::vector<std::size_t> starts_;
 };
 
+// Returns the codes that lookups in the box can combine.
+TexelRange over(const TexelBounds& bounds, const TexCoordBox& box, const LookupKind& kind) {
+    TexelRange range;
+    bounds.joinOver(box, kind, range);
+    return range;
+}
+
 using Query = std::function<TexelRange(const TexCoordBox&, const LookupKind&)>;
 
 // Looks up at a grid of points in the box, its corners included, on all levels that the sampler can choose.
@@ -200,7 +207,7 @@ int escapesOf(const std::function<Query(const TexelBounds&)>& make, const gltf::
 }
 
 Query exactly(const TexelBounds& bounds) {
-    return [&](const TexCoordBox& box, const LookupKind& kind) { return bounds.over(box, kind); };
+    return [&](const TexCoordBox& box, const LookupKind& kind) { return over(bounds, box, kind); };
 }
 
 TEST(TexelBounds, EncloseWhatSamplersGive) {
@@ -220,7 +227,7 @@ TEST(TexelBounds, EncloseLevelsOfRoughness) {
         }
         const TexelBounds finest(texels, {.filters = kFilters, .complete = false});
         const TexelBounds all(texels, {.filters = kFilters, .mayBlit = false});
-        EXPECT_GT(all.levels(), finest.levels());
+        EXPECT_GT(completed(texels, kFilters).levels, texels.levels);
         EXPECT_EQ(all.whole(), finest.whole());
     }
 }
@@ -228,7 +235,7 @@ TEST(TexelBounds, EncloseLevelsOfRoughness) {
 TEST(TexelBounds, TheTestFindsBoundsThatAreTooNarrowByOneCode) {
     EXPECT_GT(escapesOf([](const TexelBounds& bounds) {
                   return [&](const TexCoordBox& box, const LookupKind& kind) {
-                      TexelRange range = bounds.over(box, kind);
+                      TexelRange range = over(bounds, box, kind);
                       ++range.least[2];
                       return range;
                   };
@@ -236,7 +243,7 @@ TEST(TexelBounds, TheTestFindsBoundsThatAreTooNarrowByOneCode) {
               0);
     EXPECT_GT(escapesOf([](const TexelBounds& bounds) {
                   return [&](const TexCoordBox& box, const LookupKind& kind) {
-                      TexelRange range = bounds.over(box, kind);
+                      TexelRange range = over(bounds, box, kind);
                       --range.greatest[0];
                       return range;
                   };
@@ -254,10 +261,10 @@ TEST(TexelBounds, TheTestFindsATexelThatIsMissedAtASeam) {
                           inside.high[0] -= std::floor(box.low[0]);
                           if (kind.sampler.wrapU == Wrap::Repeat) {
                               kind.sampler.wrapU = Wrap::ClampToEdge;
-                              return bounds.over(inside, kind);
+                              return over(bounds, inside, kind);
                           }
                       }
-                      return bounds.over(box, kind);
+                      return over(bounds, box, kind);
                   };
               }),
               0);
@@ -296,7 +303,7 @@ TEST(TexelBounds, AreTightOnEveryBoxOfASmallImage) {
                     }
                 }
             }
-            ASSERT_EQ(bounds.over(box, kind), expected)
+            ASSERT_EQ(over(bounds, box, kind), expected)
                 << left << ' ' << right << ' ' << top << ' ' << bottom;
         }
     }
@@ -308,21 +315,21 @@ TEST(TexelBounds, FindTheTexelThatDecides) {
     const TexelBounds bounds(texels, {});
     const LookupKind kind{.sampler = {.mipmapped = false}};
     const TexCoordBox box{{0.5, 0.5}, {0.9, 0.9}};
-    const TexelRange range = bounds.over(box, kind);
+    const TexelRange range = over(bounds, box, kind);
     EXPECT_EQ(range.least[1], 3);
     EXPECT_EQ(range.greatest[1], 100);
     const gltf::TexelPlace place = bounds.find(box, kind, range, 1, false);
     EXPECT_EQ(place.level, 0);
     EXPECT_EQ(place.x, 23);
     EXPECT_EQ(place.y, 17);
-    EXPECT_EQ(bounds.over({{0.1, 0.1}, {0.2, 0.2}}, kind).least[1], 100);
+    EXPECT_EQ(over(bounds, {{0.1, 0.1}, {0.2, 0.2}}, kind).least[1], 100);
 }
 
 TEST(TexelBounds, CoordinatesThatAreNoNumbersReachEverything) {
     std::mt19937 random(3);
     const TexelBounds bounds(randomTexels(16, 16, random), {});
     const LookupKind kind{.sampler = {.mipmapped = false}};
-    const TexelRange all = bounds.over({{0.0, 0.0}, {1.0, 1.0}}, kind);
+    const TexelRange all = over(bounds, {{0.0, 0.0}, {1.0, 1.0}}, kind);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float huge = 3e30F;
     const gltf::Float2 broken[] = {{nan, 0.5F}, {0.5F, 0.5F}, {0.6F, 0.5F}};
@@ -331,8 +338,8 @@ TEST(TexelBounds, CoordinatesThatAreNoNumbersReachEverything) {
     EXPECT_EQ(box.high[0], std::numeric_limits<double>::infinity());
     box.low[1] = 0.0;
     box.high[1] = 1.0;
-    EXPECT_EQ(bounds.over(box, kind), all);
-    EXPECT_EQ(bounds.over(gltf::boxOf(far, {}), kind), all);
+    EXPECT_EQ(over(bounds, box, kind), all);
+    EXPECT_EQ(over(bounds, gltf::boxOf(far, {}), kind), all);
 }
 
 // KHR_texture_transform in single precision, at random weights of the corners.
@@ -392,7 +399,7 @@ TEST(TexelBounds, EncloseLevelsOfBlits) {
         for (int texel = 0; texel < size * size; ++texel) {
             const double u = (texel % size + 0.5) / size;
             const double v = (texel / size + 0.5) / size;
-            const TexelRange range = bounds.over({{u, v}, {u, v}}, kind);
+            const TexelRange range = over(bounds, {{u, v}, {u, v}}, kind);
             for (std::size_t i = 0; i < 4; ++i) {
                 const double value = values[static_cast<std::size_t>(texel) * 4 + i];
                 EXPECT_LE(range.least[i], value) << level;
@@ -409,9 +416,9 @@ TEST(TexelBounds, AnisotropicFiltersReachFurther) {
     const double centre = 32.5 / 64.0;
     const TexCoordBox point{{centre, centre}, {centre, centre}};
     LookupKind kind;
-    EXPECT_EQ(bounds.over(point, kind).least[0], 0);
+    EXPECT_EQ(over(bounds, point, kind).least[0], 0);
     kind.anisotropic = false;
-    EXPECT_GT(bounds.over(point, kind).least[0], 0);
+    EXPECT_GT(over(bounds, point, kind).least[0], 0);
 }
 
 }  // namespace

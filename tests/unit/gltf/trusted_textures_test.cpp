@@ -1,7 +1,7 @@
 // Tests what an import with ImportOptions::trustTextures knows of textures and tangents, and what it changes.
 #include "gltf/trusted_textures.h"
 
-#include "gltf/texels/texture_use.h"
+#include "gltf/texels/levels.h"
 #include "unit/gltf/packed_scenes.h"
 #include "unit/gltf/png_writer.h"
 

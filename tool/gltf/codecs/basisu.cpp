@@ -1,5 +1,5 @@
 // Basis Universal: its transcoder, and the packers and unpackers of blocks that it has for itself.
-#include "gltf/codecs/basisu.h"
+#include "gltf/codecs/codecs.h"
 
 #include <fmt/format.h>
 
@@ -115,21 +115,20 @@ Result<base::Bytes> transcodeBasis(const BlockFile& file, ByteView bytes, TexelF
     return blocks;
 }
 
-bool unpackBc7(const std::uint8_t* block, BlockTexels& texels) {
+void unpackBc7(const std::uint8_t* block, BlockTexels& texels) {
     makeTables();
     std::array<basist::color_rgba, 16> unpacked;
     if (!basist::bc7u::unpack_bc7(block, unpacked.data())) {
         // A reserved mode: the format gives it zeros.
         texels = {};
-        return true;
+        return;
     }
     for (std::size_t i = 0; i < texels.size(); ++i) {
         texels[i] = {unpacked[i].r, unpacked[i].g, unpacked[i].b, unpacked[i].a};
     }
-    return true;
 }
 
-bool unpackAstc(const std::uint8_t* block, std::uint32_t width, std::uint32_t height, bool srgb,
+void unpackAstc(const std::uint8_t* block, std::uint32_t width, std::uint32_t height, bool srgb,
                 std::uint8_t* texels) {
     makeTables();
     astc_helpers::log_astc_block logical;
@@ -141,10 +140,9 @@ bool unpackAstc(const std::uint8_t* block, std::uint32_t width, std::uint32_t he
             std::copy(kError.begin(), kError.end(), texels + std::size_t{4} * i);
         }
     }
-    return true;
 }
 
-bool packBlock(TexelFormat format, const BlockTexels& texels, const std::array<int, 2>& channels,
+void packBlock(TexelFormat format, const BlockTexels& texels, const std::array<int, 2>& channels,
                std::uint8_t* block) {
     makeTables();
     const std::uint8_t* const bytes = texels.front().data();
@@ -152,18 +150,18 @@ bool packBlock(TexelFormat format, const BlockTexels& texels, const std::array<i
     switch (format) {
         case TexelFormat::Bc1:
             basist::encode_bc1(block, bytes, basist::cEncodeBC1HighQuality);
-            return true;
+            break;
         case TexelFormat::Bc3:
             basist::encode_bc4(block, bytes + 3, kStride);
             basist::encode_bc1(block + 8, bytes, basist::cEncodeBC1HighQuality);
-            return true;
+            break;
         case TexelFormat::Bc4:
             basist::encode_bc4(block, bytes + channels[0], kStride);
-            return true;
+            break;
         case TexelFormat::Bc5:
             basist::encode_bc4(block, bytes + channels[0], kStride);
             basist::encode_bc4(block + 8, bytes + channels[1], kStride);
-            return true;
+            break;
         case TexelFormat::Bc7: {
             std::array<basist::color_rgba, 16> colors;
             for (std::size_t i = 0; i < texels.size(); ++i) {
@@ -173,10 +171,10 @@ bool packBlock(TexelFormat format, const BlockTexels& texels, const std::array<i
             constexpr std::uint32_t kFlags = basist::bc7f::cPackBC7FlagDefaultPartiallyAnalytical &
                                              ~std::uint32_t{basist::bc7f::cPackBC7FlagPBitOptMode6};
             basist::bc7f::fast_pack_bc7_auto_rgba(block, colors.data(), kFlags);
-            return true;
+            break;
         }
         default:
-            return false;
+            break;
     }
 }
 

@@ -1,5 +1,5 @@
 // Replaces basisu.cpp in a build without the sources of Basis Universal.
-#include "gltf/codecs/basisu.h"
+#include "gltf/codecs/codecs.h"
 
 namespace glint::gltf {
 
@@ -19,19 +19,13 @@ Result<base::Bytes> transcodeBasis(const BlockFile& /*file*/, ByteView /*bytes*/
     return missing();
 }
 
-bool unpackBc7(const std::uint8_t* /*block*/, BlockTexels& /*texels*/) {
-    return false;
-}
+void unpackBc7(const std::uint8_t* /*block*/, BlockTexels& /*texels*/) {}
 
-bool unpackAstc(const std::uint8_t* /*block*/, std::uint32_t /*width*/, std::uint32_t /*height*/,
-                bool /*srgb*/, std::uint8_t* /*texels*/) {
-    return false;
-}
+void unpackAstc(const std::uint8_t* /*block*/, std::uint32_t /*width*/, std::uint32_t /*height*/,
+                bool /*srgb*/, std::uint8_t* /*texels*/) {}
 
-bool packBlock(TexelFormat /*format*/, const BlockTexels& /*texels*/, const std::array<int, 2>& /*channels*/,
-               std::uint8_t* /*block*/) {
-    return false;
-}
+void packBlock(TexelFormat /*format*/, const BlockTexels& /*texels*/, const std::array<int, 2>& /*channels*/,
+               std::uint8_t* /*block*/) {}
 
 bool unpackZstandard(ByteView /*from*/, std::span<std::uint8_t> /*to*/) {
     return false;

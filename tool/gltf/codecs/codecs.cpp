@@ -1,12 +1,7 @@
 #include "gltf/codecs/codecs.h"
 
-#include "gltf/codecs/basisu.h"
-#include "gltf/texels/block_decode.h"
-
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <span>
 #include <string_view>
 #include <utility>
 #include <webp/decode.h>
@@ -56,78 +51,7 @@ Status decodeWebp(ByteView bytes, Image& image) {
     return okStatus();
 }
 
-}  // namespace
-
-const Codec kWebp{"WebP", "image/webp", readWebpHeader, decodeWebp};
-
-// ---- All codecs ----
-
-namespace {
-
-std::string_view textOf(ByteView bytes) {
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
-bool isWebp(std::string_view text) {
-    return text.size() >= 12 && text.starts_with("RIFF") && text.substr(8).starts_with("WEBP");
-}
-
-}  // namespace
-
-const Codec* findCodec(ByteView bytes) {
-    const std::string_view text = textOf(bytes);
-    if (text.starts_with("\x89PNG")) {
-        return &kPng;
-    }
-    if (text.starts_with("\xFF\xD8")) {
-        return &kJpeg;
-    }
-    if (isWebp(text)) {
-        return &kWebp;
-    }
-    if (text.starts_with("DDS ")) {
-        return &kDds;
-    }
-    return text.starts_with("\xABKTX 20\xBB") ? &kBasisu : nullptr;
-}
-
-const char* foreignFormat(ByteView bytes) {
-    const std::string_view text = textOf(bytes);
-    if (text.starts_with("\xABKTX")) {
-        return "KTX 1";
-    }
-    return text.size() >= 12 && text.substr(4).starts_with("ftypavif") ? "AVIF" : "";
-}
-
 // ---- KTX2 and DDS ----
-
-Result<BlockFile> readBlockFile(ByteView bytes) {
-    return findCodec(bytes) == &kDds ? readDds(bytes) : readKtx2(bytes);
-}
-
-Result<base::Bytes> blocksOf(const BlockFile& file, ByteView bytes) {
-    const auto width = static_cast<std::uint32_t>(file.width);
-    const auto height = static_cast<std::uint32_t>(file.height);
-    base::Bytes blocks(static_cast<std::size_t>(
-        bytesOfLevels(*file.format, width, height, static_cast<std::uint32_t>(file.levels))));
-    std::span<std::uint8_t> rest(blocks);
-    for (std::uint32_t level = 0; level < file.places.size(); ++level) {
-        const BlockFile::Level& place = file.places[level];
-        const ByteView from =
-            bytes.subspan(static_cast<std::size_t>(place.offset), static_cast<std::size_t>(place.bytes));
-        const std::span<std::uint8_t> to =
-            rest.first(static_cast<std::size_t>(bytesOfLevel(*file.format, width, height, level)));
-        if (!file.isZstandard) {
-            std::ranges::copy(from, to.begin());
-        } else if (!unpackZstandard(from, to)) {
-            return imageFault(fmt::format("the data of level {} are damaged", level));
-        }
-        rest = rest.subspan(to.size());
-    }
-    return blocks;
-}
-
-namespace {
 
 Status readBlockHeader(ByteView bytes, Image& image) {
     GLINT_TRY(const auto file, readBlockFile(bytes));
@@ -165,9 +89,45 @@ Status decodeBlockFile(ByteView bytes, Image& image) {
     return okStatus();
 }
 
+// ---- All codecs ----
+
+std::string_view textOf(ByteView bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+bool isWebp(std::string_view text) {
+    return text.size() >= 12 && text.starts_with("RIFF") && text.substr(8).starts_with("WEBP");
+}
+
 }  // namespace
 
+const Codec kWebp{"WebP", "image/webp", readWebpHeader, decodeWebp};
 const Codec kBasisu{"KTX2", "image/ktx2", readBlockHeader, decodeBlockFile};
 const Codec kDds{"DDS", "image/vnd-ms.dds", readBlockHeader, decodeBlockFile};
+
+const Codec* findCodec(ByteView bytes) {
+    const std::string_view text = textOf(bytes);
+    if (text.starts_with("\x89PNG")) {
+        return &kPng;
+    }
+    if (text.starts_with("\xFF\xD8")) {
+        return &kJpeg;
+    }
+    if (isWebp(text)) {
+        return &kWebp;
+    }
+    if (text.starts_with("DDS ")) {
+        return &kDds;
+    }
+    return text.starts_with("\xABKTX 20\xBB") ? &kBasisu : nullptr;
+}
+
+const char* foreignFormat(ByteView bytes) {
+    const std::string_view text = textOf(bytes);
+    if (text.starts_with("\xABKTX")) {
+        return "KTX 1";
+    }
+    return text.size() >= 12 && text.substr(4).starts_with("ftypavif") ? "AVIF" : "";
+}
 
 }  // namespace glint::gltf

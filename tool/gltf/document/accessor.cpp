@@ -36,14 +36,28 @@ std::string accessorPointer(int accessor) {
     return fmt::format("/accessors/{}", accessor);
 }
 
-Diagnostic rangeError(const Document& document, const std::string& pointer, std::size_t count,
-                      const ElementLayout& layout) {
-    return document.error(
-        "accessor-range", pointer,
-        fmt::format("{} elements of {} bytes from byte {} at a stride of {} go beyond the {} "
-                    "bytes of the buffer view",
-                    count, layout.elementSize, layout.offset, layout.stride, layout.bytes.size()),
-        kDamaged);
+// Returns where `count` elements lie in a buffer view. A stride of 0 says that they follow each other.
+// `pointer` is that of what has them.
+Result<ElementLayout> layoutOf(Document& document, const std::string& pointer, int bufferView,
+                               std::size_t offset, std::size_t stride, std::size_t elementSize,
+                               std::size_t count) {
+    GLINT_TRY(const auto bytes, document.bufferView(bufferView));
+    const ElementLayout layout{bytes, offset, stride == 0 ? elementSize : stride, elementSize};
+    if (layout.stride < elementSize) {
+        return document.error(
+            "accessor-stride", fmt::format("/bufferViews/{}/byteStride", bufferView),
+            fmt::format("is {}, but the elements of {} have {} bytes", stride, pointer, elementSize),
+            kDamaged);
+    }
+    if (!fits(layout, count)) {
+        return document.error(
+            "accessor-range", pointer,
+            fmt::format("{} elements of {} bytes from byte {} at a stride of {} go beyond the {} "
+                        "bytes of the buffer view",
+                        count, elementSize, offset, layout.stride, bytes.size()),
+            kDamaged);
+    }
+    return layout;
 }
 
 template <typename T>
@@ -87,36 +101,15 @@ Status gatherBase(Document& document, int index, std::size_t elementSize, base::
         elements.assign(accessor.count * elementSize, 0);
         return okStatus();
     }
-    GLINT_TRY(const auto bytes, document.bufferView(accessor.bufferView));
-    const std::size_t viewStride = document.stride(accessor.bufferView);
-    const std::size_t stride = viewStride == 0 ? elementSize : viewStride;
-    if (stride < elementSize) {
-        return document.error("accessor-stride",
-                              fmt::format("/bufferViews/{}/byteStride", accessor.bufferView),
-                              fmt::format("is {}, but the elements of {} have {} bytes", stride,
-                                          accessorPointer(index), elementSize),
-                              kDamaged);
-    }
-    const ElementLayout layout{bytes, accessor.byteOffset, stride, elementSize};
-    if (!fits(layout, accessor.count)) {
-        return rangeError(document, accessorPointer(index), accessor.count, layout);
-    }
+    GLINT_TRY(const auto layout,
+              layoutOf(document, accessorPointer(index), accessor.bufferView, accessor.byteOffset,
+                       document.stride(accessor.bufferView), elementSize, accessor.count));
     elements.resize(accessor.count * elementSize);
     for (std::size_t i = 0; i < accessor.count; ++i) {
-        std::memcpy(&elements[i * elementSize], &layout.bytes[layout.offset + i * stride], elementSize);
+        std::memcpy(&elements[i * elementSize], &layout.bytes[layout.offset + i * layout.stride],
+                    elementSize);
     }
     return okStatus();
-}
-
-// Reads a part of a sparse accessor. The part is empty if `count` is 0.
-Result<ElementLayout> sparseLayout(Document& document, const std::string& pointer, int bufferView,
-                                   std::size_t offset, std::size_t elementSize, std::size_t count) {
-    GLINT_TRY(const auto bytes, document.bufferView(bufferView));
-    const ElementLayout layout{bytes, offset, elementSize, elementSize};
-    if (!fits(layout, count)) {
-        return rangeError(document, pointer, count, layout);
-    }
-    return layout;
 }
 
 // Puts the substitutes of a sparse accessor into `elements`.
@@ -137,11 +130,11 @@ Status substituteSparse(Document& document, int index, std::size_t elementSize, 
     }
     const std::size_t indexSize = componentSizeOf(sparse.indices.componentType);
     GLINT_TRY(const auto indices,
-              sparseLayout(document, pointer + "/indices", sparse.indices.bufferView,
-                           static_cast<std::size_t>(sparse.indices.byteOffset), indexSize, count));
+              layoutOf(document, pointer + "/indices", sparse.indices.bufferView,
+                       static_cast<std::size_t>(sparse.indices.byteOffset), 0, indexSize, count));
     GLINT_TRY(const auto values,
-              sparseLayout(document, pointer + "/values", sparse.values.bufferView,
-                           static_cast<std::size_t>(sparse.values.byteOffset), elementSize, count));
+              layoutOf(document, pointer + "/values", sparse.values.bufferView,
+                       static_cast<std::size_t>(sparse.values.byteOffset), 0, elementSize, count));
     const std::vector<std::uint32_t> targets =
         unsignedElements(sparse.indices.componentType, indices.bytes.data() + indices.offset, count);
     std::int64_t before = -1;

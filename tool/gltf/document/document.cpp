@@ -1,8 +1,6 @@
 #include "gltf/document/document.h"
 
 #include "base/json.h"
-#include "gltf/document/material_list.h"
-#include "gltf/document/materialx.h"
 #include "gltf/document/validate.h"
 
 #include <fmt/format.h>
@@ -13,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <iterator>
+#include <system_error>
 #include <utility>
 
 namespace glint::gltf {
@@ -257,6 +256,49 @@ Result<Json> parseJson(Document& document, ByteView bytes) {
     }
 }
 
+// ---- Files ----
+
+namespace fs = std::filesystem;
+
+bool hasScheme(std::string_view uri) {
+    const std::size_t colon = uri.find(':');
+    return colon != std::string_view::npos && colon < uri.find_first_of("/?#");
+}
+
+// Returns whether `path` lies below `folder` after following links.
+bool liesWithin(const fs::path& path, const fs::path& folder) {
+    std::error_code error;
+    const fs::path canonicalFolder = fs::canonical(folder.empty() ? fs::path(".") : folder, error);
+    if (error) {
+        return false;
+    }
+    const fs::path canonicalPath = fs::weakly_canonical(path, error);
+    if (error) {
+        return false;
+    }
+    const auto [end, ignored] = std::mismatch(canonicalFolder.begin(), canonicalFolder.end(),
+                                              canonicalPath.begin(), canonicalPath.end());
+    return end == canonicalFolder.end();
+}
+
+// Returns why the file that a decoded URI names must not be opened, or an empty text if it may be. Examines
+// only the text.
+std::string whyUnsafe(std::string_view uri, std::string_view decoded) {
+    if (decoded.empty()) {
+        return "is empty";
+    }
+    if (hasScheme(uri)) {
+        return "has a scheme; only relative paths and data URIs are read";
+    }
+    if (decoded.front() == '/' || decoded.front() == '\\') {
+        return "is an absolute path";
+    }
+    if (decoded.find('\0') != std::string_view::npos) {
+        return "holds a zero byte";
+    }
+    return {};
+}
+
 // ---- The document ----
 
 Status checkVersion(Document& document, const Json& root) {
@@ -296,7 +338,7 @@ Document::Document(const std::filesystem::path& path, const ImportOptions& optio
       options_(options),
       vertices_(options.maxVertices),
       unpackedBytes_(options.maxFileBytes),
-      source_(path, options.maxFileBytes, options.strictPaths ? OuterLinks::Refuse : OuterLinks::Follow) {}
+      fileBytes_(options.maxFileBytes) {}
 
 Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& path,
                                                  const ImportOptions& options) {
@@ -314,7 +356,7 @@ Result<std::unique_ptr<Document>> Document::open(const MaterialSet& set, const I
 }
 
 Status Document::parse() {
-    GLINT_TRY(file_, source_.readScene());
+    GLINT_TRY(file_, readFile(name_));
     GLINT_TRY(const auto container, splitContainer(*this, file_));
     binary_ = container.binary;
     if (isMaterialX(container.json)) {
@@ -443,14 +485,55 @@ Result<base::Bytes> Document::loadBuffer(const Json& buffer, const std::string& 
 }
 
 Result<base::Bytes> Document::readUri(const std::string& uri, const std::string& pointer) {
+    const std::string place = pointer + "/uri";
     if (!isDataUri(uri)) {
-        return source_.readRelative(uri, where(pointer + "/uri"));
+        return readRelative(uri, place);
     }
-    std::optional<DataUri> data = decodeDataUri(uri);
+    std::optional<base::Bytes> data = decodeDataUri(uri);
     if (!data) {
-        return error("data-uri", pointer + "/uri", "is no valid data URI", "export the scene again");
+        return error("data-uri", place, "is no valid data URI", "export the scene again");
     }
-    return std::move(data->bytes);
+    return std::move(*data);
+}
+
+Result<base::Bytes> Document::readRelative(const std::string& uri, const std::string& pointer) {
+    const std::string decoded = percentDecode(uri);
+    const auto refuse = [&](std::string_view why) {
+        return error("uri-unsafe", pointer, fmt::format("the URI \"{}\" {}", uri, why),
+                     "put the file into the scene's folder and refer to it by a relative path");
+    };
+    if (const std::string why = whyUnsafe(uri, decoded); !why.empty()) {
+        return refuse(why);
+    }
+    const fs::path folder = fs::path(name_).parent_path();
+    const fs::path relative = fs::path(decoded).lexically_normal();
+    if (relative.is_absolute() || *relative.begin() == "..") {
+        return refuse("leaves the scene's folder");
+    }
+    const fs::path path = folder / relative;
+    if (options_.strictPaths && !liesWithin(path, folder)) {
+        return refuse("leaves the scene's folder through a symbolic link, which strict paths forbid");
+    }
+    Result<base::Bytes> bytes = readFile(path);
+    if (!bytes) {
+        const Diagnostic& failure = bytes.error();
+        return error(failure.id, pointer, fmt::format("\"{}\": {}", path.string(), failure.message),
+                     failure.hint.empty() ? "check the file and the URI" : failure.hint);
+    }
+    return bytes;
+}
+
+Result<base::Bytes> Document::readFile(const fs::path& path) {
+    Result<base::Bytes> bytes = base::readFile(path, fileBytes_);
+    if (!bytes) {
+        return bytes;
+    }
+    fileBytes_ -= std::min<std::uint64_t>(fileBytes_, bytes->size());
+    const std::string name = path.string();
+    if (std::ranges::find(files_, name, &SourceFile::path) == files_.end()) {
+        files_.push_back({name, bytes->size(), base::hashBytes(*bytes)});
+    }
+    return bytes;
 }
 
 std::string Document::where(std::string_view pointer) const {

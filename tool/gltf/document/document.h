@@ -3,9 +3,10 @@
 #pragma once
 
 #include "gltf/document/files.h"
-#include "gltf/document/material_expansion.h"
+#include "gltf/document/material_list.h"
 #include "gltf/document/model.h"
 #include "gltf/import_options.h"
+#include "gltf/scene.h"
 
 #include <glint/result.h>
 
@@ -73,10 +74,11 @@ public:
     // Returns the bytes of a buffer view, decompressed if necessary. The first use of a buffer opens it.
     Result<ByteView> bufferView(int index);
     // Reads the data URI, or the file that a relative URI names. `pointer` is that of its owner. Errors:
-    // "data-uri", and those of FileSource.
+    // "data-uri", "uri-unsafe", "file-open", "file-size", "file-read".
     Result<base::Bytes> readUri(const std::string& uri, const std::string& pointer);
+    // Lists each file once, in the order of opening.
     const std::vector<SourceFile>& files() const {
-        return source_.files();
+        return files_;
     }
 
     // The parameters of a set of materials that a program may set.
@@ -124,6 +126,8 @@ private:
                                  const std::string& pointer);
     Result<ByteView> unpackedView(int index, const Value& extension, const std::string& pointer);
     Result<base::Bytes> loadBuffer(const Json& buffer, const std::string& pointer);
+    Result<base::Bytes> readRelative(const std::string& uri, const std::string& pointer);
+    Result<base::Bytes> readFile(const std::filesystem::path& path);
 
     std::string name_;
     ImportOptions options_;
@@ -132,7 +136,8 @@ private:
     Budget unpackedBytes_;
     Budget zeroElements_{kMaxZeroElements};
     std::uint64_t imageBytes_ = 0;
-    FileSource source_;
+    std::uint64_t fileBytes_;  // that all files together may still have
+    std::vector<SourceFile> files_;
     base::Bytes file_;
     std::optional<ByteView> binary_;  // views file_
     Json json_;

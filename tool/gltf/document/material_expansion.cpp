@@ -1,5 +1,4 @@
-#include "gltf/document/material_expansion.h"
-
+// Makes a document of glTF of a set of materials.
 #include "base/text.h"
 #include "gltf/document/material_list.h"
 

@@ -1,6 +1,6 @@
-#include "gltf/document/materialx.h"
-
+// MaterialX files with one surface of OpenPBR or Standard Surface. Such a file becomes a set of one material.
 #include "base/text.h"
+#include "gltf/document/material_list.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #include "gltf/texels/fit.h"
 
-#include "gltf/codecs/basisu.h"
+#include "gltf/codecs/codecs.h"
 #include "gltf/texels/levels.h"
 #include "gltf/textures.h"
 
@@ -95,10 +95,6 @@ std::vector<std::uint8_t> narrowed(const std::vector<std::uint8_t>& wide) {
         narrow[i] = static_cast<std::uint8_t>((value + 128U) / 257U);
     }
     return narrow;
-}
-
-bool isPowerOfTwo(int size) {
-    return std::has_single_bit(static_cast<std::uint32_t>(size));
 }
 
 class Fitter {

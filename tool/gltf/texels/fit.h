@@ -2,7 +2,7 @@
 #pragma once
 
 #include "gltf/scene.h"
-#include "gltf/texels/texture_use.h"
+#include "gltf/texels/levels.h"
 
 #include <glint/result.h>
 #include <glint/scene_view.h>

@@ -1,9 +1,11 @@
-// Makes the mip levels of images.
+// Makes the mip levels of images by the channels that materials read of them.
 #pragma once
 
 #include "gltf/scene.h"
+#include "materials/interval.h"
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -44,6 +46,10 @@ constexpr int sizeOfLevel(int size, int level) {
     return size >> level > 1 ? size >> level : 1;
 }
 
+constexpr bool isPowerOfTwo(int size) {
+    return std::has_single_bit(static_cast<std::uint32_t>(size));
+}
+
 // Returns how many texels come before one, row by row.
 constexpr std::size_t placeOfTexel(int x, int y, int width) {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
@@ -59,5 +65,38 @@ int fullLevels(int width, int height);
 // last level that is there, where a size is odd with shares of texels. Levels are not averaged from ones that
 // were rounded.
 void completeLevels(Texels& texels, const LevelFilters& filters);
+
+// ---- What materials read of images ----
+
+struct ImageUse {
+    bool isColor = false;        // some texture reads it as colour, in sRGB
+    bool isData = false;         // some texture reads it as linear data
+    bool isNormals = false;      // all of them read vectors
+    bool isEmission = false;     // some material emits what it shows
+    std::uint32_t channels = 0;  // that are read: bit 0 for red, to bit 3 for alpha
+    // Those of them that all textures read as the roughness of a lobe, and as 1 - roughness.
+    std::uint32_t roughness = 0;
+    std::uint32_t glossiness = 0;
+
+    bool operator==(const ImageUse&) const = default;
+};
+
+// Returns how the levels of such an image are made.
+LevelFilters levelFiltersOf(const ImageUse& use);
+
+// Returns whether a device's blits would make those levels, for sides that are powers of two.
+bool blitsSuit(const ImageUse& use);
+
+// Returns the use of each of Scene::images. Materials that no primitive has count.
+std::vector<ImageUse> imageUses(const Scene& scene);
+
+// Returns what a shader reads of such an image. `isColor` says that red, green and blue are in sRGB. The
+// bounds are wider by what drivers round, but 0 and 1 stay exact: a channel that is 0 everywhere is read as
+// 0.
+std::array<materials::ValueInterval, 4> contentAsRead(const std::array<materials::ValueInterval, 4>& stored,
+                                                      bool isColor);
+
+// Returns the number that a code stands for, where it is colour in sRGB or not.
+double numberAsRead(double stored, bool isColor);
 
 }  // namespace glint::gltf

@@ -1,7 +1,6 @@
 #include "gltf/texels/texel_bounds.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
@@ -135,10 +134,6 @@ void forEachArea(const TexCoordBox& box, const LookupKind& kind, int level, bool
 
 int levelsRead(const LookupKind& kind, int levels) {
     return kind.finestLevel || !kind.sampler.mipmapped ? 1 : levels;
-}
-
-bool isPowerOfTwoSize(int size) {
-    return std::has_single_bit(static_cast<std::uint32_t>(size));
 }
 
 template <typename Code>
@@ -357,8 +352,8 @@ private:
     // counts the made levels up to this one.
     void addMade(int width, int height, std::vector<Texel> values, int steps) {
         const LevelBounds<Code>& finer = levels_.back();
-        const bool blits = rules_.mayBlit && isPowerOfTwoSize(levels_.front().width()) &&
-                           isPowerOfTwoSize(levels_.front().height());
+        const bool blits =
+            rules_.mayBlit && isPowerOfTwo(levels_.front().width()) && isPowerOfTwo(levels_.front().height());
         // Vectors become unit vectors again, which leaves the hull; devices do not make those levels.
         if (rules_.filters[0] == LevelFilter::Normals && !rules_.isUnknown) {
             levels_.emplace_back(width, height, std::move(values), std::vector<Texel>());
@@ -484,57 +479,34 @@ void TexelRange::join(const TexelRange& other) {
 
 struct TexelBounds::Levels {
     std::variant<bounds::LevelsOf<std::uint8_t>, bounds::LevelsOf<std::uint16_t>> of;
-
-    template <typename Use>
-    auto visit(const Use& use) const {
-        return std::visit(use, of);
-    }
 };
 
-TexelBounds::TexelBounds(Texels texels, const LevelRules& rules)
-    : format_(texels.format), tolerance_(rules.tolerance) {
-    if (format_ == PixelFormat::Rgba16) {
+TexelBounds::TexelBounds(Texels texels, const LevelRules& rules) {
+    if (texels.format == PixelFormat::Rgba16) {
         levels_.reset(new Levels{bounds::LevelsOf<std::uint16_t>(std::move(texels), rules)});
     } else {
         levels_.reset(new Levels{bounds::LevelsOf<std::uint8_t>(std::move(texels), rules)});
     }
 }
 
-TexelBounds::TexelBounds(TexelBounds&&) noexcept = default;
-TexelBounds& TexelBounds::operator=(TexelBounds&&) noexcept = default;
-TexelBounds::~TexelBounds() = default;
-
-int TexelBounds::levels() const {
-    return levels_->visit([](const auto& levels) { return levels.count(); });
-}
-
 TexelRange TexelBounds::whole() const {
-    return levels_->visit([](const auto& levels) { return levels.whole(); });
-}
-
-TexelRange TexelBounds::over(const TexCoordBox& box, const LookupKind& kind) const {
-    TexelRange range;
-    joinOver(box, kind, range);
-    return range;
+    return std::visit([](const auto& levels) { return levels.whole(); }, levels_->of);
 }
 
 void TexelBounds::joinOver(const TexCoordBox& box, const LookupKind& kind, TexelRange& range) const {
-    levels_->visit([&](const auto& levels) {
+    const auto join = [&](const auto& levels) {
         if (!range.encloses(levels.whole())) {
             levels.join(box, kind, range);
         }
-    });
+    };
+    std::visit(join, levels_->of);
 }
 
 TexelPlace TexelBounds::find(const TexCoordBox& box, const LookupKind& kind, const TexelRange& range,
                              std::size_t channel, bool greatest) const {
     const std::uint16_t code = greatest ? range.greatest[channel] : range.least[channel];
-    return levels_->visit(
-        [&](const auto& levels) { return levels.find(box, kind, channel, greatest, code); });
-}
-
-std::array<materials::ValueInterval, 4> TexelBounds::valuesOf(const TexelRange& range) const {
-    return gltf::valuesOf(range, format_, tolerance_);
+    const auto find = [&](const auto& levels) { return levels.find(box, kind, channel, greatest, code); };
+    return std::visit(find, levels_->of);
 }
 
 }  // namespace glint::gltf

@@ -18,7 +18,6 @@
 
 #include "gltf/scene.h"
 #include "gltf/texels/levels.h"
-#include "gltf/texels/texture_use.h"
 #include "materials/interval.h"
 
 #include <array>
@@ -91,31 +90,22 @@ class TexelBounds {
 public:
     // `texels` has the levels of the file, with bytes. The filter Normals must not be marked as unknown.
     TexelBounds(Texels texels, const LevelRules& rules);
-    TexelBounds(TexelBounds&&) noexcept;
-    TexelBounds& operator=(TexelBounds&&) noexcept;
-    ~TexelBounds();
 
-    int levels() const;
     // The codes of all texels of all levels.
     TexelRange whole() const;
-    // Returns the codes that lookups in the box can combine. Takes constant time for small boxes, and time in
-    // proportion to the box's sides in texels for others.
-    TexelRange over(const TexCoordBox& box, const LookupKind& kind) const;
-    // Joins the same to `range`, and looks at no texels that could not change it.
+    // Joins the codes that lookups in the box can combine to `range`, and looks at no texels that could not
+    // change it. Takes constant time for small boxes, and time in proportion to the box's sides in texels for
+    // others.
     void joinOver(const TexCoordBox& box, const LookupKind& kind, TexelRange& range) const;
     // Returns a texel that gives the least (or greatest) code of `channel` in `range`, if the box reaches
     // one.
     TexelPlace find(const TexCoordBox& box, const LookupKind& kind, const TexelRange& range,
                     std::size_t channel, bool greatest) const;
-    // Returns valuesOf() with the image's format and tolerance.
-    std::array<materials::ValueInterval, 4> valuesOf(const TexelRange& range) const;
 
 private:
     struct Levels;  // texel_bounds.cpp
 
-    std::unique_ptr<const Levels> levels_;
-    PixelFormat format_;
-    int tolerance_;
+    std::shared_ptr<const Levels> levels_;
 };
 
 }  // namespace glint::gltf

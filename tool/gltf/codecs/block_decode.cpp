@@ -1,6 +1,4 @@
-#include "gltf/texels/block_decode.h"
-
-#include "gltf/codecs/basisu.h"
+#include "gltf/codecs/codecs.h"
 
 #include <algorithm>
 #include <array>
@@ -243,66 +241,65 @@ void unpackChannel(const std::uint8_t* block, std::size_t channel, BlockTexels& 
     }
 }
 
-// Returns false if the build lacks what the format needs. `texels` begin black and opaque.
-bool unpackBlock(TexelFormat format, const std::uint8_t* block, BlockTexels& texels) {
+// `texels` begin black and opaque.
+void unpackBlock(TexelFormat format, const std::uint8_t* block, BlockTexels& texels) {
     switch (format) {
         case TexelFormat::Bc1:
             unpackColors(block, true, texels);
-            return true;
+            break;
         case TexelFormat::Bc2:
             unpackColors(block + 8, false, texels);
             for (std::size_t i = 0; i < 16; ++i) {
                 texels[i][3] = static_cast<std::uint8_t>((block[i / 2] >> 4 * (i % 2) & 15) * 17);
             }
-            return true;
+            break;
         case TexelFormat::Bc3:
             unpackColors(block + 8, false, texels);
             unpackChannel(block, 3, texels);
-            return true;
+            break;
         case TexelFormat::Bc5:
             unpackChannel(block + 8, 1, texels);
             [[fallthrough]];
         case TexelFormat::Bc4:
             unpackChannel(block, 0, texels);
-            return true;
+            break;
         case TexelFormat::Bc7:
-            return unpackBc7(block, texels);
+            unpackBc7(block, texels);
+            break;
         case TexelFormat::Etc2Rgb:
             unpackEtc2(block, false, texels);
-            return true;
+            break;
         case TexelFormat::Etc2Rgba1:
             unpackEtc2(block, true, texels);
-            return true;
+            break;
         case TexelFormat::Etc2Rgba:
             unpackEtc2(block + 8, false, texels);
             unpackEac(block, false, 3, texels);
-            return true;
+            break;
         case TexelFormat::EacRg:
             unpackEac(block + 8, true, 1, texels);
             [[fallthrough]];
         case TexelFormat::EacR:
             unpackEac(block, true, 0, texels);
-            return true;
+            break;
         default:
-            return false;
+            break;
     }
 }
 
 // A block of the largest format.
 using LargestBlock = std::array<std::uint8_t, std::size_t{4} * 12 * 12>;
 
-bool unpackTo(TexelFormat format, bool srgb, const std::uint8_t* block, LargestBlock& unpacked) {
+void unpackTo(TexelFormat format, bool srgb, const std::uint8_t* block, LargestBlock& unpacked) {
     const TexelFormatInfo& info = infoOf(format);
     if (format >= TexelFormat::Astc4x4) {
-        return unpackAstc(block, info.blockWidth, info.blockHeight, srgb, unpacked.data());
+        unpackAstc(block, info.blockWidth, info.blockHeight, srgb, unpacked.data());
+        return;
     }
     BlockTexels texels;
     texels.fill({0, 0, 0, 255});
-    if (!unpackBlock(format, block, texels)) {
-        return false;
-    }
+    unpackBlock(format, block, texels);
     std::copy(texels.front().data(), texels.front().data() + sizeof texels, unpacked.begin());
-    return true;
 }
 
 }  // namespace
@@ -310,6 +307,10 @@ bool unpackTo(TexelFormat format, bool srgb, const std::uint8_t* block, LargestB
 Result<base::Bytes> decodeBlocks(TexelFormat format, bool srgb, std::uint32_t width, std::uint32_t height,
                                  ByteView blocks) {
     const TexelFormatInfo& info = infoOf(format);
+    if ((format == TexelFormat::Bc7 || format >= TexelFormat::Astc4x4) && !hasBasisu()) {
+        return imageFault(std::string(info.name) +
+                          " is unpacked by sources of Basis Universal, which this Glint was built without");
+    }
     const std::uint32_t across = blocksAcross(width, info.blockWidth);
     const std::uint32_t down = blocksAcross(height, info.blockHeight);
     base::Bytes pixels(std::size_t{4} * width * height);
@@ -317,11 +318,7 @@ Result<base::Bytes> decodeBlocks(TexelFormat format, bool srgb, std::uint32_t wi
     const std::uint8_t* block = blocks.data();
     for (std::uint32_t y = 0; y < down; ++y) {
         for (std::uint32_t x = 0; x < across; ++x, block += info.blockBytes) {
-            if (!unpackTo(format, srgb, block, unpacked)) {
-                return imageFault(
-                    std::string(info.name) +
-                    " is unpacked by sources of Basis Universal, which this Glint was built without");
-            }
+            unpackTo(format, srgb, block, unpacked);
             const std::uint32_t left = x * info.blockWidth;
             const std::uint32_t columns = std::min(info.blockWidth, width - left);
             for (std::uint32_t row = 0; row < std::min(info.blockHeight, height - y * info.blockHeight);
