@@ -24,11 +24,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <optional>
+#include <ranges>
 #include <span>
 #include <string>
 #include <utility>
@@ -40,65 +41,39 @@ namespace {
 
 // --- All results in one step: all files are complete on disk before any of them is moved into place ---
 
-// Members that are empty are not written. The build says whether the lock file is.
-struct CompileOutputs {
-    std::filesystem::path folder;  // of the package
-    std::filesystem::path embed;   // a C++ source
-    const compiler::Depfile& depfile;
-    std::span<const std::string> dependencies;
-};
-
-// The files outside the package's folder, in the order in which they are moved into place.
-class Staging {
-public:
-    Status addEmbedded(const gltf::SceneList& scenes, const compiler::CompiledPackage& package,
-                       const std::filesystem::path& source) {
-        GLINT_TRY(auto staged, stageEmbeddedSource(scenes, package, source));
-        for (base::StagedFile& file : staged) {
-            files_.push_back(std::move(file));
-        }
-        return okStatus();
-    }
-
-    Status add(const std::filesystem::path& path, std::string_view text) {
-        base::removeAbandoned(path);
-        GLINT_TRY(auto staged, base::StagedFile::create(path, base::asBytes(text)));
-        files_.push_back(std::move(staged));
-        return okStatus();
-    }
-
-    Status commit() {
-        for (base::StagedFile& file : files_) {
-            GLINT_TRY_DO(file.commit());
-        }
-        return okStatus();
-    }
-
-private:
-    std::vector<base::StagedFile> files_;
-};
-
-// A full disk leaves everything as it was. Interruptions wait until this is done. Has the errors of
-// writePackage(), stageEmbeddedSource() and makeDepfile(), and "file-write".
+// A full disk leaves everything as it was. Interruptions wait until this is done. Outputs without a name are
+// not written; the build says whether the lock file is. Has the errors of writePackage(),
+// stageEmbeddedSource() and makeDepfile(), and "file-write".
 Status writeOutputs(const compiler::Build& build, const compiler::CompiledPackage& package,
-                    const CompileOutputs& outputs) {
+                    const CompileArguments& arguments, std::span<const std::string> dependencies) {
     const HeldSignals held;
-    Staging staging;
+    // The files outside the package's folder, in the order in which they are moved into place.
+    std::vector<base::StagedFile> staged;
+    const auto stage = [&](const std::filesystem::path& path, std::string_view text) -> Status {
+        base::removeAbandoned(path);
+        GLINT_TRY(auto file, base::StagedFile::create(path, base::asBytes(text)));
+        staged.push_back(std::move(file));
+        return okStatus();
+    };
     if (build.lockText) {
-        GLINT_TRY_DO(staging.add(build.settings.lock.file, *build.lockText));
+        GLINT_TRY_DO(stage(build.settings.lock.file, *build.lockText));
     }
-    if (!outputs.embed.empty()) {
-        GLINT_TRY_DO(staging.addEmbedded(*build.scenes, package, outputs.embed));
+    if (!arguments.embed.empty()) {
+        GLINT_TRY(auto embedded, stageEmbeddedSource(*build.scenes, package, arguments.embed));
+        std::ranges::move(embedded, std::back_inserter(staged));
     }
     // The dependency file comes last, because it tells Make and Ninja that the others exist.
-    if (!outputs.depfile.file.empty()) {
-        GLINT_TRY(const auto text, compiler::makeDepfile(outputs.depfile.targets, outputs.dependencies));
-        GLINT_TRY_DO(staging.add(outputs.depfile.file, text));
+    if (!arguments.depfile.file.empty()) {
+        GLINT_TRY(const auto text, compiler::makeDepfile(arguments.depfile.targets, dependencies));
+        GLINT_TRY_DO(stage(arguments.depfile.file, text));
     }
-    if (!outputs.folder.empty()) {
-        GLINT_TRY_DO(writePackage(package, outputs.folder));
+    if (!arguments.output.empty()) {
+        GLINT_TRY_DO(writePackage(package, arguments.output));
     }
-    return staging.commit();
+    for (base::StagedFile& file : staged) {
+        GLINT_TRY_DO(file.commit());
+    }
+    return okStatus();
 }
 
 // The facts to report at the end. The package is absent after a dry run, and after planning.
@@ -120,22 +95,19 @@ struct Outcome {
 };
 
 base::Json shadersToJson(const Outcome& outcome) {
-    base::Json list = base::Json::array();
-    for (const compiler::Case& shader : outcome.plan.cases) {
-        if (shader.isRetired()) {
-            continue;
-        }
-        list.push_back(base::Json{{"id", shader.shaderId},
-                                  {"name", shader.name},
-                                  {"always", featuresToJson(*outcome.plan.model, shader.always)},
-                                  {"sometimes", featuresToJson(*outcome.plan.model, shader.sometimes)},
-                                  {"keys", shader.keys.size()},
-                                  {"share", compiler::roundedShare(shader.share)},
-                                  {"reason", toString(shader.reason)},
-                                  {"materials", materialsToJson(outcome.scenes, shader.materials)},
-                                  {"stages", stagesToJson(outcome.package, shader.shaderId)}});
-    }
-    return list;
+    const auto isUsed = [](const compiler::Case& shader) { return !shader.isRetired(); };
+    return listOf(outcome.plan.cases | std::views::filter(isUsed),
+                  [&](const compiler::Case& shader) -> base::Json {
+                      return {{"id", shader.shaderId},
+                              {"name", shader.name},
+                              {"always", featuresToJson(*outcome.plan.model, shader.always)},
+                              {"sometimes", featuresToJson(*outcome.plan.model, shader.sometimes)},
+                              {"keys", shader.keys.size()},
+                              {"share", compiler::roundedShare(shader.share)},
+                              {"reason", toString(shader.reason)},
+                              {"materials", materialsToJson(outcome.scenes, shader.materials)},
+                              {"stages", stagesToJson(outcome.package, shader.shaderId)}};
+                  });
 }
 
 base::Json planToJson(const Outcome& outcome) {
@@ -146,12 +118,10 @@ base::Json planToJson(const Outcome& outcome) {
 }
 
 base::Json scenesToJson(const gltf::SceneList& scenes) {
-    base::Json list = base::Json::array();
-    for (const gltf::Scene& scene : scenes.scenes()) {
-        list.push_back(base::Json{{"file", scene.path},
-                                  {"sceneInFile", base::jsonOf(compiler::orNone(gltf::sceneInFile(scene)))}});
-    }
-    return list;
+    return listOf(scenes.scenes(), [](const gltf::Scene& scene) -> base::Json {
+        return {{"file", scene.path},
+                {"sceneInFile", base::jsonOf(compiler::orNone(gltf::sceneInFile(scene)))}};
+    });
 }
 
 base::Json toJson(const Outcome& outcome) {
@@ -208,8 +178,6 @@ Rows fieldsOf(const Outcome& outcome) {
     }
     if (outcome.package != nullptr) {
         rows.push_back({"effects", chosenEffects(plan.effects)});
-    }
-    if (outcome.package != nullptr) {
         rows.push_back({"unique SPIR-V", fmt::format("{}", outcome.package->uniqueSpirv)});
         rows.push_back({"SPIR-V bytes", formatBytes(outcome.package->spirvBytes)});
         rows.push_back({"package bytes", formatBytes(outcome.packageBytes())});
@@ -426,8 +394,7 @@ Result<int> compileOnce(const Console& console, const CompileArguments& argument
               compilePackage(build, cache.modules(), watched != nullptr ? &watched->warm : nullptr));
     console.progress("writing " + outputsOf(arguments));
     const base::Clock::time_point compiled = base::Clock::now();
-    GLINT_TRY_DO(
-        writeOutputs(build, package, {arguments.output, arguments.embed, arguments.depfile, dependencies}));
+    GLINT_TRY_DO(writeOutputs(build, package, arguments, dependencies));
     if (watched != nullptr) {
         describeRun(package, *watched);
         watched->writeMs = package.tablesMs + base::millisecondsSince(compiled);
