@@ -350,17 +350,13 @@ std::string cellOf(const FactInfo& info, const ReportedPipeline& pipeline, const
     return text == other ? text : other + " → " + text;
 }
 
-std::string subgroupText(std::uint32_t size) {
-    return size > 0 ? std::to_string(size) : "-";
-}
-
 std::vector<std::string> rowOf(const ReportedPipeline& pipeline, const ReportedPipeline* before,
                                bool traces) {
     std::vector<std::string> row{pipeline.name};
     if (traces) {
         row.push_back(pipeline.tracer.empty() ? "-" : pipeline.tracer);
     }
-    row.push_back(subgroupText(pipeline.subgroupSize));
+    row.push_back(pipeline.subgroupSize > 0 ? std::to_string(pipeline.subgroupSize) : "-");
     if (!pipeline.failure.empty()) {
         row.push_back("failed");
         return row;
@@ -400,10 +396,6 @@ std::string pipelineTable(const inspect::PipelineReport& report, const inspect::
     return formatTable(rows, detail);
 }
 
-std::string describe(const inspect::PipelineReport& report) {
-    return fmt::format("{} on {} ({})", report.package, report.device, report.driver);
-}
-
 std::string toText(const inspect::PipelineReport& report, const inspect::PipelineReport* other,
                    const std::string& sort, Detail detail) {
     Rows fields{{"package", report.package},
@@ -411,7 +403,8 @@ std::string toText(const inspect::PipelineReport& report, const inspect::Pipelin
                  fmt::format("{} ({}), subgroups of {}", report.device, report.driver, report.subgroupSize)},
                 {"pipelines", fmt::format("{}, by {}", report.pipelines.size(), sort)}};
     if (other != nullptr) {
-        fields.push_back({"before →", describe(*other)});
+        fields.push_back(
+            {"before →", fmt::format("{} on {} ({})", other->package, other->device, other->driver)});
     }
     std::string text = formatFields(fields) + "\n" + pipelineTable(report, other, detail);
     if (other != nullptr) {

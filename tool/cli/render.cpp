@@ -27,7 +27,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <iterator>
 #include <memory>
 #include <optional>
@@ -381,7 +380,18 @@ Status readAndRender(const Console& console, const RenderArguments& arguments, R
                              : render(console, wanted, std::move(opened), std::move(edits), cache, report);
 }
 
-int run(const Console& console, const RenderArguments& arguments) {
+Result<int> run(const Console& console, const RenderArguments& arguments) {
+    const std::optional<FrameRange> frames = parseFrames(arguments.motion.frames);
+    for (const std::string& file :
+         {frames ? numberedFile(arguments.output, frames->first).string() : arguments.output, arguments.stats,
+          arguments.coverage, arguments.profileOutput}) {
+        if (!file.empty()) {
+            GLINT_TRY_DO(base::checkOutputFile(file));
+        }
+    }
+    if (arguments.denoise) {
+        GLINT_TRY_DO(checkDenoiser());
+    }
     RenderReport report;
     report.scene = arguments.scene;
     report.image = arguments.output;
@@ -390,35 +400,12 @@ int run(const Console& console, const RenderArguments& arguments) {
     report.seed = arguments.frame.seed;
     report.width = arguments.renderer.width;
     report.height = arguments.renderer.height;
-
-    const std::optional<FrameRange> frames = parseFrames(arguments.motion.frames);
-    Status status = okStatus();
-    for (const std::string& file :
-         {frames ? numberedFile(arguments.output, frames->first).string() : arguments.output, arguments.stats,
-          arguments.coverage, arguments.profileOutput}) {
-        if (status && !file.empty()) {
-            status = base::checkOutputFile(file);
-        }
-    }
-    if (status && arguments.denoise) {
-        status = checkDenoiser();
-    }
-    if (!status) {
-        console.report(status.error());
+    GLINT_TRY_DO(readAndRender(console, arguments, report));
+    if (console.refused()) {
         return kExitFailed;
     }
-    status = readAndRender(console, arguments, report);
-    if (!status) {
-        console.report(status.error());
-    }
-    if (!status || console.refused()) {
-        return kExitFailed;
-    }
-    if (console.isJson()) {
-        console.result(base::jsonOf(report));
-    } else {
-        console.print(toText(report, console.isVerbose() ? Detail::Whole : Detail::Short));
-    }
+    answer(
+        console, [&] { return base::jsonOf(report); }, [&](Detail detail) { return toText(report, detail); });
     return kExitDone;
 }
 
