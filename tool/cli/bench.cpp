@@ -37,23 +37,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-measure::CalibrationSettings settingsOf(const BenchArguments& arguments) {
-    const CalibrateArguments& given = arguments.calibrate;
-    measure::CalibrationSettings settings;
-    settings.render = arguments.render;
-    settings.output = arguments.output;
-    settings.quick = arguments.quick;
-    settings.cases = casesOf(given);
-    settings.rays = raysOf(given);
-    settings.costs = given.costs;
-    settings.coherences = given.coherences;
-    settings.shares = given.shares;
-    settings.lights = given.lights;
-    settings.shadows = given.shadows;
-    settings.pictures = given.pictures;
-    return settings;
-}
-
 Status makePictureFolder(const std::string& folder) {
     std::error_code error;
     if (!folder.empty()) {
@@ -71,7 +54,11 @@ Status measureAll(const Console& console, const BenchArguments& arguments,
     GLINT_TRY(const auto context, measure::openCalibrationDevice(arguments.render));
     report.machine = measure::machineOf(*context);
     CompileCache cache(arguments.render.cache, "");
-    Status done = measure::runCalibration(console, settingsOf(arguments), *context, cache.modules(), report);
+    measure::CalibrationSettings settings = arguments.calibrate;
+    settings.render = arguments.render;
+    settings.output = arguments.output;
+    settings.quick = arguments.quick;
+    Status done = measure::runCalibration(console, settings, *context, cache.modules(), report);
     cache.close(console);
     return done;
 }
@@ -97,14 +84,13 @@ Result<int> calibrate(const Console& console, const BenchArguments& arguments) {
     if (console.refused()) {
         return kExitFailed;
     }
-    if (console.isJson()) {
-        console.result(base::jsonOf(report));
-    } else {
-        console.print(toText(report));
-        console.print(fmt::format("\n{} has the same numbers.\n",
-                                  (fs::path(arguments.output) / measure::kCalibrationFile).string()));
-        console.print(fittedText(fitted, arguments.output));
-    }
+    answer(
+        console, [&] { return base::jsonOf(report); },
+        [&](Detail) {
+            return fmt::format("{}\n{} has the same numbers.\n{}", toText(report),
+                               (fs::path(arguments.output) / measure::kCalibrationFile).string(),
+                               fittedText(fitted, arguments.output));
+        });
     return kExitDone;
 }
 
@@ -151,14 +137,13 @@ Result<int> run(const Console& console, const BenchArguments& arguments) {
         return kExitFailed;
     }
     GLINT_TRY_DO(measure::writeBench(report, arguments.output));
-    if (console.isJson()) {
-        console.result(base::jsonOf(report));
-    } else {
-        console.print(toText(report));
-        console.print(fmt::format("\n{}: open it in a browser; {} has the same numbers.\n",
-                                  (std::filesystem::path(arguments.output) / measure::kPageFile).string(),
-                                  (std::filesystem::path(arguments.output) / measure::kReportFile).string()));
-    }
+    answer(
+        console, [&] { return base::jsonOf(report); },
+        [&](Detail) {
+            return fmt::format("{}\n{}: open it in a browser; {} has the same numbers.\n", toText(report),
+                               (fs::path(arguments.output) / measure::kPageFile).string(),
+                               (fs::path(arguments.output) / measure::kReportFile).string());
+        });
     if (report.advice && !report.advice->point) {
         return makeError(
             "bench-advice", arguments.render.scene, report.advice->why,
@@ -190,12 +175,12 @@ Result<int> reportDevice(const Console& console, const BenchArguments& arguments
     if (console.refused()) {
         return kExitFailed;
     }
-    if (console.isJson()) {
-        console.result(*report);
-    } else {
-        console.print(fmt::format("{} tells of {}: docs/performance.md says where to send it.\n", file,
-                                  report->at("machine").at("device").get<std::string>()));
-    }
+    answer(
+        console, [&] { return *report; },
+        [&](Detail) {
+            return fmt::format("{} tells of {}: docs/performance.md says where to send it.\n", file,
+                               report->at("machine").at("device").get<std::string>());
+        });
     return kExitDone;
 }
 

@@ -28,6 +28,8 @@ constexpr std::array<std::string_view, 13> kWithoutEffect = {
     "--cache",          "--cache-size",       "--color", "--depfile", "--depfile-target", "--jobs", "--json",
     "--pipeline-cache", "--pipeline-threads", "--quiet", "--verbose", "--werror",         "-W"};
 
+constexpr std::string_view kAction = "action";
+
 // Returns an empty text if the variable is not set.
 std::string variable(const char* name) {
     const char* const value = std::getenv(name);
@@ -82,12 +84,6 @@ std::string describeOptions(const CLI::App& command) {
     }
     return packer.take();
 }
-
-namespace {
-
-constexpr std::string_view kAction = "action";
-
-}  // namespace
 
 CompileCache::CompileCache(const CacheArguments& arguments, const std::string& options,
                            std::span<const fs::path> inputs) {
@@ -202,6 +198,10 @@ PipelineCacheFile::PipelineCacheFile(const Console& console, Context& context,
     }
 }
 
+void PipelineCacheFile::note(const char* id, const std::string& message, const char* hint) const {
+    console_.report(Diagnostic{Severity::Note, id, path_.string(), message, hint});
+}
+
 void PipelineCacheFile::add(bool reports) {
     std::error_code error;
     if (!fs::exists(path_, error)) {
@@ -210,8 +210,7 @@ void PipelineCacheFile::add(bool reports) {
     const Result<base::Bytes> bytes = base::readFile(path_, kMostBytes);
     if (!bytes) {
         if (reports) {
-            console_.report(Diagnostic{Severity::Note, "pipeline-cache", path_.string(),
-                                       bytes.error().message, "pipelines are made without it"});
+            note("pipeline-cache", bytes.error().message, "pipelines are made without it");
         }
         return;
     }
@@ -223,8 +222,8 @@ void PipelineCacheFile::add(bool reports) {
     if (added) {
         loadedBytes_ = reports ? bytes->size() : loadedBytes_;
     } else if (reports) {
-        console_.report(Diagnostic{Severity::Note, "pipeline-cache", path_.string(), added.error().message,
-                                   "pipelines are made without it, and the file is replaced"});
+        note("pipeline-cache", added.error().message,
+             "pipelines are made without it, and the file is replaced");
     }
 }
 
@@ -235,16 +234,14 @@ void PipelineCacheFile::save() {
     add(false);
     const Result<std::vector<std::uint8_t>> data = context_.pipelineCacheData();
     if (!data) {
-        console_.report(Diagnostic{Severity::Note, "pipeline-cache", path_.string(), data.error().message,
-                                   "nothing is lost but time"});
+        note("pipeline-cache", data.error().message, "nothing is lost but time");
         return;
     }
     std::error_code error;
     if (data->size() > kMostBytes) {
         fs::remove(path_, error);
-        console_.report(Diagnostic{Severity::Note, "pipeline-cache", path_.string(),
-                                   fmt::format("has grown beyond {} MiB and is dropped", kMostBytes >> 20U),
-                                   "nothing is lost but time"});
+        note("pipeline-cache", fmt::format("has grown beyond {} MiB and is dropped", kMostBytes >> 20U),
+             "nothing is lost but time");
         return;
     }
     fs::create_directories(path_.parent_path(), error);
@@ -252,9 +249,8 @@ void PipelineCacheFile::save() {
     if (written) {
         savedBytes_ = data->size();
     } else {
-        console_.report(Diagnostic{Severity::Note, "cache-write", path_.string(), written.error().message,
-                                   "nothing is lost but time; name another folder with --pipeline-cache, or "
-                                   "--pipeline-cache none"});
+        note("cache-write", written.error().message,
+             "nothing is lost but time; name another folder with --pipeline-cache, or --pipeline-cache none");
     }
 }
 

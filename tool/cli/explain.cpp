@@ -22,7 +22,6 @@
 #include <memory>
 #include <set>
 #include <span>
-#include <string_view>
 #include <utility>
 #include <vector>
 

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <string_view>
 #include <tuple>
 
 namespace glint::inspect {

@@ -36,16 +36,11 @@ Diagnostic maliocError(const fs::path& where, const std::string& message) {
     return makeError("malioc", where.string(), message, kHint);
 }
 
-// Returns null if `value` has no member of that name.
-const MaliocJson& member(const MaliocJson& value, const char* name) {
+// Returns the value at a JSON pointer, or null if there is none.
+const MaliocJson& at(const MaliocJson& json, const char* pointer) {
     static const MaliocJson null;
-    const auto found = value.is_object() ? value.find(name) : value.end();
-    return value.is_object() && found != value.end() ? *found : null;
-}
-
-const MaliocJson& first(const MaliocJson& list) {
-    static const MaliocJson null;
-    return list.is_array() && !list.empty() ? list.front() : null;
+    const MaliocJson::json_pointer place(pointer);
+    return json.contains(place) ? json.at(place) : null;
 }
 
 std::string textOf(const MaliocJson& value) {
@@ -63,8 +58,8 @@ const MaliocJson& property(const MaliocJson& properties, std::string_view name) 
     static const MaliocJson null;
     if (properties.is_array()) {
         for (const MaliocJson& it : properties) {
-            if (textOf(member(it, "name")) == name) {
-                return member(it, "value");
+            if (textOf(at(it, "/name")) == name) {
+                return at(it, "/value");
             }
         }
     }
@@ -72,9 +67,8 @@ const MaliocJson& property(const MaliocJson& properties, std::string_view name) 
 }
 
 void readCycles(const MaliocJson& performance, MaliocReport& report) {
-    const MaliocJson& pipelines = member(performance, "pipelines");
-    const MaliocJson& longest = member(performance, "longest_path_cycles");
-    const MaliocJson& counts = member(longest, "cycle_count");
+    const MaliocJson& pipelines = at(performance, "/pipelines");
+    const MaliocJson& counts = at(performance, "/longest_path_cycles/cycle_count");
     if (pipelines.is_array() && counts.is_array()) {
         for (std::size_t i = 0; i < std::min(pipelines.size(), counts.size()); ++i) {
             // A path without a bound is null.
@@ -85,7 +79,7 @@ void readCycles(const MaliocJson& performance, MaliocReport& report) {
             }
         }
     }
-    if (const MaliocJson& bound = member(longest, "bound_pipelines"); bound.is_array()) {
+    if (const MaliocJson& bound = at(performance, "/longest_path_cycles/bound_pipelines"); bound.is_array()) {
         for (const MaliocJson& pipeline : bound) {
             if (pipeline.is_string()) {
                 report.boundPipelines.push_back(textOf(pipeline));
@@ -163,25 +157,24 @@ std::optional<fs::path> findProgram(const std::string& program) {
 
 Result<MaliocReport> parseMalioc(std::string_view text) {
     const MaliocJson json = MaliocJson::parse(text, nullptr, false);
-    const MaliocJson& shader = first(member(json, "shaders"));
+    const MaliocJson& shader = at(json, "/shaders/0");
     if (!shader.is_object()) {
         const std::string line(text.substr(0, text.find('\n')));
         return maliocError({}, "malioc printed no report: " + (line.empty() ? "nothing at all" : line));
     }
-    if (const MaliocJson& error = first(member(shader, "errors")); error.is_string()) {
+    if (const MaliocJson& error = at(shader, "/errors/0"); error.is_string()) {
         return maliocError({}, "malioc: " + textOf(error));
     }
     MaliocReport report;
-    report.core = textOf(member(member(shader, "hardware"), "core"));
+    report.core = textOf(at(shader, "/hardware/core"));
     // A compute shader has one variant.
-    const MaliocJson& variant = first(member(shader, "variants"));
-    readCycles(member(variant, "performance"), report);
-    const MaliocJson& properties = member(variant, "properties");
+    readCycles(at(shader, "/variants/0/performance"), report);
+    const MaliocJson& properties = at(shader, "/variants/0/properties");
     report.workRegisters = integerOf(property(properties, "work_registers_used"));
     report.occupancy = integerOf(property(properties, "thread_occupancy"));
     report.spillBytes = integerOf(property(properties, "stack_spill_bytes"));
     // This list belongs to the shader as a whole.
-    for (const MaliocJson* const list : {&member(shader, "properties"), &properties}) {
+    for (const MaliocJson* const list : {&at(shader, "/properties"), &properties}) {
         if (const MaliocJson& slow = property(*list, "has_slow_ray_traversal"); slow.is_boolean()) {
             report.slowRayTraversal = slow.get<bool>();
         }
@@ -211,8 +204,6 @@ Result<MaliocReport> runMalioc(const fs::path& program, const std::string& core,
     }
     return report ? report : maliocError(spirv, report.error().message);
 }
-
-namespace fs = std::filesystem;
 
 namespace {
 

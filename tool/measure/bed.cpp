@@ -11,7 +11,6 @@
 #include <glint/session/camera.h>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <utility>
 

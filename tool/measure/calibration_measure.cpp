@@ -11,8 +11,6 @@
 #include <glint/measure/machine.h>
 #include <glint/session/camera.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>

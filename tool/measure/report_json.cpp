@@ -7,8 +7,6 @@
 #include <glint/measure/machine.h>
 #include <glint/measure/report.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <string_view>
