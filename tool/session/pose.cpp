@@ -3,8 +3,7 @@
 #include "base/vectors.h"
 #include "gltf/motion/animatable.h"
 #include "gltf/motion/transform.h"
-
-#include <glint/session/scene_view.h>
+#include "scene/deformed.h"
 
 #include <algorithm>
 #include <cmath>
@@ -293,6 +292,33 @@ std::vector<std::array<double, 3>> deformedPositions(const gltf::Primitive& prim
         }
         positions.push_back(
             base::toArray(follows ? skinned(primitive.influences, vertex, point, joints) : point));
+    }
+    return positions;
+}
+
+std::vector<glm::dvec3> placedPositions(const gltf::Scene& scene, const SceneViewData& view,
+                                        std::size_t instance, const gltf::Primitive& primitive) {
+    const InstanceView& placed = view.instances[instance];
+    const gltf::Node& node = scene.nodes[view.sources[instance].node];
+    const bool skinned = !placed.joints.empty();
+    std::vector<glm::dvec3> positions;
+    if (compiler::isDeformed(scene, node)) {
+        const std::vector<gltf::Matrix4> joints =
+            skinned ? jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)])
+                    : std::vector<gltf::Matrix4>();
+        for (const std::array<double, 3>& position : deformedPositions(primitive, node.weights, joints)) {
+            positions.push_back(base::toVector(position));
+        }
+    } else {
+        positions.reserve(primitive.positions.size());
+        for (const gltf::Float3& position : primitive.positions) {
+            positions.push_back(base::toVector(position));
+        }
+    }
+    // Skinned vertices are in the world already.
+    const glm::dvec3 from = base::toVector(skinned ? view.origin : view.meshOrigins[placed.mesh]);
+    for (glm::dvec3& position : positions) {
+        position = skinned ? position - from : base::transformed(placed.objectToWorld, position - from);
     }
     return positions;
 }
