@@ -26,7 +26,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
 #include <utility>
 
 namespace glint::cli {
@@ -37,20 +36,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Status makePictureFolder(const std::string& folder) {
-    std::error_code error;
-    if (!folder.empty()) {
-        fs::create_directories(folder, error);
-    }
-    return error ? Status(makeError("bench-folder", folder, "can't be made: " + error.message(),
-                                    "give another --pictures"))
-                 : okStatus();
-}
-
 Status measureAll(const Console& console, const BenchArguments& arguments,
                   measure::CalibrationReport& report) {
     GLINT_TRY_DO(measure::checkBenchFolder(arguments.output, measure::kCalibrationFile));
-    GLINT_TRY_DO(makePictureFolder(arguments.calibrate.pictures));
+    if (!arguments.calibrate.pictures.empty()) {
+        GLINT_TRY_DO(measure::makeBenchFolder(arguments.calibrate.pictures, "give another --pictures"));
+    }
     GLINT_TRY(const auto context, measure::openCalibrationDevice(arguments.render));
     report.machine = measure::machineOf(*context);
     CompileCache cache(arguments.render.cache, "");

@@ -325,7 +325,7 @@ Result<Resolved> readAndResolve(const Console& console, const CompileArguments& 
     GLINT_TRY(resolved.scenes, readScenes(arguments.scenes, import));
     report(warningsOf(resolved.scenes));
     GLINT_TRY(const auto target, measure::targetOf(arguments.settings));
-    compiler::Settings asked = settingsOf(arguments);
+    compiler::Settings asked = arguments.settings;
     asked.compile.progress = console.countTo("compiling");
     GLINT_TRY(resolved.build, compiler::resolve(resolved.scenes, asked, target));
     const compiler::Build& build = resolved.build;

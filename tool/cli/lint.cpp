@@ -17,10 +17,6 @@ namespace glint::cli {
 
 namespace {
 
-std::size_t countIn(const std::vector<compiler::LintFinding>& findings, Severity severity) {
-    return static_cast<std::size_t>(std::ranges::count(findings, severity, &compiler::LintFinding::severity));
-}
-
 base::Json findingsToJson(const std::vector<compiler::LintFinding>& findings, const std::string& where) {
     return listOf(findings, [&](const compiler::LintFinding& finding) {
         Diagnostic diagnostic = inspect::toDiagnostic(finding, where);
@@ -133,8 +129,8 @@ std::string toText(const inspect::LintReport& report, Detail detail) {
             counts.pop_back();
         }
         std::ranges::move(counts, std::back_inserter(row));
-        row.push_back(nonZero(countIn(module.findings, Severity::Error)));
-        row.push_back(nonZero(countIn(module.findings, Severity::Warning)));
+        row.push_back(nonZero(inspect::countIn(module.findings, Severity::Error)));
+        row.push_back(nonZero(inspect::countIn(module.findings, Severity::Warning)));
         if (hasCycles) {
             std::ranges::move(cyclesOf(module), std::back_inserter(row));
         }

@@ -340,19 +340,16 @@ auto orderOf(const ModuleChange& change) {
 
 Result<DiffPackage> readDiffPackage(const std::filesystem::path& folder) {
     GLINT_TRY(const auto loaded, Package::load(folder));
-    Result<DiffPackage> package = readManifestPart(folder);
-    if (!package) {
-        return package.error();
-    }
+    GLINT_TRY(auto package, readManifestPart(folder));
     for (const package::ModuleEntry& entry : loaded.modules()) {
         package::ModuleKey key{entry.role, entry.index, entry.tracer};
         GLINT_TRY(const auto statistics, compiler::measureSpirv(loaded.spirv(key)));
         DiffModule module{std::string(loaded.string(entry.file)), entry.hash, statistics};
         if (package::findRole(entry.role)->repeated == package::Repeated::ByCase) {
             key.index = 0;
-            package->cases[static_cast<int>(entry.index)].modules[key] = std::move(module);
+            package.cases[static_cast<int>(entry.index)].modules[key] = std::move(module);
         } else {
-            package->passes[key] = std::move(module);
+            package.passes[key] = std::move(module);
         }
     }
     return package;

@@ -328,11 +328,11 @@ bool isStage(const LintedModule& module, const char* stage) {
     return module.lint && std::ranges::find(module.lint->stages, stage) != module.lint->stages.end();
 }
 
+}  // namespace
+
 std::size_t countIn(const std::vector<compiler::LintFinding>& findings, Severity severity) {
     return static_cast<std::size_t>(std::ranges::count(findings, severity, &compiler::LintFinding::severity));
 }
-
-}  // namespace
 
 Result<LintFiles> findLintFiles(const fs::path& path) {
     std::error_code error;

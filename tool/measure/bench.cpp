@@ -92,8 +92,8 @@ private:
         compiler::BenchFacts facts = factsOf(bed_.build());
         const std::uint32_t tracers = bed_.context().handles().tracers;
         facts.rayPipeline = (tracers & package::kTracerRayPipeline) != 0;
-        facts.positionFetch = bed_.features().positionFetch;
-        facts.float16 = bed_.features().float16;
+        facts.positionFetch = bed_.facts().positionFetch;
+        facts.float16 = bed_.facts().float16;
         facts.packsTextures = gltf::hasBasisu() && bed_.context().texelFormats().has(TexelFormat::Bc7, true);
         facts.fullTransport = settings_.reference == "full";
         const ReferenceOptions options{settings_.referenceError,
@@ -235,13 +235,12 @@ private:
 void describeScene(BenchBed& bed, BenchReport& report) {
     const compiler::Settings& render = bed.base();
     BenchScene& scene = report.scene;
-    const SceneSize size = bed.sceneSize();
-    scene.triangles = size.triangles;
-    scene.instances = size.instances;
+    scene.triangles = bed.facts().triangles;
+    scene.instances = bed.facts().instances;
     scene.materials = bed.scene().materials.size();
-    scene.lights = bed.lights();
+    scene.lights = bed.facts().lights;
     scene.inFile = gltf::sceneInFile(bed.scene());
-    scene.camera = bed.cameraName();
+    scene.camera = bed.facts().cameraName;
     scene.environment = render.environment;
     scene.width = render.renderer.width;
     scene.height = render.renderer.height;

@@ -138,7 +138,7 @@ private:
             strategies.push_back(std::move(measured));
         }
         return base::Json{
-            {"triangles", bed->sceneSize().triangles},    {"instances", bed->sceneSize().instances},
+            {"triangles", bed->facts().triangles},        {"instances", bed->facts().instances},
             {"materials", scene.materials.size()},        {"width", settings_.render.renderer.width},
             {"height", settings_.render.renderer.height}, {"samples", settings_.render.samples},
             {"strategies", std::move(strategies)}};

@@ -47,7 +47,7 @@ Result<std::string> keyOf(BenchBed& bed, const compiler::Configuration& configur
     }
     packer.add(static_cast<std::uint64_t>(bed.scene().sceneInFile))
         .add(std::string_view(bed.scene().variant))
-        .add(std::string_view(bed.cameraName()))
+        .add(std::string_view(bed.facts().cameraName))
         .add(std::string_view(bed.context().deviceName()))
         .add(std::string_view(bed.context().driverName()));
     if (!base.environment.empty()) {
@@ -280,7 +280,7 @@ Status Measurer::measureBatch(std::span<Entry> entries, std::uint64_t seed) {
 
 Status Measurer::warmUp(const Entry& entry, std::chrono::milliseconds time) const {
     const base::Clock::time_point start = base::Clock::now();
-    while (!bed_.onCpu() && base::Clock::now() - start < time) {
+    while (!bed_.facts().onCpu && base::Clock::now() - start < time) {
         GLINT_TRY([[maybe_unused]] const auto image, entry.mount.exposeSamples(0, 16));
     }
     return okStatus();

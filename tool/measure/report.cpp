@@ -406,6 +406,14 @@ Status checkBenchFolder(const fs::path& folder, const char* mark) {
                                        "give another -o, or check the folder and its permissions"));
 }
 
+Status makeBenchFolder(const fs::path& folder, const std::string& hint) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    return error
+               ? Status(makeError("bench-folder", folder.string(), "can't be made: " + error.message(), hint))
+               : okStatus();
+}
+
 Status writeBench(const BenchReport& report, const fs::path& folder) {
     GLINT_TRY(const auto pictures, picturesOf(report));
     std::error_code error;

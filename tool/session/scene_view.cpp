@@ -16,17 +16,9 @@ using Place = std::array<double, 3>;
 LightView toView(const gltf::Light& light, const SceneViewData& data) {
     LightView view;
     view.size = light.type == gltf::LightType::Directional ? data.directionalSize : data.placedSize;
-    switch (light.type) {
-        case gltf::LightType::Directional:
-            view.type = LightView::Type::Directional;
-            break;
-        case gltf::LightType::Point:
-            view.type = LightView::Type::Point;
-            break;
-        case gltf::LightType::Spot:
-            view.type = LightView::Type::Spot;
-            break;
-    }
+    view.type = light.type == gltf::LightType::Directional ? LightView::Type::Directional
+                : light.type == gltf::LightType::Point     ? LightView::Type::Point
+                                                           : LightView::Type::Spot;
     for (std::size_t i = 0; i < 3; ++i) {
         view.intensity[i] = light.shown ? light.color[i] * light.intensity : 0.0F;
     }
