@@ -1,6 +1,7 @@
 #include "cli/cache.h"
 
 #include "base/files.h"
+#include "base/lists.h"
 #include "cache/action.h"
 #include "cache/store.h"
 #include "cli/options/options.h"
@@ -153,19 +154,14 @@ bool addFiles(std::vector<compiler::FileState>& files, std::span<const fs::path>
 }
 
 std::vector<compiler::FileState> filesOf(const compiler::CompiledPackage& package, const fs::path& folder) {
-    std::vector<compiler::FileState> files;
-    for (const compiler::PackageFile& file : package.files) {
-        files.push_back({(folder / file.name).string(), file.bytes.size(), base::hashBytes(file.bytes), {}});
-    }
-    return files;
+    return base::mapped<compiler::FileState>(package.files, [&](const compiler::PackageFile& file) {
+        return compiler::FileState{
+            (folder / file.name).string(), file.bytes.size(), base::hashBytes(file.bytes), {}};
+    });
 }
 
 std::vector<std::string> pathsOf(std::span<const compiler::FileState> files) {
-    std::vector<std::string> paths;
-    for (const compiler::FileState& file : files) {
-        paths.push_back(file.path);
-    }
-    return paths;
+    return base::mapped<std::string>(files, &compiler::FileState::path);
 }
 
 // --- Pipelines of drivers ---

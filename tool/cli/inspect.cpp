@@ -1,4 +1,5 @@
 // glint inspect: shows the contents of a package.
+#include "base/lists.h"
 #include "cli/command_line.h"
 #include "cli/options/options.h"
 #include "cli/render/report.h"
@@ -127,10 +128,9 @@ std::string sceneTable(const inspect::InspectedPackage& inspected) {
 
 // Returns the first few names, and how many more there are.
 std::string materialsText(const inspect::InspectedPackage& inspected, std::uint32_t shaderId) {
-    std::vector<std::string> names;
-    for (const inspect::MaterialPlace& material : materialsOf(inspected, shaderId)) {
-        names.push_back(inspected.materialName(material));
-    }
+    const std::vector<std::string> names = base::mapped<std::string>(
+        materialsOf(inspected, shaderId),
+        [&](const inspect::MaterialPlace& material) { return inspected.materialName(material); });
     return names.empty() ? "-" : base::firstOf(names, 3);
 }
 
@@ -184,11 +184,7 @@ std::string hitLobesText(const inspect::Manifest& manifest) {
 }
 
 std::vector<std::string> layerNames(const Package& package) {
-    std::vector<std::string> names;
-    for (const package::PackageLayer& layer : package.layers()) {
-        names.push_back(layer.name);
-    }
-    return names;
+    return base::mapped<std::string>(package.layers(), &package::PackageLayer::name);
 }
 
 std::string layersText(const Package& package) {

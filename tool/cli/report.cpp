@@ -1,5 +1,6 @@
 #include "cli/report.h"
 
+#include "base/lists.h"
 #include "cli/table.h"
 #include "emit/package/manifest.h"
 
@@ -98,11 +99,9 @@ base::Fields fieldsOf(const CountedRow*) {
 }
 
 std::vector<CountedRow> rowsOf(const TrafficReport& report) {
-    std::vector<CountedRow> rows;
-    for (const TrafficRow& row : trafficRows(report.shape)) {
-        rows.push_back({row, report.counts[row.unit]});
-    }
-    return rows;
+    return base::mapped<CountedRow>(trafficRows(report.shape), [&](const TrafficRow& row) {
+        return CountedRow{row, report.counts[row.unit]};
+    });
 }
 
 // The shape of the frames that a program draws as they come: none adds to another.

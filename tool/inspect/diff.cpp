@@ -1,5 +1,6 @@
 #include "inspect/diff.h"
 
+#include "base/lists.h"
 #include "base/text.h"
 #include "emit/package/manifest.h"
 
@@ -33,11 +34,10 @@ std::vector<std::pair<std::string, std::string>> settingsOf(const compiler::Mani
     for (const auto& [name, text] : manifest.settings) {
         settings.emplace_back(name, text == "on" ? "true" : text == "off" ? "false" : text);
     }
-    std::vector<std::string> variants;
-    for (const compiler::ManifestScene& scene : manifest.scenes) {
-        variants.push_back(scene.variant.empty() ? "none" : scene.variant);
-    }
-    settings.emplace_back("variant", base::join(variants));
+    const auto variantOf = [](const compiler::ManifestScene& scene) {
+        return scene.variant.empty() ? "none" : scene.variant;
+    };
+    settings.emplace_back("variant", base::join(base::mapped<std::string>(manifest.scenes, variantOf)));
     return settings;
 }
 

@@ -1,6 +1,7 @@
 #include "inspect/pipelines.h"
 
 #include "base/fields.h"
+#include "base/lists.h"
 #include "base/text.h"
 #include "emit/compile.h"
 #include "inspect/package.h"
@@ -578,11 +579,8 @@ compiler::GpuCosts gpuOf(std::string name, std::span<const PipelineReport> repor
 }
 
 std::vector<std::string> builtInGpus() {
-    std::vector<std::string> names;
-    for (const base::BuiltinFile& file : gpuTables()) {
-        names.emplace_back(file.name.substr(0, file.name.rfind('.')));
-    }
-    return names;
+    return base::mapped<std::string>(
+        gpuTables(), [](const base::BuiltinFile& file) { return file.name.substr(0, file.name.rfind('.')); });
 }
 
 Result<compiler::GpuCosts> readGpuCosts(const std::string& nameOrFile) {
@@ -708,10 +706,8 @@ Result<PipelineBudget> readPipelineBudget(const std::filesystem::path& file) {
 std::vector<Diagnostic> overBudget(const PipelineReport& report, const PipelineBudget& budget) {
     std::vector<Diagnostic> found;
     // Rules for other devices count as used, unless all are for others.
-    std::vector<bool> used;
-    for (const PipelineBudget::Rule& rule : budget.rules) {
-        used.push_back(!isFor(rule, report));
-    }
+    std::vector<bool> used = base::mapped<bool>(
+        budget.rules, [&](const PipelineBudget::Rule& rule) { return !isFor(rule, report); });
     if (std::ranges::count(used, true) == std::ssize(used)) {
         found.push_back(makeWarning("pipeline-budget-unused", budget.file,
                                     fmt::format("has no rule for {}", report.device),

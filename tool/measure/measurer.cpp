@@ -2,6 +2,7 @@
 
 #include "base/clock.h"
 #include "base/files.h"
+#include "base/lists.h"
 #include "base/parallel.h"
 #include "cache/action.h"
 #include "cache/store.h"
@@ -265,11 +266,7 @@ Status Measurer::measureBatch(std::span<Entry> entries, std::uint64_t seed) {
         }
         keep(all, round);
     }
-    std::vector<const LinearImage*> means;
-    means.reserve(all.size());
-    for (const Entry* const entry : all) {
-        means.push_back(&entry->mean);
-    }
+    const auto means = base::mapped<const LinearImage*>(all, [](const Entry* entry) { return &entry->mean; });
     const std::vector<image::ImageErrors> errors = errorsOf(means, truth_, bed_.base().compile.jobs);
     for (std::size_t i = baseIsKnown_ ? 1 : 0; i < all.size(); ++i) {
         all[i]->point->errorOfMean = errors[i];
@@ -293,10 +290,8 @@ Status Measurer::expose(Entry& entry, std::uint32_t seed) const {
 }
 
 void Measurer::keep(std::span<Entry*> entries, std::uint32_t round) {
-    std::vector<const LinearImage*> images;
-    for (const Entry* const entry : entries) {
-        images.push_back(&entry->exposure.image);
-    }
+    const auto images =
+        base::mapped<const LinearImage*>(entries, [](const Entry* entry) { return &entry->exposure.image; });
     const std::vector<image::ImageErrors> errors = errorsOf(images, truth_, bed_.base().compile.jobs);
     const double baseMs = entries[0]->exposure.milliseconds;
     const double baseHitMs = entries[0]->exposure.hitMs;

@@ -1,5 +1,6 @@
 #include "base/fields.h"
 #include "base/files.h"
+#include "base/lists.h"
 #include "base/text.h"
 #include "image/compare.h"
 #include "image/png.h"
@@ -104,25 +105,15 @@ std::string renderCommand(const BenchReport& report, const BenchPoint& point) {
 
 namespace {
 
-template <typename Value>
-Interval overRounds(const BenchPoint& point, const Value& value) {
-    std::vector<double> values;
-    for (const HitTimes& hits : point.hits) {
-        values.push_back(value(hits));
-    }
-    return measure::intervalOf(values);
-}
-
 StrategyRow rowOf(const BenchPoint& point, std::size_t index, const std::string& strategy) {
-    using Hits = HitTimes;
     StrategyRow row;
     row.strategy = strategy;
     row.point = index;
     row.ratio = timeRatio(point);
     row.hits = measure::intervalOf(point.hitMs);
     row.hitRatio = measure::intervalOf(point.hitRatios);
-    row.traceMs = overRounds(point, [](const Hits& hits) { return hits.trace; }).median;
-    row.orderMs = overRounds(point, [](const Hits& hits) { return hits.order; }).median;
+    row.traceMs = measure::intervalOf(base::mapped<double>(point.hits, &HitTimes::trace)).median;
+    row.orderMs = measure::intervalOf(base::mapped<double>(point.hits, &HitTimes::order)).median;
     // Shading gets the rest, because its passes overlap if they are not measured one by one.
     row.shadeMs = std::max(row.hits.median - row.traceMs - row.orderMs, 0.0);
     row.commonMs = std::max(measure::intervalOf(point.times).median - row.hits.median, 0.0);

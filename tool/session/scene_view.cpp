@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "base/vectors.h"
 #include "gltf/motion/transform.h"
 
@@ -31,21 +32,15 @@ LightView toView(const gltf::Light& light, const SceneViewData& data) {
 }
 
 std::vector<MorphTargetView> toViews(const std::vector<gltf::MorphTarget>& targets) {
-    std::vector<MorphTargetView> views;
-    views.reserve(targets.size());
-    for (const gltf::MorphTarget& target : targets) {
-        views.push_back({target.positions, target.normals, target.tangents});
-    }
-    return views;
+    return base::mapped<MorphTargetView>(targets, [](const gltf::MorphTarget& target) {
+        return MorphTargetView{target.positions, target.normals, target.tangents};
+    });
 }
 
 std::vector<AttributeView> toViews(const std::vector<gltf::VertexValues>& attributes) {
-    std::vector<AttributeView> views;
-    views.reserve(attributes.size());
-    for (const gltf::VertexValues& attribute : attributes) {
-        views.push_back({attribute.name, attribute.channels, attribute.values});
-    }
-    return views;
+    return base::mapped<AttributeView>(attributes, [](const gltf::VertexValues& attribute) {
+        return AttributeView{attribute.name, attribute.channels, attribute.values};
+    });
 }
 
 PrimitiveView toView(const gltf::Primitive& primitive, std::size_t mesh, std::size_t index) {

@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "settings/descriptor.h"
 #include "settings/values.h"
 
@@ -211,11 +212,7 @@ std::string exactShadowThrough(const BenchFacts& facts) {
 
 std::vector<std::string> strategiesToTry(const BenchFacts& /*facts*/, const std::string& /*base*/,
                                          bool /*quick*/) {
-    std::vector<std::string> names;
-    for (const package::StrategyInfo& info : package::strategyTable()) {
-        names.emplace_back(info.name);
-    }
-    return names;
+    return base::mapped<std::string>(package::strategyTable(), &package::StrategyInfo::name);
 }
 
 // Returns the default's effects, those of a reference of all transport, and values that leave out one effect

@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "cli/report.h"
 #include "cli/table.h"
 #include "emit/package/manifest.h"
@@ -28,11 +29,8 @@ std::string percent(double share) {
 
 // Returns the first names, and how many more there are.
 std::string materialsText(const compiler::Build& build, const std::vector<int>& materials) {
-    std::vector<std::string> names;
-    for (const int material : materials) {
-        names.push_back(build.scenes->materialName(material));
-    }
-    return base::firstOf(names, 3, "; ");
+    const auto nameOf = [&](int material) { return build.scenes->materialName(material); };
+    return base::firstOf(base::mapped<std::string>(materials, nameOf), 3, "; ");
 }
 
 std::string headText(const compiler::Build& build) {

@@ -1,5 +1,6 @@
 #include "cli/options/setting_options.h"
 
+#include "base/lists.h"
 #include "base/text.h"
 #include "cli/options/options.h"
 #include "cli/table.h"
@@ -21,11 +22,7 @@ namespace glint::cli {
 namespace {
 
 std::vector<std::string> namesOf(const std::vector<compiler::SettingWord>& words) {
-    std::vector<std::string> names;
-    for (const compiler::SettingWord& word : words) {
-        names.push_back(word.name);
-    }
-    return names;
+    return base::mapped<std::string>(words, &compiler::SettingWord::name);
 }
 
 std::string typeOf(const compiler::Descriptor& row) {

@@ -1,6 +1,7 @@
 #include "cli/render/report.h"
 
 #include "base/fields.h"
+#include "base/lists.h"
 #include "cli/report.h"
 #include "cli/table.h"
 #include "emit/package/manifest.h"
@@ -91,12 +92,10 @@ constexpr Gate kGates[] = {
     {"cone", &EffectCounters::skippedCone},
 };
 
-std::vector<std::pair<std::string_view, std::uint32_t>> skippedOf(const EffectCounters& effect) {
-    std::vector<std::pair<std::string_view, std::uint32_t>> skipped;
-    for (const Gate& gate : kGates) {
-        skipped.emplace_back(gate.name, effect.*gate.count);
-    }
-    return skipped;
+using SkippedRays = std::pair<std::string_view, std::uint32_t>;
+std::vector<SkippedRays> skippedOf(const EffectCounters& effect) {
+    return base::mapped<SkippedRays>(
+        kGates, [&](const Gate& gate) { return SkippedRays(gate.name, effect.*gate.count); });
 }
 
 std::string effectText(const EffectCounters& effect) {
@@ -139,19 +138,15 @@ std::string toText(const session::SkyChoice& choice) {
 }
 
 std::string toText(const TextureReport& textures) {
-    std::vector<std::string> formats;
-    for (const auto& [name, count] : textures.formats) {
-        formats.push_back(fmt::format("{} {}", count, name));
-    }
+    const auto formats = base::mapped<std::string>(
+        textures.formats, [](const auto& one) { return fmt::format("{} {}", one.second, one.first); });
     std::string text =
         fmt::format("{}: {}, {:.2f} bytes a texel", fmt::join(formats, ", "), formatBytes(textures.bytes),
                     static_cast<double>(textures.bytes) /
                         static_cast<double>(std::max<std::uint64_t>(textures.texels, 1)));
     if (!textures.levels.empty()) {
-        std::vector<std::string> levels;
-        for (const std::optional<std::uint32_t>& level : textures.levels) {
-            levels.push_back(level ? fmt::format("{}", *level) : "-");
-        }
+        const auto levels = base::mapped<std::string>(
+            textures.levels, [](const auto& level) { return level ? std::to_string(*level) : "-"; });
         text += fmt::format("; finest levels read: {}", fmt::join(levels, " "));
     }
     return text;
