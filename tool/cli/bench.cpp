@@ -5,7 +5,6 @@
 #include "base/fields.h"
 #include "base/files.h"
 #include "base/json.h"
-#include "cli/cache.h"
 #include "cli/command_line.h"
 #include "cli/console.h"
 #include "cli/options/options.h"
@@ -13,10 +12,7 @@
 #include "cli/report.h"
 #include "measure/calibration_measure.h"
 
-#include <glint/measure/bench.h>
-#include <glint/measure/calibration.h>
 #include <glint/measure/observer.h>
-#include <glint/measure/report.h>
 #include <glint/session/session.h>
 
 #include <fmt/format.h>
@@ -25,7 +21,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <string>
 #include <utility>
 
 namespace glint::cli {

@@ -2,7 +2,6 @@
 
 #include "base/files.h"
 #include "base/lists.h"
-#include "cache/action.h"
 #include "cache/store.h"
 #include "cli/options/options.h"
 #include "emit/module_files.h"
@@ -13,8 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <filesystem>
-#include <string_view>
 #include <system_error>
 #include <utility>
 

@@ -1,15 +1,12 @@
 // glint compile: compiles a scene's materials into a package.
-#include "emit/compile.h"
+
+#include "cli/compile/compile.h"
 
 #include "base/clock.h"
 #include "base/files.h"
-#include "cli/cache.h"
 #include "cli/command_line.h"
-#include "cli/compile/compile.h"
 #include "cli/options/options.h"
-#include "cli/report.h"
 #include "cli/table.h"
-#include "emit/module_files.h"
 #include "emit/package/compiled_package.h"
 #include "emit/package/header.h"
 #include "emit/package/manifest.h"
@@ -24,16 +21,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <functional>
 #include <iterator>
 #include <memory>
-#include <optional>
 #include <ranges>
 #include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace glint::cli {
 

@@ -5,7 +5,6 @@
 #include "cli/options/options.h"
 #include "cli/options/setting_options.h"
 #include "cli/report.h"
-#include "cli/table.h"
 #include "emit/package/manifest.h"
 #include "gltf/import.h"
 #include "plan/gpu_costs.h"
@@ -21,9 +20,7 @@
 #include <map>
 #include <memory>
 #include <set>
-#include <span>
 #include <utility>
-#include <vector>
 
 namespace glint::cli {
 

@@ -4,28 +4,21 @@
 #include "cli/options/options.h"
 #include "cli/render/report.h"
 #include "cli/report.h"
-#include "cli/table.h"
 #include "emit/package/manifest.h"
 #include "inspect/pipelines.h"
-#include "plan/plan.h"
 #include "resolve/resolve.h"
 #include "settings/descriptor.h"
 
 #include <glint/measure/observer.h>
-#include <glint/package.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <bit>
-#include <filesystem>
 #include <memory>
-#include <optional>
 #include <ranges>
 #include <set>
-#include <string>
-#include <vector>
 
 namespace glint::cli {
 

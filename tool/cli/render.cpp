@@ -4,9 +4,7 @@
 #include "cli/cache.h"
 #include "cli/command_line.h"
 #include "cli/options/options.h"
-#include "cli/render/arguments.h"
 #include "cli/render/frames.h"
-#include "cli/render/report.h"
 #include "image/image_file.h"
 #include "inspect/pipelines.h"
 #include "resolve/light.h"
@@ -18,18 +16,11 @@
 #include <glint/measure/target.h>
 #include <glint/measure/views.h>
 #include <glint/package.h>
-#include <glint/renderer.h>
-#include <glint/session/camera.h>
-#include <glint/session/edits.h>
-#include <glint/session/session.h>
-#include <glint/session/textures.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <iterator>
-#include <memory>
-#include <optional>
 #include <span>
 #include <utility>
 

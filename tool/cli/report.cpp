@@ -1,16 +1,13 @@
 #include "cli/report.h"
 
 #include "base/lists.h"
-#include "cli/table.h"
 #include "emit/package/manifest.h"
 
-#include <glint/internal/package_modules.h>
 #include <glint/renderer_options.h>
 
 #include <fmt/format.h>
 
 #include <array>
-#include <vector>
 
 namespace glint {
 

@@ -1,15 +1,10 @@
 // glint view: shows a scene in a window.
-#include "cli/cache.h"
 #include "cli/command_line.h"
-#include "cli/options/options.h"
 #include "cli/render/arguments.h"
 #include "cli/report.h"
 #include "view/request.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <memory>
-#include <string>
 
 namespace glint::cli {
 

@@ -4,7 +4,6 @@
 #include "base/lists.h"
 #include "base/text.h"
 #include "emit/compile.h"
-#include "inspect/package.h"
 #include "resolve/resolve.h"
 
 #include <glint/internal/package_modules.h>

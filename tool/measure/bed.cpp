@@ -6,7 +6,6 @@
 
 #include <glint/measure/bed.h>
 #include <glint/measure/machine.h>
-#include <glint/measure/point.h>
 #include <glint/measure/target.h>
 #include <glint/session/camera.h>
 

@@ -6,7 +6,6 @@
 #include "measure/calibration_measure.h"
 
 #include <glint/measure/calibration.h>
-#include <glint/measure/device_file.h>
 #include <glint/measure/report.h>
 
 #include <fmt/format.h>
@@ -15,7 +14,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <thread>
 #include <utility>

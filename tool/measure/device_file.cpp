@@ -1,6 +1,5 @@
 #include "base/fields.h"
 #include "emit/package/manifest.h"
-#include "plan/strategy_cost.h"
 
 #include <glint/measure/device_file.h>
 #include <glint/measure/statistics.h>

@@ -5,15 +5,11 @@
 #include <glint/measure/bed.h>
 #include <glint/measure/calibration.h>
 #include <glint/measure/machine.h>
-#include <glint/session/session.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace glint::measure {
 

@@ -13,13 +13,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <optional>
-#include <random>
 #include <string>
-#include <utility>
 
 namespace glint::measure {
 

@@ -9,7 +9,6 @@
 #include "settings/descriptor.h"
 
 #include <glint/measure/report.h>
-#include <glint/measure/settings.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,9 +17,7 @@
 #include <cmath>
 #include <numeric>
 #include <set>
-#include <string>
 #include <system_error>
-#include <vector>
 
 namespace glint::measure {
 

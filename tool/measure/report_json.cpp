@@ -5,11 +5,9 @@
 #include "settings/descriptor.h"
 
 #include <glint/measure/device_file.h>
-#include <glint/measure/machine.h>
 #include <glint/measure/report.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <string_view>
 #include <utility>
 

@@ -14,8 +14,6 @@
 #include <limits>
 #include <map>
 #include <numbers>
-#include <optional>
-#include <string>
 #include <vector>
 
 namespace glint::session {

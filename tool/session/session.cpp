@@ -3,7 +3,6 @@
 #include "emit/compile.h"
 #include "gltf/import.h"
 #include "resolve/light.h"
-#include "resolve/resolve.h"
 #include "scene/deformed.h"
 
 #include <glint/package_shape.h>

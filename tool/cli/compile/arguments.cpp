@@ -2,20 +2,15 @@
 #include "base/text.h"
 #include "cli/compile/compile.h"
 #include "cli/options/options.h"
-#include "cli/options/setting_options.h"
-#include "emit/compile.h"
 #include "emit/package/compiled_package.h"
 #include "emit/package/header.h"
 #include "materials/declarations.h"
 #include "resolve/host.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <iterator>
-#include <string_view>
 
 namespace glint::cli {
 

@@ -1,9 +1,7 @@
 #include "base/clock.h"
 #include "base/files.h"
-#include "base/input_watch.h"
 #include "cli/compile/compile.h"
 #include "cli/options/options.h"
-#include "cli/options/setting_options.h"
 #include "emit/package/compiled_package.h"
 
 #include <glint/package.h>
@@ -12,15 +10,11 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <iterator>
-#include <optional>
 #include <set>
 #include <system_error>
 #include <thread>
-#include <utility>
 
 namespace glint::cli {
 

@@ -1,6 +1,5 @@
 #include "base/lists.h"
 #include "cli/report.h"
-#include "cli/table.h"
 #include "emit/package/manifest.h"
 #include "plan/plan_cost.h"
 

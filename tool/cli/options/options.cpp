@@ -1,7 +1,6 @@
 #include "cli/options/options.h"
 
 #include "base/text.h"
-#include "cli/console.h"
 #include "cli/table.h"
 #include "settings/settings.h"
 
@@ -12,7 +11,6 @@
 #include <filesystem>
 #include <memory>
 #include <sstream>
-#include <string_view>
 
 namespace glint::cli {
 

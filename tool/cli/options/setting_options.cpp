@@ -4,7 +4,6 @@
 #include "base/text.h"
 #include "cli/options/options.h"
 #include "cli/table.h"
-#include "settings/descriptor.h"
 
 #include <glint/measure/settings.h>
 
@@ -14,7 +13,6 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <string_view>
 
 namespace glint::cli {

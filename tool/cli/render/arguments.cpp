@@ -2,8 +2,6 @@
 
 #include "base/lists.h"
 #include "base/text.h"
-#include "cli/options/options.h"
-#include "cli/options/setting_options.h"
 #include "cli/table.h"
 #include "emit/compile.h"
 #include "image/image_file.h"

@@ -8,8 +8,6 @@
 #include <glint/session/live_scene.h>
 
 #include <algorithm>
-#include <memory>
-#include <optional>
 #include <utility>
 
 namespace glint::cli {

@@ -2,8 +2,6 @@
 
 #include "base/fields.h"
 #include "base/lists.h"
-#include "cli/report.h"
-#include "cli/table.h"
 #include "emit/package/manifest.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,6 @@
 #include "measure/features/checks.h"
 
 #include "base/lists.h"
-#include "measure/features/integrals.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <string>
 #include <utility>
 
 namespace glint::measure {

@@ -1,5 +1,4 @@
 // The table of views, and the function by which each shows its layers.
-#include "image/text.h"
 #include "plan/cost.h"
 
 #include <glint/internal/package_modules.h>
