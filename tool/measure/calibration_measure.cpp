@@ -3,7 +3,6 @@
 #include "base/clock.h"
 #include "image/image_file.h"
 #include "image/tone.h"
-#include "measure/measurer.h"
 #include "resolve/resolve.h"
 #include "synthetic/coherence.h"
 
