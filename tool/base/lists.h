@@ -1,4 +1,4 @@
-// Makes lists of lists.
+// Lists and sums of what elements of lists have.
 #pragma once
 
 #include <functional>
@@ -14,6 +14,16 @@ std::vector<Value> mapped(List&& list, const Make& make) {
         values.emplace_back(std::invoke(make, element));
     }
     return values;
+}
+
+// Returns the sum of these values, added in that order.
+template <typename Value, typename List, typename Make>
+Value sumOf(List&& list, const Make& make) {
+    Value sum{};
+    for (auto&& element : list) {
+        sum += std::invoke(make, element);
+    }
+    return sum;
 }
 
 }  // namespace glint::base

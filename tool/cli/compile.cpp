@@ -4,6 +4,7 @@
 
 #include "base/clock.h"
 #include "base/files.h"
+#include "base/lists.h"
 #include "cli/command_line.h"
 #include "cli/options/options.h"
 #include "cli/table.h"
@@ -77,11 +78,8 @@ struct Outcome {
     std::optional<std::size_t> planned{};  // distinct modules, after --plan-only
 
     std::uint64_t packageBytes() const {
-        std::uint64_t bytes = 0;
-        for (const compiler::PackageFile& file : package->files) {
-            bytes += file.bytes.size();
-        }
-        return bytes;
+        return base::sumOf<std::uint64_t>(
+            package->files, [](const compiler::PackageFile& file) { return file.bytes.size(); });
     }
 };
 

@@ -1,6 +1,7 @@
 // glint render: renders a picture of a scene with the runtime.
 #include "base/clock.h"
 #include "base/files.h"
+#include "base/lists.h"
 #include "cli/cache.h"
 #include "cli/command_line.h"
 #include "cli/options/options.h"
@@ -162,12 +163,7 @@ std::array<std::uint8_t, 3> colorOf(PixelPath path) {
 // that left the scene. Grey: no ray. Black: no surface. `paths` has width * height pixels.
 image::DisplayImage coverageMap(const std::vector<PixelPath>& paths, std::uint32_t width,
                                 std::uint32_t height) {
-    image::DisplayImage image{width, height, {}};
-    image.pixels.reserve(paths.size());
-    for (const PixelPath path : paths) {
-        image.pixels.push_back(colorOf(path));
-    }
-    return image;
+    return {width, height, base::mapped<image::Color8>(paths, colorOf)};
 }
 
 // Writes everything that comes after the pictures.

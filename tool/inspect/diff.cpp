@@ -52,9 +52,7 @@ void readCases(const compiler::Manifest& manifest, DiffPackage& package) {
 
 // Returns false if a shader has a material of a scene that is not there.
 bool readMaterials(const compiler::Manifest& manifest, DiffPackage& package) {
-    for (const compiler::ManifestScene& scene : manifest.scenes) {
-        package.scenes.push_back(scene.name);
-    }
+    package.scenes = base::mapped<std::string>(manifest.scenes, &compiler::ManifestScene::name);
     struct Use {
         std::string name;
         std::set<int> shaderIds;

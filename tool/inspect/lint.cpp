@@ -2,6 +2,7 @@
 
 #include "base/files.h"
 #include "base/json.h"
+#include "base/lists.h"
 
 #include <glint/internal/package_format.h>
 
@@ -392,14 +393,8 @@ std::vector<compiler::LintFinding> judgeTogether(std::span<const LintedModule> m
 }
 
 std::size_t LintReport::count(Severity severity) const {
-    std::size_t total = 0;
-    for (const LintedModule& module : modules) {
-        total += countIn(module.findings, severity);
-    }
-    for (const LintedFolder& folder : folders) {
-        total += countIn(folder.findings, severity);
-    }
-    return total;
+    const auto countOf = [severity](const auto& linted) { return countIn(linted.findings, severity); };
+    return base::sumOf<std::size_t>(modules, countOf) + base::sumOf<std::size_t>(folders, countOf);
 }
 
 Diagnostic toDiagnostic(const compiler::LintFinding& finding, const std::string& where) {

@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "cache/store.h"
 #include "gltf/import.h"
 #include "gltf/scene_list.h"
@@ -59,11 +60,9 @@ std::string nameOfPass(const PassTiming& pass) {
 }  // namespace
 
 double stretchMs(std::span<const PassTiming> stretches, Pass pass) {
-    double sum = 0.0;
-    for (const PassTiming& stretch : stretches) {
-        sum += stretch.pass == pass ? stretch.milliseconds : 0.0;
-    }
-    return sum;
+    return base::sumOf<double>(stretches, [pass](const PassTiming& stretch) {
+        return stretch.pass == pass ? stretch.milliseconds : 0.0;
+    });
 }
 
 // Renders the frames before the picture, each with samples of its own, and filters them.

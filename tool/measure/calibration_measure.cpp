@@ -1,6 +1,7 @@
 #include "measure/calibration_measure.h"
 
 #include "base/clock.h"
+#include "base/lists.h"
 #include "image/image_file.h"
 #include "image/tone.h"
 #include "resolve/resolve.h"
@@ -75,9 +76,7 @@ Result<CompiledGroup> compileGroup(const CalibrationSettings& settings, std::uin
                                    std::vector<synthetic::CasesOptions> options,
                                    compiler::ModuleCache* cache) {
     CompiledGroup group;
-    for (const synthetic::CasesOptions& one : options) {
-        group.scenes.push_back(synthetic::makeCasesScene(one));
-    }
+    group.scenes = base::mapped<gltf::Scene>(options, synthetic::makeCasesScene);
     group.options = std::move(options);
     GLINT_TRY(const auto build,
               compiler::resolve(group.scenes, settingsOf(settings, tracers), {.tracers = tracers}));

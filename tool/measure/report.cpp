@@ -89,9 +89,7 @@ std::string renderCommand(const BenchReport& report, const BenchPoint& point) {
         words.insert(words.end(), {"--samples", given.contains("spp") ? given["spp"] : "1"});
         given.erase("spp");
     }
-    for (const std::string& word : compiler::wordsOf(given)) {
-        words.push_back(word);
-    }
+    std::ranges::move(compiler::wordsOf(given), std::back_inserter(words));
     if (!point.package.empty()) {
         words.insert(words.end(), {"--package", point.package});
     }
@@ -121,11 +119,8 @@ StrategyRow rowOf(const BenchPoint& point, std::size_t index, const std::string&
 // Returns the average number of cases among `wave` hits in random order.
 double casesIn(std::span<const std::uint32_t> hits, double wave) {
     const double all = std::accumulate(hits.begin(), hits.end(), 0.0);
-    double cases = 0.0;
-    for (const std::uint32_t count : hits) {
-        cases += all > 0.0 ? 1.0 - std::pow(1.0 - count / all, wave) : 0.0;
-    }
-    return cases;
+    return base::sumOf<double>(
+        hits, [&](std::uint32_t count) { return all > 0.0 ? 1.0 - std::pow(1.0 - count / all, wave) : 0.0; });
 }
 
 void countHits(std::span<const std::uint32_t> buckets, StrategyReport& report) {

@@ -1,9 +1,9 @@
 #include "session/pose.h"
 
+#include "base/lists.h"
 #include "base/vectors.h"
 #include "gltf/motion/animatable.h"
 #include "gltf/motion/transform.h"
-#include "scene/deformed.h"
 
 #include <algorithm>
 #include <cmath>
@@ -127,9 +127,8 @@ Locals restOf(const gltf::Scene& scene) {
         locals.pose.weights.push_back(drawn ? node.restWeights : std::vector<double>());
         locals.pose.visible.push_back(node.visible);
     }
-    for (const gltf::AnimatedMaterial& animated : scene.animatedMaterials) {
-        locals.pose.materials.push_back(animated.rest);
-    }
+    locals.pose.materials =
+        base::mapped<materials::Material>(scene.animatedMaterials, &gltf::AnimatedMaterial::rest);
     locals.pose.lights = scene.restLights;
     locals.pose.cameras = scene.restCameras;
     return locals;
@@ -301,26 +300,16 @@ std::vector<glm::dvec3> placedPositions(const gltf::Scene& scene, const SceneVie
     const InstanceView& placed = view.instances[instance];
     const gltf::Node& node = scene.nodes[view.sources[instance].node];
     const bool skinned = !placed.joints.empty();
-    std::vector<glm::dvec3> positions;
-    if (compiler::isDeformed(scene, node)) {
-        const std::vector<gltf::Matrix4> joints =
-            skinned ? jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)])
-                    : std::vector<gltf::Matrix4>();
-        for (const std::array<double, 3>& position : deformedPositions(primitive, node.weights, joints)) {
-            positions.push_back(base::toVector(position));
-        }
-    } else {
-        positions.reserve(primitive.positions.size());
-        for (const gltf::Float3& position : primitive.positions) {
-            positions.push_back(base::toVector(position));
-        }
-    }
+    const std::vector<gltf::Matrix4> joints =
+        skinned ? jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)])
+                : std::vector<gltf::Matrix4>();
     // Skinned vertices are in the world already.
     const glm::dvec3 from = base::toVector(skinned ? view.origin : view.meshOrigins[placed.mesh]);
-    for (glm::dvec3& position : positions) {
-        position = skinned ? position - from : base::transformed(placed.objectToWorld, position - from);
-    }
-    return positions;
+    return base::mapped<glm::dvec3>(
+        deformedPositions(primitive, node.weights, joints), [&](const std::array<double, 3>& position) {
+            const glm::dvec3 point = base::toVector(position) - from;
+            return skinned ? point : base::transformed(placed.objectToWorld, point);
+        });
 }
 
 }  // namespace glint::session

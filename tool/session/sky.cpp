@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "base/vectors.h"
 #include "image/image_file.h"
 #include "image/tone.h"
@@ -173,10 +174,8 @@ std::optional<double> typicalIlluminance(std::vector<LitPatch> patches) {
         return !std::isfinite(patch.illuminance) || patch.illuminance <= 0.0;
     });
     std::ranges::sort(patches, std::greater(), &LitPatch::illuminance);
-    double flux = 0.0;
-    for (const LitPatch& patch : patches) {
-        flux += patch.illuminance * patch.area;
-    }
+    const auto flux =
+        base::sumOf<double>(patches, [](const LitPatch& patch) { return patch.illuminance * patch.area; });
     double received = 0.0;
     double area = 0.0;
     double sum = 0.0;

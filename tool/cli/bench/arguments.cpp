@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "base/text.h"
 #include "cli/bench/bench.h"
 #include "cli/options/options.h"
@@ -291,9 +292,7 @@ void settleBench(const CLI::App& command, BenchArguments& arguments) {
     if (const auto rays = parseCounts(calibrate.rayWords, kMinRays, kMaxRays)) {
         calibrate.rays = *rays;
     }
-    for (const std::string& text : arguments.candidateWords) {
-        arguments.candidates.push_back(parseCandidate(text));
-    }
+    arguments.candidates = base::mapped<measure::Candidate>(arguments.candidateWords, parseCandidate);
     if (arguments.rounds == 0) {
         const bool isShort = !arguments.calibrate.deviceReport.empty() && arguments.quick;
         arguments.rounds = isShort                                          ? 1

@@ -11,7 +11,6 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 namespace glint::cli {
@@ -308,8 +307,7 @@ std::string factText(const inspect::FactInfo& info, const inspect::PipelineFacts
 }
 
 static std::uint64_t bytesOf(const std::vector<MemoryItem>& items) {
-    return std::accumulate(items.begin(), items.end(), std::uint64_t{0},
-                           [](std::uint64_t sum, const MemoryItem& item) { return sum + item.bytes; });
+    return base::sumOf<std::uint64_t>(items, &MemoryItem::bytes);
 }
 
 static base::Fields fieldsOf(const MemoryReport*) {

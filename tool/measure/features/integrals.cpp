@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "measure/features/checks.h"
 
 #include <algorithm>
@@ -295,10 +296,7 @@ private:
         double freedom = -1.0;
         double expected = 0.0;
         double found = 0.0;
-        double remaining = 0.0;
-        for (const Bin& bin : bins) {
-            remaining += count * bin.share;
-        }
+        auto remaining = base::sumOf<double>(bins, [&](const Bin& bin) { return count * bin.share; });
         for (const Bin& bin : bins) {
             expected += count * bin.share;
             found += static_cast<double>(bin.samples);
