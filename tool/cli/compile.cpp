@@ -1,5 +1,4 @@
 // glint compile: compiles a scene's materials into a package.
-
 #include "cli/compile/compile.h"
 
 #include "base/clock.h"

@@ -152,14 +152,6 @@ Diagnostic unknownCamera(const gltf::Scene& scene, const std::string& wanted) {
                      "use --camera auto, a name, a number from 0, or a place such as 1,2,3/0,0,0/30");
 }
 
-}  // namespace
-
-bool Bounds::empty() const {
-    return min[0] > max[0] || min[1] > max[1] || min[2] > max[2];
-}
-
-namespace {
-
 // Returns a box that is relative to the scene's origin as one in the world.
 Bounds inWorld(const Bounds& box, const SceneViewData& scene) {
     return box.empty() ? box
@@ -168,6 +160,10 @@ Bounds inWorld(const Bounds& box, const SceneViewData& scene) {
 }
 
 }  // namespace
+
+bool Bounds::empty() const {
+    return min[0] > max[0] || min[1] > max[1] || min[2] > max[2];
+}
 
 Bounds worldBounds(const SceneViewData& scene) {
     const std::vector<Bounds> meshes = meshBounds(scene);

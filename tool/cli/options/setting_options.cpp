@@ -123,18 +123,6 @@ void refuseNames(std::string_view setting, const std::vector<std::string>& names
     }
 }
 
-}  // namespace
-
-void addSettings(CLI::App& command, compiler::SettingCommand which, compiler::Settings& settings) {
-    for (const compiler::Descriptor& row : compiler::settingsTable()) {
-        if ((row.commands & which) != 0) {
-            addSetting(command, row, settings);
-        }
-    }
-}
-
-namespace {
-
 // Packages for scenes that are edited, and for hosts that bring textures of their own, trust no textures.
 void checkTrust(const CLI::App& command, const compiler::Settings& settings) {
     if (settings.compile.trustTextures && !trustsTextures(settings) &&
@@ -148,6 +136,14 @@ void checkTrust(const CLI::App& command, const compiler::Settings& settings) {
 }
 
 }  // namespace
+
+void addSettings(CLI::App& command, compiler::SettingCommand which, compiler::Settings& settings) {
+    for (const compiler::Descriptor& row : compiler::settingsTable()) {
+        if ((row.commands & which) != 0) {
+            addSetting(command, row, settings);
+        }
+    }
+}
 
 void checkSettings(const CLI::App& command, const compiler::Settings& settings) {
     checkTrust(command, settings);
