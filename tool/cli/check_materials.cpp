@@ -91,14 +91,10 @@ base::Json finiteOrNull(double value) {
 }
 
 base::Json toJson(const measure::CheckPlace& place) {
-    base::Json parameters = base::Json::object();
-    for (const auto& [name, values] : place.parameters) {
-        parameters[name] = values;
-    }
     return {{"base", place.base},
-            {"parameters", parameters},
+            {"parameters", base::jsonOf(place.parameters)},
             {"view", place.view},
-            {"light", place.light ? base::Json(*place.light) : base::Json(nullptr)}};
+            {"light", base::orNull(place.light)}};
 }
 
 base::Json toJson(const measure::CheckOutcome& outcome) {
