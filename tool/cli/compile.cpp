@@ -98,7 +98,7 @@ base::Json shadersToJson(const Outcome& outcome) {
                   });
 }
 
-base::Json planToJson(const Outcome& outcome) {
+base::Json plannedToJson(const Outcome& outcome) {
     return outcome.planned ? base::Json{{"folder", outcome.arguments.planOnly.path},
                                         {"ninja", outcome.arguments.planOnly.buildFile()},
                                         {"modules", *outcome.planned}}
@@ -134,7 +134,7 @@ base::Json toJson(const Outcome& outcome) {
             {"dropped", droppedToJson(outcome.scenes, outcome.plan)},
             {"output", orNull([&] { return base::textOrNull(outcome.arguments.output); })},
             {"embedded", orNull([&] { return base::textOrNull(outcome.arguments.embed); })},
-            {"plan", planToJson(outcome)}};
+            {"plan", plannedToJson(outcome)}};
 }
 
 std::string chosenEffects(const compiler::EffectPlan& effects) {
