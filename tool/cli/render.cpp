@@ -163,7 +163,7 @@ std::array<std::uint8_t, 3> colorOf(PixelPath path) {
 // that left the scene. Grey: no ray. Black: no surface. `paths` has width * height pixels.
 image::DisplayImage coverageMap(const std::vector<PixelPath>& paths, std::uint32_t width,
                                 std::uint32_t height) {
-    return {width, height, base::mapped<image::Color8>(paths, colorOf)};
+    return {width, height, base::mapped<image::Color8>(paths, [](PixelPath path) { return colorOf(path); })};
 }
 
 // Writes everything that comes after the pictures.
