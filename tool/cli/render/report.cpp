@@ -310,7 +310,7 @@ static std::uint64_t bytesOf(const std::vector<MemoryItem>& items) {
     return base::sumOf<std::uint64_t>(items, &MemoryItem::bytes);
 }
 
-static base::Fields fieldsOf(const MemoryReport*) {
+base::Fields fieldsOf(const MemoryReport*) {
     using T = MemoryReport;
     return {
         output<&T::frame>("frame", "Every image and buffer of the footprint."),
@@ -323,7 +323,7 @@ static base::Fields fieldsOf(const MemoryReport*) {
                [](const T& memory) { return bytesOf(memory.frame) + bytesOf(memory.scene); })};
 }
 
-static std::string toText(const MemoryReport& memory) {
+std::string toText(const MemoryReport& memory) {
     Rows rows{{"memory", "of", "kind", "use", "bytes"}};
     for (const auto& [owner, items] :
          {std::pair("frame", &memory.frame), std::pair("scene", &memory.scene)}) {

@@ -64,6 +64,9 @@ struct MemoryReport {
     std::uint64_t sceneAllocatedBytes = 0;
 };
 
+base::Fields fieldsOf(const MemoryReport*);
+std::string toText(const MemoryReport& memory);
+
 // --- The report of glint render ---
 
 struct EnvironmentReport {
