@@ -5,7 +5,6 @@
 #include "base/fields.h"
 #include "base/files.h"
 #include "base/json.h"
-#include "cli/cache.h"
 #include "cli/command_line.h"
 #include "cli/console.h"
 #include "cli/options/options.h"
@@ -13,10 +12,7 @@
 #include "cli/report.h"
 #include "measure/calibration_measure.h"
 
-#include <glint/measure/bench.h>
-#include <glint/measure/calibration.h>
 #include <glint/measure/observer.h>
-#include <glint/measure/report.h>
 #include <glint/session/session.h>
 
 #include <fmt/format.h>
@@ -25,8 +21,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <string>
-#include <system_error>
 #include <utility>
 
 namespace glint::cli {
@@ -37,41 +31,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-measure::CalibrationSettings settingsOf(const BenchArguments& arguments) {
-    const CalibrateArguments& given = arguments.calibrate;
-    measure::CalibrationSettings settings;
-    settings.render = arguments.render;
-    settings.output = arguments.output;
-    settings.quick = arguments.quick;
-    settings.cases = casesOf(given);
-    settings.rays = raysOf(given);
-    settings.costs = given.costs;
-    settings.coherences = given.coherences;
-    settings.shares = given.shares;
-    settings.lights = given.lights;
-    settings.shadows = given.shadows;
-    settings.pictures = given.pictures;
-    return settings;
-}
-
-Status makePictureFolder(const std::string& folder) {
-    std::error_code error;
-    if (!folder.empty()) {
-        fs::create_directories(folder, error);
-    }
-    return error ? Status(makeError("bench-folder", folder, "can't be made: " + error.message(),
-                                    "give another --pictures"))
-                 : okStatus();
-}
-
 Status measureAll(const Console& console, const BenchArguments& arguments,
                   measure::CalibrationReport& report) {
     GLINT_TRY_DO(measure::checkBenchFolder(arguments.output, measure::kCalibrationFile));
-    GLINT_TRY_DO(makePictureFolder(arguments.calibrate.pictures));
+    if (!arguments.calibrate.pictures.empty()) {
+        GLINT_TRY_DO(measure::makeBenchFolder(arguments.calibrate.pictures, "give another --pictures"));
+    }
     GLINT_TRY(const auto context, measure::openCalibrationDevice(arguments.render));
     report.machine = measure::machineOf(*context);
     CompileCache cache(arguments.render.cache, "");
-    Status done = measure::runCalibration(console, settingsOf(arguments), *context, cache.modules(), report);
+    measure::CalibrationSettings settings = arguments.calibrate;
+    settings.render = arguments.render;
+    settings.output = arguments.output;
+    settings.quick = arguments.quick;
+    Status done = measure::runCalibration(console, settings, *context, cache.modules(), report);
     cache.close(console);
     return done;
 }
@@ -97,14 +70,13 @@ Result<int> calibrate(const Console& console, const BenchArguments& arguments) {
     if (console.refused()) {
         return kExitFailed;
     }
-    if (console.isJson()) {
-        console.result(base::jsonOf(report));
-    } else {
-        console.print(toText(report));
-        console.print(fmt::format("\n{} has the same numbers.\n",
-                                  (fs::path(arguments.output) / measure::kCalibrationFile).string()));
-        console.print(fittedText(fitted, arguments.output));
-    }
+    answer(
+        console, [&] { return base::jsonOf(report); },
+        [&](Detail) {
+            return fmt::format("{}\n{} has the same numbers.\n{}", toText(report),
+                               (fs::path(arguments.output) / measure::kCalibrationFile).string(),
+                               fittedText(fitted, arguments.output));
+        });
     return kExitDone;
 }
 
@@ -151,14 +123,13 @@ Result<int> run(const Console& console, const BenchArguments& arguments) {
         return kExitFailed;
     }
     GLINT_TRY_DO(measure::writeBench(report, arguments.output));
-    if (console.isJson()) {
-        console.result(base::jsonOf(report));
-    } else {
-        console.print(toText(report));
-        console.print(fmt::format("\n{}: open it in a browser; {} has the same numbers.\n",
-                                  (std::filesystem::path(arguments.output) / measure::kPageFile).string(),
-                                  (std::filesystem::path(arguments.output) / measure::kReportFile).string()));
-    }
+    answer(
+        console, [&] { return base::jsonOf(report); },
+        [&](Detail) {
+            return fmt::format("{}\n{}: open it in a browser; {} has the same numbers.\n", toText(report),
+                               (fs::path(arguments.output) / measure::kPageFile).string(),
+                               (fs::path(arguments.output) / measure::kReportFile).string());
+        });
     if (report.advice && !report.advice->point) {
         return makeError(
             "bench-advice", arguments.render.scene, report.advice->why,
@@ -190,12 +161,12 @@ Result<int> reportDevice(const Console& console, const BenchArguments& arguments
     if (console.refused()) {
         return kExitFailed;
     }
-    if (console.isJson()) {
-        console.result(*report);
-    } else {
-        console.print(fmt::format("{} tells of {}: docs/performance.md says where to send it.\n", file,
-                                  report->at("machine").at("device").get<std::string>()));
-    }
+    answer(
+        console, [&] { return *report; },
+        [&](Detail) {
+            return fmt::format("{} tells of {}: docs/performance.md says where to send it.\n", file,
+                               report->at("machine").at("device").get<std::string>());
+        });
     return kExitDone;
 }
 

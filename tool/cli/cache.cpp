@@ -1,7 +1,7 @@
 #include "cli/cache.h"
 
 #include "base/files.h"
-#include "cache/action.h"
+#include "base/lists.h"
 #include "cache/store.h"
 #include "cli/options/options.h"
 #include "emit/module_files.h"
@@ -12,8 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <filesystem>
-#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -27,6 +25,8 @@ namespace {
 constexpr std::array<std::string_view, 13> kWithoutEffect = {
     "--cache",          "--cache-size",       "--color", "--depfile", "--depfile-target", "--jobs", "--json",
     "--pipeline-cache", "--pipeline-threads", "--quiet", "--verbose", "--werror",         "-W"};
+
+constexpr std::string_view kAction = "action";
 
 // Returns an empty text if the variable is not set.
 std::string variable(const char* name) {
@@ -82,12 +82,6 @@ std::string describeOptions(const CLI::App& command) {
     }
     return packer.take();
 }
-
-namespace {
-
-constexpr std::string_view kAction = "action";
-
-}  // namespace
 
 CompileCache::CompileCache(const CacheArguments& arguments, const std::string& options,
                            std::span<const fs::path> inputs) {
@@ -157,19 +151,14 @@ bool addFiles(std::vector<compiler::FileState>& files, std::span<const fs::path>
 }
 
 std::vector<compiler::FileState> filesOf(const compiler::CompiledPackage& package, const fs::path& folder) {
-    std::vector<compiler::FileState> files;
-    for (const compiler::PackageFile& file : package.files) {
-        files.push_back({(folder / file.name).string(), file.bytes.size(), base::hashBytes(file.bytes), {}});
-    }
-    return files;
+    return base::mapped<compiler::FileState>(package.files, [&](const compiler::PackageFile& file) {
+        return compiler::FileState{
+            (folder / file.name).string(), file.bytes.size(), base::hashBytes(file.bytes), {}};
+    });
 }
 
 std::vector<std::string> pathsOf(std::span<const compiler::FileState> files) {
-    std::vector<std::string> paths;
-    for (const compiler::FileState& file : files) {
-        paths.push_back(file.path);
-    }
-    return paths;
+    return base::mapped<std::string>(files, &compiler::FileState::path);
 }
 
 // --- Pipelines of drivers ---
@@ -202,6 +191,10 @@ PipelineCacheFile::PipelineCacheFile(const Console& console, Context& context,
     }
 }
 
+void PipelineCacheFile::note(const char* id, const std::string& message, const char* hint) const {
+    console_.report(Diagnostic{Severity::Note, id, path_.string(), message, hint});
+}
+
 void PipelineCacheFile::add(bool reports) {
     std::error_code error;
     if (!fs::exists(path_, error)) {
@@ -210,8 +203,7 @@ void PipelineCacheFile::add(bool reports) {
     const Result<base::Bytes> bytes = base::readFile(path_, kMostBytes);
     if (!bytes) {
         if (reports) {
-            console_.report(Diagnostic{Severity::Note, "pipeline-cache", path_.string(),
-                                       bytes.error().message, "pipelines are made without it"});
+            note("pipeline-cache", bytes.error().message, "pipelines are made without it");
         }
         return;
     }
@@ -223,8 +215,8 @@ void PipelineCacheFile::add(bool reports) {
     if (added) {
         loadedBytes_ = reports ? bytes->size() : loadedBytes_;
     } else if (reports) {
-        console_.report(Diagnostic{Severity::Note, "pipeline-cache", path_.string(), added.error().message,
-                                   "pipelines are made without it, and the file is replaced"});
+        note("pipeline-cache", added.error().message,
+             "pipelines are made without it, and the file is replaced");
     }
 }
 
@@ -235,16 +227,14 @@ void PipelineCacheFile::save() {
     add(false);
     const Result<std::vector<std::uint8_t>> data = context_.pipelineCacheData();
     if (!data) {
-        console_.report(Diagnostic{Severity::Note, "pipeline-cache", path_.string(), data.error().message,
-                                   "nothing is lost but time"});
+        note("pipeline-cache", data.error().message, "nothing is lost but time");
         return;
     }
     std::error_code error;
     if (data->size() > kMostBytes) {
         fs::remove(path_, error);
-        console_.report(Diagnostic{Severity::Note, "pipeline-cache", path_.string(),
-                                   fmt::format("has grown beyond {} MiB and is dropped", kMostBytes >> 20U),
-                                   "nothing is lost but time"});
+        note("pipeline-cache", fmt::format("has grown beyond {} MiB and is dropped", kMostBytes >> 20U),
+             "nothing is lost but time");
         return;
     }
     fs::create_directories(path_.parent_path(), error);
@@ -252,9 +242,8 @@ void PipelineCacheFile::save() {
     if (written) {
         savedBytes_ = data->size();
     } else {
-        console_.report(Diagnostic{Severity::Note, "cache-write", path_.string(), written.error().message,
-                                   "nothing is lost but time; name another folder with --pipeline-cache, or "
-                                   "--pipeline-cache none"});
+        note("cache-write", written.error().message,
+             "nothing is lost but time; name another folder with --pipeline-cache, or --pipeline-cache none");
     }
 }
 

@@ -124,6 +124,7 @@ public:
 
 private:
     void add(bool reports);
+    void note(const char* id, const std::string& message, const char* hint) const;
 
     const Console& console_;
     Context& context_;

@@ -14,15 +14,11 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <system_error>
 
 namespace glint::cli {
 
 namespace {
-
-using measure::CheckOutcome;
-using measure::CheckState;
 
 struct CheckArguments {
     measure::CheckMaterialsOptions options;
@@ -36,18 +32,19 @@ struct CheckArguments {
 constexpr const char* kPictureSuffix = ".png";
 
 std::string cellOf(const measure::CheckOutcome& outcome) {
+    using enum measure::CheckState;
     switch (outcome.state) {
-        case measure::CheckState::Passed:
+        case Passed:
             return fmt::format("{:.2g}", outcome.worst);
-        case measure::CheckState::Failed:
+        case Failed:
             return fmt::format("FAILED {:.2g}", outcome.worst);
-        case measure::CheckState::Waived:
+        case Waived:
             return fmt::format("waived {:.2g}", outcome.worst);
-        case measure::CheckState::Unasked:
+        case Unasked:
             return "not claimed";
-        case measure::CheckState::Unsure:
+        case Unsure:
             return "unsure";
-        case measure::CheckState::Absent:
+        case Absent:
             break;
     }
     return "-";
@@ -94,14 +91,10 @@ base::Json finiteOrNull(double value) {
 }
 
 base::Json toJson(const measure::CheckPlace& place) {
-    base::Json parameters = base::Json::object();
-    for (const auto& [name, values] : place.parameters) {
-        parameters[name] = values;
-    }
     return {{"base", place.base},
-            {"parameters", parameters},
+            {"parameters", base::jsonOf(place.parameters)},
             {"view", place.view},
-            {"light", place.light ? base::Json(*place.light) : base::Json(nullptr)}};
+            {"light", base::orNull(place.light)}};
 }
 
 base::Json toJson(const measure::CheckOutcome& outcome) {
@@ -115,23 +108,19 @@ base::Json toJson(const measure::CheckOutcome& outcome) {
             {"place", outcome.place ? toJson(*outcome.place) : base::Json(nullptr)}};
 }
 
+base::Json toJson(const measure::FeatureChecks& feature) {
+    return {{"feature", feature.feature},
+            {"declaration", feature.declaration},
+            {"lobe", feature.isLobe},
+            {"combinations", feature.combinations},
+            {"failed", feature.failed()},
+            {"checks", listOf(feature.outcomes, [](const auto& outcome) { return toJson(outcome); })}};
+}
+
 base::Json toJson(const measure::MaterialChecksReport& report, const std::vector<std::string>& pictures) {
-    base::Json features = base::Json::array();
-    for (const measure::FeatureChecks& feature : report.features) {
-        base::Json checks = base::Json::array();
-        for (const measure::CheckOutcome& outcome : feature.outcomes) {
-            checks.push_back(toJson(outcome));
-        }
-        features.push_back(base::Json{{"feature", feature.feature},
-                                      {"declaration", feature.declaration},
-                                      {"lobe", feature.isLobe},
-                                      {"combinations", feature.combinations},
-                                      {"failed", feature.failed()},
-                                      {"checks", checks}});
-    }
     return {{"device", report.device},
             {"samples", report.samples},
-            {"features", features},
+            {"features", listOf(report.features, [](const auto& feature) { return toJson(feature); })},
             {"pictures", pictures}};
 }
 
@@ -166,11 +155,9 @@ Result<int> checkMaterialFeatures(const Console& console, const CheckArguments& 
     }
     GLINT_TRY(const auto report, measure::checkMaterials(options, console));
     GLINT_TRY(const auto pictures, writePictures(arguments.pictures, report.pictures));
-    if (console.isJson()) {
-        console.result(toJson(report, pictures));
-    } else {
-        console.print(toText(report, pictures, console.isVerbose() ? Detail::Whole : Detail::Short));
-    }
+    answer(
+        console, [&] { return toJson(report, pictures); },
+        [&](Detail detail) { return toText(report, pictures, detail); });
     bool failed = false;
     for (const measure::FeatureChecks& feature : report.features) {
         for (const Diagnostic& failure : failuresOf(feature)) {

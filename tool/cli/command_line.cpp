@@ -18,11 +18,8 @@
 #include <memory>
 #include <new>
 #include <optional>
-#include <span>
-#include <string>
 #include <system_error>
 #include <unistd.h>
-#include <vector>
 
 namespace glint::cli {
 

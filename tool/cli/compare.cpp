@@ -118,11 +118,9 @@ Result<int> compare(const Console& console, const CompareArguments& arguments) {
         GLINT_TRY_DO(image::writeImage(arguments.diff, image::differenceMap(image, reference)));
     }
     const double flip = measureFlip(arguments, image, reference);
-    if (console.isJson()) {
-        console.result(toJson(difference, flip, image));
-    } else {
-        console.print(toText(difference, flip, image));
-    }
+    answer(
+        console, [&] { return toJson(difference, flip, image); },
+        [&](Detail) { return toText(difference, flip, image); });
     GLINT_TRY_DO(judge(arguments, difference));
     return kExitDone;
 }

@@ -1,15 +1,12 @@
 // glint compile: compiles a scene's materials into a package.
-#include "emit/compile.h"
+#include "cli/compile/compile.h"
 
 #include "base/clock.h"
 #include "base/files.h"
-#include "cli/cache.h"
+#include "base/lists.h"
 #include "cli/command_line.h"
-#include "cli/compile/compile.h"
 #include "cli/options/options.h"
-#include "cli/report.h"
 #include "cli/table.h"
-#include "emit/module_files.h"
 #include "emit/package/compiled_package.h"
 #include "emit/package/header.h"
 #include "emit/package/manifest.h"
@@ -24,15 +21,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
-#include <filesystem>
-#include <functional>
+#include <iterator>
 #include <memory>
-#include <optional>
+#include <ranges>
 #include <span>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace glint::cli {
 
@@ -40,65 +32,39 @@ namespace {
 
 // --- All results in one step: all files are complete on disk before any of them is moved into place ---
 
-// Members that are empty are not written. The build says whether the lock file is.
-struct CompileOutputs {
-    std::filesystem::path folder;  // of the package
-    std::filesystem::path embed;   // a C++ source
-    const compiler::Depfile& depfile;
-    std::span<const std::string> dependencies;
-};
-
-// The files outside the package's folder, in the order in which they are moved into place.
-class Staging {
-public:
-    Status addEmbedded(const gltf::SceneList& scenes, const compiler::CompiledPackage& package,
-                       const std::filesystem::path& source) {
-        GLINT_TRY(auto staged, stageEmbeddedSource(scenes, package, source));
-        for (base::StagedFile& file : staged) {
-            files_.push_back(std::move(file));
-        }
-        return okStatus();
-    }
-
-    Status add(const std::filesystem::path& path, std::string_view text) {
-        base::removeAbandoned(path);
-        GLINT_TRY(auto staged, base::StagedFile::create(path, base::asBytes(text)));
-        files_.push_back(std::move(staged));
-        return okStatus();
-    }
-
-    Status commit() {
-        for (base::StagedFile& file : files_) {
-            GLINT_TRY_DO(file.commit());
-        }
-        return okStatus();
-    }
-
-private:
-    std::vector<base::StagedFile> files_;
-};
-
-// A full disk leaves everything as it was. Interruptions wait until this is done. Has the errors of
-// writePackage(), stageEmbeddedSource() and makeDepfile(), and "file-write".
+// A full disk leaves everything as it was. Interruptions wait until this is done. Outputs without a name are
+// not written; the build says whether the lock file is. Has the errors of writePackage(),
+// stageEmbeddedSource() and makeDepfile(), and "file-write".
 Status writeOutputs(const compiler::Build& build, const compiler::CompiledPackage& package,
-                    const CompileOutputs& outputs) {
+                    const CompileArguments& arguments, std::span<const std::string> dependencies) {
     const HeldSignals held;
-    Staging staging;
+    // The files outside the package's folder, in the order in which they are moved into place.
+    std::vector<base::StagedFile> staged;
+    const auto stage = [&](const std::filesystem::path& path, std::string_view text) -> Status {
+        base::removeAbandoned(path);
+        GLINT_TRY(auto file, base::StagedFile::create(path, base::asBytes(text)));
+        staged.push_back(std::move(file));
+        return okStatus();
+    };
     if (build.lockText) {
-        GLINT_TRY_DO(staging.add(build.settings.lock.file, *build.lockText));
+        GLINT_TRY_DO(stage(build.settings.lock.file, *build.lockText));
     }
-    if (!outputs.embed.empty()) {
-        GLINT_TRY_DO(staging.addEmbedded(*build.scenes, package, outputs.embed));
+    if (!arguments.embed.empty()) {
+        GLINT_TRY(auto embedded, stageEmbeddedSource(*build.scenes, package, arguments.embed));
+        std::ranges::move(embedded, std::back_inserter(staged));
     }
     // The dependency file comes last, because it tells Make and Ninja that the others exist.
-    if (!outputs.depfile.file.empty()) {
-        GLINT_TRY(const auto text, compiler::makeDepfile(outputs.depfile.targets, outputs.dependencies));
-        GLINT_TRY_DO(staging.add(outputs.depfile.file, text));
+    if (!arguments.depfile.file.empty()) {
+        GLINT_TRY(const auto text, compiler::makeDepfile(arguments.depfile.targets, dependencies));
+        GLINT_TRY_DO(stage(arguments.depfile.file, text));
     }
-    if (!outputs.folder.empty()) {
-        GLINT_TRY_DO(writePackage(package, outputs.folder));
+    if (!arguments.output.empty()) {
+        GLINT_TRY_DO(writePackage(package, arguments.output));
     }
-    return staging.commit();
+    for (base::StagedFile& file : staged) {
+        GLINT_TRY_DO(file.commit());
+    }
+    return okStatus();
 }
 
 // The facts to report at the end. The package is absent after a dry run, and after planning.
@@ -111,34 +77,28 @@ struct Outcome {
     std::optional<std::size_t> planned{};  // distinct modules, after --plan-only
 
     std::uint64_t packageBytes() const {
-        std::uint64_t bytes = 0;
-        for (const compiler::PackageFile& file : package->files) {
-            bytes += file.bytes.size();
-        }
-        return bytes;
+        return base::sumOf<std::uint64_t>(
+            package->files, [](const compiler::PackageFile& file) { return file.bytes.size(); });
     }
 };
 
 base::Json shadersToJson(const Outcome& outcome) {
-    base::Json list = base::Json::array();
-    for (const compiler::Case& shader : outcome.plan.cases) {
-        if (shader.isRetired()) {
-            continue;
-        }
-        list.push_back(base::Json{{"id", shader.shaderId},
-                                  {"name", shader.name},
-                                  {"always", featuresToJson(*outcome.plan.model, shader.always)},
-                                  {"sometimes", featuresToJson(*outcome.plan.model, shader.sometimes)},
-                                  {"keys", shader.keys.size()},
-                                  {"share", compiler::roundedShare(shader.share)},
-                                  {"reason", toString(shader.reason)},
-                                  {"materials", materialsToJson(outcome.scenes, shader.materials)},
-                                  {"stages", stagesToJson(outcome.package, shader.shaderId)}});
-    }
-    return list;
+    const auto isUsed = [](const compiler::Case& shader) { return !shader.isRetired(); };
+    return listOf(outcome.plan.cases | std::views::filter(isUsed),
+                  [&](const compiler::Case& shader) -> base::Json {
+                      return {{"id", shader.shaderId},
+                              {"name", shader.name},
+                              {"always", featuresToJson(*outcome.plan.model, shader.always)},
+                              {"sometimes", featuresToJson(*outcome.plan.model, shader.sometimes)},
+                              {"keys", shader.keys.size()},
+                              {"share", compiler::roundedShare(shader.share)},
+                              {"reason", toString(shader.reason)},
+                              {"materials", materialsToJson(outcome.scenes, shader.materials)},
+                              {"stages", stagesToJson(outcome.package, shader.shaderId)}};
+                  });
 }
 
-base::Json planToJson(const Outcome& outcome) {
+base::Json plannedToJson(const Outcome& outcome) {
     return outcome.planned ? base::Json{{"folder", outcome.arguments.planOnly.path},
                                         {"ninja", outcome.arguments.planOnly.buildFile()},
                                         {"modules", *outcome.planned}}
@@ -146,12 +106,10 @@ base::Json planToJson(const Outcome& outcome) {
 }
 
 base::Json scenesToJson(const gltf::SceneList& scenes) {
-    base::Json list = base::Json::array();
-    for (const gltf::Scene& scene : scenes.scenes()) {
-        list.push_back(base::Json{{"file", scene.path},
-                                  {"sceneInFile", base::jsonOf(compiler::orNone(gltf::sceneInFile(scene)))}});
-    }
-    return list;
+    return listOf(scenes.scenes(), [](const gltf::Scene& scene) -> base::Json {
+        return {{"file", scene.path},
+                {"sceneInFile", base::jsonOf(compiler::orNone(gltf::sceneInFile(scene)))}};
+    });
 }
 
 base::Json toJson(const Outcome& outcome) {
@@ -176,7 +134,7 @@ base::Json toJson(const Outcome& outcome) {
             {"dropped", droppedToJson(outcome.scenes, outcome.plan)},
             {"output", orNull([&] { return base::textOrNull(outcome.arguments.output); })},
             {"embedded", orNull([&] { return base::textOrNull(outcome.arguments.embed); })},
-            {"plan", planToJson(outcome)}};
+            {"plan", plannedToJson(outcome)}};
 }
 
 std::string chosenEffects(const compiler::EffectPlan& effects) {
@@ -208,8 +166,6 @@ Rows fieldsOf(const Outcome& outcome) {
     }
     if (outcome.package != nullptr) {
         rows.push_back({"effects", chosenEffects(plan.effects)});
-    }
-    if (outcome.package != nullptr) {
         rows.push_back({"unique SPIR-V", fmt::format("{}", outcome.package->uniqueSpirv)});
         rows.push_back({"SPIR-V bytes", formatBytes(outcome.package->spirvBytes)});
         rows.push_back({"package bytes", formatBytes(outcome.packageBytes())});
@@ -357,7 +313,7 @@ Result<Resolved> readAndResolve(const Console& console, const CompileArguments& 
     GLINT_TRY(resolved.scenes, readScenes(arguments.scenes, import));
     report(warningsOf(resolved.scenes));
     GLINT_TRY(const auto target, measure::targetOf(arguments.settings));
-    compiler::Settings asked = settingsOf(arguments);
+    compiler::Settings asked = arguments.settings;
     asked.compile.progress = console.countTo("compiling");
     GLINT_TRY(resolved.build, compiler::resolve(resolved.scenes, asked, target));
     const compiler::Build& build = resolved.build;
@@ -426,8 +382,7 @@ Result<int> compileOnce(const Console& console, const CompileArguments& argument
               compilePackage(build, cache.modules(), watched != nullptr ? &watched->warm : nullptr));
     console.progress("writing " + outputsOf(arguments));
     const base::Clock::time_point compiled = base::Clock::now();
-    GLINT_TRY_DO(
-        writeOutputs(build, package, {arguments.output, arguments.embed, arguments.depfile, dependencies}));
+    GLINT_TRY_DO(writeOutputs(build, package, arguments, dependencies));
     if (watched != nullptr) {
         describeRun(package, *watched);
         watched->writeMs = package.tablesMs + base::millisecondsSince(compiled);

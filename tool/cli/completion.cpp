@@ -1,5 +1,6 @@
 // glint completion: prints a script that completes glint's command line in a shell. The scripts are made from
 // the description of the command line.
+#include "base/lists.h"
 #include "base/text.h"
 #include "cli/command_line.h"
 #include "cli/options/options.h"
@@ -7,7 +8,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <functional>
 #include <memory>
 #include <string>
@@ -108,12 +108,7 @@ std::vector<std::string> namesOf(const CommandModel& command) {
 }
 
 std::vector<std::string> namesOf(const std::vector<CommandModel>& commands) {
-    std::vector<std::string> names;
-    names.reserve(commands.size());
-    for (const CommandModel& command : commands) {
-        names.push_back(command.name);
-    }
-    return names;
+    return base::mapped<std::string>(commands, &CommandModel::name);
 }
 
 // --- bash ---------------------------------------------------------------------------------------

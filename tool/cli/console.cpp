@@ -10,7 +10,6 @@
 #include <cstdlib>
 #include <unistd.h>
 #include <utility>
-#include <vector>
 
 namespace glint::cli {
 

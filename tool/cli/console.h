@@ -22,7 +22,12 @@ inline constexpr int kExitDone = 0;
 inline constexpr int kExitFailed = 1;  // the input or the work failed
 inline constexpr int kExitUsage = 2;   // the command line is wrong
 
-enum class ColorChoice { Auto, Always, Never };
+enum class ColorChoice : std::uint8_t { Auto, Always, Never };
+inline constexpr Named<ColorChoice> kColorChoiceNames[] = {
+    {ColorChoice::Auto, "auto"}, {ColorChoice::Always, "always"}, {ColorChoice::Never, "never"}};
+constexpr std::span<const Named<ColorChoice>> namesOf(ColorChoice /*type*/) {
+    return kColorChoiceNames;
+}
 
 // Decides how diagnostics are reported, by id. Errors always stay errors.
 struct DiagnosticPolicy {

@@ -156,12 +156,10 @@ std::string totalTable(const inspect::PackageDiff& diff) {
 }
 
 base::Json idsToJson(const std::vector<int>& ids, const inspect::DiffPackage& package) {
-    base::Json list = base::Json::array();
-    for (const int id : ids) {
+    return listOf(ids, [&](int id) -> base::Json {
         const inspect::DiffCase& shader = package.cases.at(id);
-        list.push_back(base::Json{{"id", id}, {"name", shader.name}, {"keys", shader.keys.size()}});
-    }
-    return list;
+        return {{"id", id}, {"name", shader.name}, {"keys", shader.keys.size()}};
+    });
 }
 
 base::Json moduleToJson(const inspect::DiffModule* module, std::optional<int> shaderId) {
@@ -173,30 +171,22 @@ base::Json moduleToJson(const inspect::DiffModule* module, std::optional<int> sh
     return json;
 }
 
-base::Json modulesToJson(const inspect::PackageDiff& diff) {
-    base::Json list = base::Json::array();
-    for (const inspect::ModuleChange& change : diff.modules) {
-        list.push_back(base::Json{{"change", changeOf(change.before != nullptr, change.after != nullptr)},
-                                  {"role", std::string(package::roleName(change.key.role))},
-                                  {"ordering", base::textOrNull(orderingName(change.key))},
-                                  {"tracer", base::textOrNull(tracerName(change.key))},
-                                  {"before", moduleToJson(change.before, change.idBefore)},
-                                  {"after", moduleToJson(change.after, change.idAfter)}});
-    }
-    return list;
+base::Json toJson(const inspect::ModuleChange& change) {
+    return {{"change", changeOf(change.before != nullptr, change.after != nullptr)},
+            {"role", std::string(package::roleName(change.key.role))},
+            {"ordering", base::textOrNull(orderingName(change.key))},
+            {"tracer", base::textOrNull(tracerName(change.key))},
+            {"before", moduleToJson(change.before, change.idBefore)},
+            {"after", moduleToJson(change.after, change.idAfter)}};
 }
 
-base::Json changedMaterialsToJson(const inspect::PackageDiff& diff) {
-    base::Json list = base::Json::array();
-    for (const inspect::MaterialChange& change : diff.materials) {
-        list.push_back(base::Json{{"change", changeOf(!change.before.empty(), !change.after.empty())},
-                                  {"scene", base::textOrNull(change.material.scene)},
-                                  {"name", change.material.name},
-                                  {"sameNamed", change.material.sameNamed},
-                                  {"before", change.before},
-                                  {"after", change.after}});
-    }
-    return list;
+base::Json toJson(const inspect::MaterialChange& change) {
+    return {{"change", changeOf(!change.before.empty(), !change.after.empty())},
+            {"scene", base::textOrNull(change.material.scene)},
+            {"name", change.material.name},
+            {"sameNamed", change.material.sameNamed},
+            {"before", change.before},
+            {"after", change.after}};
 }
 
 std::string diffText(const inspect::PackageDiff& diff, const DiffSides& sides, Detail detail) {
@@ -210,33 +200,26 @@ std::string diffText(const inspect::PackageDiff& diff, const DiffSides& sides, D
 }
 
 base::Json diffJson(const inspect::PackageDiff& diff, const DiffSides& sides) {
-    base::Json settings = base::Json::array();
-    for (const inspect::SettingChange& change : diff.settings) {
-        settings.push_back(
-            base::Json{{"name", change.name}, {"before", change.before}, {"after", change.after}});
-    }
-    base::Json shaders = base::Json::array();
-    for (const inspect::ShaderChange& change : diff.shaders) {
-        shaders.push_back(base::Json{{"change", nameOf(change.kind)},
-                                     {"before", idsToJson(change.before, sides.before)},
-                                     {"after", idsToJson(change.after, sides.after)},
-                                     {"keysAdded", change.keysAdded},
-                                     {"keysRemoved", change.keysRemoved}});
-    }
-    base::Json totals = base::Json::array();
-    for (const inspect::TotalChange& change : diff.totals) {
-        totals.push_back(
-            base::Json{{"name", change.name}, {"before", change.before}, {"after", change.after}});
-    }
+    const auto valueToJson = [](const auto& change) -> base::Json {
+        return {{"name", change.name}, {"before", change.before}, {"after", change.after}};
+    };
+    const auto shaderToJson = [&](const inspect::ShaderChange& change) -> base::Json {
+        return {{"change", nameOf(change.kind)},
+                {"before", idsToJson(change.before, sides.before)},
+                {"after", idsToJson(change.after, sides.after)},
+                {"keysAdded", change.keysAdded},
+                {"keysRemoved", change.keysRemoved}};
+    };
+    const auto changeToJson = [](const auto& change) { return toJson(change); };
     return {
         {"a", sides.nameBefore},
         {"b", sides.nameAfter},
         {"differ", !diff.isEmpty()},
-        {"settings", settings},
-        {"shaders", shaders},
-        {"modules", modulesToJson(diff)},
-        {"materials", changedMaterialsToJson(diff)},
-        {"totals", totals},
+        {"settings", listOf(diff.settings, valueToJson)},
+        {"shaders", listOf(diff.shaders, shaderToJson)},
+        {"modules", listOf(diff.modules, changeToJson)},
+        {"materials", listOf(diff.materials, changeToJson)},
+        {"totals", listOf(diff.totals, valueToJson)},
         {"tablesDiffer", diff.tablesDiffer},
         {"same",
          {{"shaders", diff.sameShaders}, {"modules", diff.sameModules}, {"materials", diff.sameMaterials}}}};
@@ -253,11 +236,9 @@ Result<int> diff(const Console& console, const DiffArguments& arguments) {
     GLINT_TRY(const auto after, inspect::readDiffPackage(arguments.after));
     const inspect::PackageDiff difference = inspect::comparePackages(before, after);
     const DiffSides sides{arguments.before, arguments.after, before, after};
-    if (console.isJson()) {
-        console.result(diffJson(difference, sides));
-    } else {
-        console.print(diffText(difference, sides, console.isVerbose() ? Detail::Whole : Detail::Short));
-    }
+    answer(
+        console, [&] { return diffJson(difference, sides); },
+        [&](Detail detail) { return diffText(difference, sides, detail); });
     return arguments.exitCode && !difference.isEmpty() ? kExitFailed : kExitDone;
 }
 

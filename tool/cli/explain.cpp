@@ -5,7 +5,6 @@
 #include "cli/options/options.h"
 #include "cli/options/setting_options.h"
 #include "cli/report.h"
-#include "cli/table.h"
 #include "emit/package/manifest.h"
 #include "gltf/import.h"
 #include "plan/gpu_costs.h"
@@ -20,11 +19,8 @@
 #include <charconv>
 #include <map>
 #include <memory>
-#include <optional>
 #include <set>
-#include <span>
-#include <string_view>
-#include <vector>
+#include <utility>
 
 namespace glint::cli {
 
@@ -32,35 +28,21 @@ namespace {
 
 // --- What moves in a scene ---
 
-constexpr std::string_view nameOf(gltf::AnimationPath path) {
-    switch (path) {
-        case gltf::AnimationPath::Translation:
-            return "translation";
-        case gltf::AnimationPath::Rotation:
-            return "rotation";
-        case gltf::AnimationPath::Scale:
-            return "scale";
-        case gltf::AnimationPath::Visible:
-            return "visible";
-        case gltf::AnimationPath::Material:
-            return "material";
-        case gltf::AnimationPath::Light:
-            return "light";
-        case gltf::AnimationPath::Camera:
-            return "camera";
-        case gltf::AnimationPath::Weights:
-        case gltf::AnimationPath::Weight:
-            break;
-    }
-    return "weights";
+// The properties that animations move, in the order of the JSON. One weight counts with all weights.
+constexpr Named<gltf::AnimationPath> kPaths[] = {{gltf::AnimationPath::Translation, "translation"},
+                                                 {gltf::AnimationPath::Rotation, "rotation"},
+                                                 {gltf::AnimationPath::Scale, "scale"},
+                                                 {gltf::AnimationPath::Weights, "weights"},
+                                                 {gltf::AnimationPath::Visible, "visible"},
+                                                 {gltf::AnimationPath::Material, "material"},
+                                                 {gltf::AnimationPath::Light, "light"},
+                                                 {gltf::AnimationPath::Camera, "camera"}};
+
+std::string nameOfPath(gltf::AnimationPath path) {
+    return std::string(std::ranges::find(kPaths, path, &Named<gltf::AnimationPath>::value)->name);
 }
 
-constexpr gltf::AnimationPath kPaths[] = {gltf::AnimationPath::Translation, gltf::AnimationPath::Rotation,
-                                          gltf::AnimationPath::Scale,       gltf::AnimationPath::Weights,
-                                          gltf::AnimationPath::Visible,     gltf::AnimationPath::Material,
-                                          gltf::AnimationPath::Light,       gltf::AnimationPath::Camera};
-
-// Counts channels by the property that they move. A channel of one weight counts with those of all weights.
+// Counts channels by the property that they move.
 std::map<gltf::AnimationPath, std::size_t> channelsOf(const gltf::Animation& animation) {
     std::map<gltf::AnimationPath, std::size_t> counts;
     for (const gltf::AnimationChannel& channel : animation.channels) {
@@ -119,32 +101,30 @@ std::string meshName(const gltf::Scene& scene, int mesh) {
 // Describes animations, and the meshes that follow joints or morph targets.
 base::Json motionToJson(const gltf::Scene& scene) {
     base::Json animations = base::Json::array();
-    for (std::size_t i = 0; i < scene.animations.size(); ++i) {
-        const gltf::Animation& animation = scene.animations[i];
+    for (const gltf::Animation& animation : scene.animations) {
         base::Json channels = base::Json::object();
-        for (const gltf::AnimationPath path : kPaths) {
-            channels[std::string(nameOf(path))] = 0;
+        for (const Named<gltf::AnimationPath>& path : kPaths) {
+            channels[std::string(path.name)] = 0;
         }
         for (const auto& [path, count] : channelsOf(animation)) {
-            channels[std::string(nameOf(path))] = count;
+            channels[nameOfPath(path)] = count;
         }
-        animations.push_back({{"index", i},
+        animations.push_back({{"index", animations.size()},
                               {"name", animation.name},
                               {"duration", animation.duration},
                               {"nodes", nodesOf(animation)},
                               {"channels", channels}});
     }
-    base::Json meshes = base::Json::array();
-    for (const Deformed& deformed : deformedOf(scene)) {
-        meshes.push_back({{"node", deformed.node->source},
-                          {"mesh", deformed.node->mesh},
-                          {"name", scene.meshes[static_cast<std::size_t>(deformed.node->mesh)].name},
-                          {"vertices", deformed.vertices},
-                          {"joints", deformed.joints},
-                          {"influences", deformed.influences},
-                          {"morphTargets", deformed.targets}});
-    }
-    return {{"animations", animations}, {"deformedMeshes", meshes}};
+    const auto meshToJson = [&](const Deformed& deformed) -> base::Json {
+        return {{"node", deformed.node->source},
+                {"mesh", deformed.node->mesh},
+                {"name", scene.meshes[static_cast<std::size_t>(deformed.node->mesh)].name},
+                {"vertices", deformed.vertices},
+                {"joints", deformed.joints},
+                {"influences", deformed.influences},
+                {"morphTargets", deformed.targets}};
+    };
+    return {{"animations", animations}, {"deformedMeshes", listOf(deformedOf(scene), meshToJson)}};
 }
 
 // Returns an empty text if nothing moves.
@@ -154,7 +134,7 @@ std::string motionText(const gltf::Scene& scene) {
         const gltf::Animation& animation = scene.animations[i];
         std::string channels;
         for (const auto& [path, count] : channelsOf(animation)) {
-            channels += fmt::format("{}{} of {}", channels.empty() ? "" : ", ", count, nameOf(path));
+            channels += fmt::format("{}{} of {}", channels.empty() ? "" : ", ", count, nameOfPath(path));
         }
         rows.push_back({fmt::format("animation {}", i),
                         fmt::format("{}{:.3f} s, {} nodes, channels: {}",
@@ -173,7 +153,7 @@ std::string motionText(const gltf::Scene& scene) {
             {"deformed", fmt::format("{} (/nodes/{}), {} vertices: {}", meshName(scene, deformed.node->mesh),
                                      deformed.node->source, deformed.vertices, follows)});
     }
-    return rows.empty() ? "" : formatFields(rows);
+    return formatFields(rows);
 }
 
 // --- The command ---
@@ -204,14 +184,6 @@ std::string scenesText(const gltf::Scene& scene) {
                          {"this one", labels[static_cast<std::size_t>(scene.sceneInFile)] + " (--scene)"}});
 }
 
-base::Json scenesInFileToJson(const gltf::Scene& scene) {
-    base::Json names = base::Json::array();
-    for (const std::string& name : scene.scenesInFile) {
-        names.push_back(base::textOrNull(name));
-    }
-    return names;
-}
-
 // Returns an empty text if the scene has no variants.
 std::string variantsText(const gltf::Scene& scene) {
     if (scene.variants.empty()) {
@@ -221,28 +193,23 @@ std::string variantsText(const gltf::Scene& scene) {
                          {"materials of", scene.variant.empty() ? "no variant (--variant)" : scene.variant}});
 }
 
-base::Json sameImagesToJson(const gltf::Scene& scene) {
-    base::Json list = base::Json::array();
+// Returns for each image with the texels of another one that image's pointer and the other's.
+std::vector<std::pair<std::string, std::string>> sameImagesOf(const gltf::Scene& scene) {
+    std::vector<std::pair<std::string, std::string>> same;
     for (const gltf::Image& image : scene.images) {
         if (image.sameAs >= 0) {
-            const gltf::Image& other = scene.images[static_cast<std::size_t>(image.sameAs)];
-            list.push_back(base::Json{{"image", image.pointer}, {"as", other.pointer}});
+            same.emplace_back(image.pointer, scene.images[static_cast<std::size_t>(image.sameAs)].pointer);
         }
     }
-    return list;
+    return same;
 }
 
-// Returns an empty text if no image has the texels of another one.
 std::string sameImagesText(const gltf::Scene& scene) {
     Rows rows;
-    for (const gltf::Image& image : scene.images) {
-        if (image.sameAs >= 0) {
-            rows.push_back(
-                {"same texels", fmt::format("{} as {}, which takes its place", image.pointer,
-                                            scene.images[static_cast<std::size_t>(image.sameAs)].pointer)});
-        }
+    for (const auto& [image, other] : sameImagesOf(scene)) {
+        rows.push_back({"same texels", fmt::format("{} as {}, which takes its place", image, other)});
     }
-    return rows.empty() ? std::string() : formatFields(rows);
+    return formatFields(rows);
 }
 
 // Returns every material with that number, else those with that name; all if none is asked for.
@@ -285,27 +252,25 @@ base::Json gpuToJson(const compiler::KnownCosts& costs, double acceptedError) {
     if (!costs.gpu) {
         return nullptr;
     }
-    base::Json strategies = base::Json::array();
-    for (const compiler::StrategyFactor& factor : strategyFactors(*costs.gpu)) {
-        strategies.push_back({{"strategy", factor.strategy},
-                              {"factor", factor.factor},
-                              {"occupancy", factor.module->occupancy},
-                              {"spills", factor.module->spills},
-                              {"scratchBytes", factor.module->scratchBytes}});
-    }
-    base::Json choices = base::Json::array();
-    for (const compiler::GpuChoice& choice : chooseSettings(&*costs.gpu, acceptedError)) {
-        choices.push_back({{"setting", choice.setting},
-                           {"value", choice.value},
-                           {"known", choice.known},
-                           {"why", choice.why}});
-    }
+    const auto strategyToJson = [](const compiler::StrategyFactor& factor) -> base::Json {
+        return {{"strategy", factor.strategy},
+                {"factor", factor.factor},
+                {"occupancy", factor.module->occupancy},
+                {"spills", factor.module->spills},
+                {"scratchBytes", factor.module->scratchBytes}};
+    };
+    const auto choiceToJson = [](const compiler::GpuChoice& choice) -> base::Json {
+        return {{"setting", choice.setting},
+                {"value", choice.value},
+                {"known", choice.known},
+                {"why", choice.why}};
+    };
     return {{"name", costs.gpu->name},
             {"device", costs.gpu->device},
             {"driver", costs.gpu->driver},
             {"branchFactor", base::orNull(branchFactor(*costs.gpu))},
-            {"strategies", std::move(strategies)},
-            {"choices", std::move(choices)}};
+            {"strategies", listOf(strategyFactors(*costs.gpu), strategyToJson)},
+            {"choices", listOf(chooseSettings(&*costs.gpu, acceptedError), choiceToJson)}};
 }
 
 std::string gpuText(const compiler::KnownCosts& costs, double acceptedError) {
@@ -326,7 +291,7 @@ base::Json toJson(const ExplainArguments& arguments, const compiler::Build& buil
     const compiler::PlanOptions& options = build.settings.compile.plan;
     base::Json result{{"scene", arguments.scene},
                       {"sceneInFile", base::jsonOf(compiler::orNone(gltf::sceneInFile(scene)))},
-                      {"scenesInFile", scenesInFileToJson(scene)},
+                      {"scenesInFile", listOf(scene.scenesInFile, base::textOrNull)},
                       {"merge", nameOf(options.merge)},
                       {"alpha", nameOf(options.keys.alpha)},
                       {"hitLobes", featuresToJson(*build.plan.model, options.keys.keptLobes & build.plan.model->lobes)},
@@ -336,41 +301,32 @@ base::Json toJson(const ExplainArguments& arguments, const compiler::Build& buil
         result["plan"] = planToJson(build);
         return result;
     }
-    result["sameImages"] = sameImagesToJson(scene);
+    result["sameImages"] = listOf(sameImagesOf(scene), [](const auto& same) -> base::Json {
+        return {{"image", same.first}, {"as", same.second}};
+    });
     result["effects"] = base::jsonOf(build.plan.effects.decisions);
     result["strategies"] = base::jsonOf(*build.settings.compile.strategyChoice);
     result["gpu"] = gpuToJson(costs, build.asked.precisionError);
     result["motion"] = motionToJson(scene);
-    result["materials"] = base::Json::array();
-    for (const int material : materials) {
-        result["materials"].push_back(materialToJson(build, material));
-    }
+    result["materials"] = listOf(materials, [&](int material) { return materialToJson(build, material); });
     return result;
 }
 
-void print(const Console& console, const ExplainArguments& arguments, const compiler::Build& build,
-           const compiler::KnownCosts& costs, const std::vector<int>& materials) {
-    const Detail detail = console.isVerbose() ? Detail::Whole : Detail::Short;
+std::string toText(const ExplainArguments& arguments, const compiler::Build& build,
+                   const compiler::KnownCosts& costs, const std::vector<int>& materials, Detail detail) {
     if (arguments.wholePlan) {
-        console.print(planText(build, detail));
-        return;
+        return planText(build, detail);
     }
     const gltf::Scene& scene = build.scenes->scenes().front();
-    console.print(scenesText(scene));
-    console.print(variantsText(scene));
+    std::string text = scenesText(scene) + variantsText(scene);
     if (arguments.material.empty()) {
-        console.print(effectsText(build.plan.effects));
-        console.print(strategiesText(*build.settings.compile.strategyChoice));
-        console.print(gpuText(costs, build.asked.precisionError));
-        console.print(motionText(scene));
-        console.print(sameImagesText(scene));
+        text += effectsText(build.plan.effects) + strategiesText(*build.settings.compile.strategyChoice) +
+                gpuText(costs, build.asked.precisionError) + motionText(scene) + sameImagesText(scene);
     }
     for (const int material : materials) {
-        console.print(toText(build, material, detail));
+        text += toText(build, material, detail);
     }
-    if (materials.empty()) {
-        console.print("no materials\n");
-    }
+    return materials.empty() ? text + "no materials\n" : text;
 }
 
 Result<int> explain(const Console& console, const ExplainArguments& arguments) {
@@ -390,11 +346,9 @@ Result<int> explain(const Console& console, const ExplainArguments& arguments) {
     if (build.excess) {
         console.report(makeWarning("max-shaders", scene.path, *build.excess));
     }
-    if (console.isJson()) {
-        console.result(toJson(arguments, build, target.costs, materials));
-    } else {
-        print(console, arguments, build, target.costs, materials);
-    }
+    answer(
+        console, [&] { return toJson(arguments, build, target.costs, materials); },
+        [&](Detail detail) { return toText(arguments, build, target.costs, materials, detail); });
     return kExitDone;
 }
 

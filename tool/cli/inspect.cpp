@@ -1,14 +1,15 @@
 // glint inspect: shows the contents of a package.
+#include "base/lists.h"
 #include "cli/command_line.h"
-#include "cli/inspect/pipelines.h"
 #include "cli/options/options.h"
+#include "cli/render/report.h"
 #include "cli/report.h"
-#include "cli/table.h"
 #include "emit/package/manifest.h"
-#include "inspect/package.h"
-#include "plan/plan.h"
+#include "inspect/pipelines.h"
 #include "resolve/resolve.h"
 #include "settings/descriptor.h"
+
+#include <glint/measure/observer.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,6 +17,8 @@
 #include <algorithm>
 #include <bit>
 #include <memory>
+#include <ranges>
+#include <set>
 
 namespace glint::cli {
 
@@ -32,13 +35,11 @@ base::Json describe(const inspect::InspectedPackage& inspected, const inspect::I
 }
 
 base::Json modulesToJson(const inspect::InspectedPackage& inspected) {
-    base::Json list = base::Json::array();
-    for (const inspect::InspectedModule& module : inspected.modules) {
+    return listOf(inspected.modules, [&](const inspect::InspectedModule& module) {
         base::Json entry = describe(inspected, module);
         entry.update(base::jsonOf(module.statistics));
-        list.push_back(std::move(entry));
-    }
-    return list;
+        return entry;
+    });
 }
 
 base::Json stagesOf(const inspect::InspectedPackage& inspected, std::uint32_t shaderId) {
@@ -51,43 +52,39 @@ base::Json stagesOf(const inspect::InspectedPackage& inspected, std::uint32_t sh
     return stages;
 }
 
+// Returns the materials that have the shader.
+std::set<inspect::MaterialPlace> materialsOf(const inspect::InspectedPackage& inspected,
+                                             std::uint32_t shaderId) {
+    const auto found = inspected.materials.find(shaderId);
+    return found == inspected.materials.end() ? std::set<inspect::MaterialPlace>() : found->second;
+}
+
 base::Json shadersToJson(const inspect::InspectedPackage& inspected) {
-    base::Json list = base::Json::array();
+    const auto materialToJson = [&](const inspect::MaterialPlace& material) -> base::Json {
+        return {{"scene", material.first},
+                {"index", material.second},
+                {"name", inspected.materialName(material)}};
+    };
     std::uint32_t id = 0;
-    for (const package::CaseEntry& shader : inspected.package.cases()) {
-        base::Json materials = base::Json::array();
-        const auto found = inspected.materials.find(id);
-        if (found != inspected.materials.end()) {
-            for (const inspect::MaterialPlace& material : found->second) {
-                materials.push_back(base::Json{{"scene", material.first},
-                                               {"index", material.second},
-                                               {"name", inspected.materialName(material)}});
-            }
-        }
-        list.push_back(base::Json{{"id", id},
-                                  {"name", std::string(inspected.package.string(shader.name))},
-                                  {"always", inspected.package.featureNames(shader.always)},
-                                  {"sometimes", inspected.package.featureNames(shader.sometimes)},
-                                  {"keys", shader.keyCount},
-                                  {"materials", materials},
-                                  {"stages", stagesOf(inspected, id)}});
-        ++id;
-    }
-    return list;
+    return listOf(inspected.package.cases(), [&](const package::CaseEntry& shader) -> base::Json {
+        const std::uint32_t own = id++;
+        return {{"id", own},
+                {"name", std::string(inspected.package.string(shader.name))},
+                {"always", inspected.package.featureNames(shader.always)},
+                {"sometimes", inspected.package.featureNames(shader.sometimes)},
+                {"keys", shader.keyCount},
+                {"materials", listOf(materialsOf(inspected, own), materialToJson)},
+                {"stages", stagesOf(inspected, own)}};
+    });
 }
 
 base::Json scenesToJson(const inspect::InspectedPackage& inspected) {
-    base::Json list = base::Json::array();
-    for (std::uint32_t i = 0; i < inspected.package.sceneCount(); ++i) {
+    return listOf(std::views::iota(0U, inspected.package.sceneCount()), [&](std::uint32_t i) -> base::Json {
         const PackageScene scene = inspected.package.scene(i);
-        list.push_back(base::Json{{"name", std::string(scene.name)},
-                                  {"variant", base::textOrNull(inspected.variantOf(i))},
-                                  {"materials", scene.materials.size()},
-                                  {"primitives", scene.primitives.size()},
-                                  {"textures", scene.textures.size()},
-                                  {"samplers", scene.samplers.size()}});
-    }
-    return list;
+        return {{"name", std::string(scene.name)},     {"variant", base::textOrNull(inspected.variantOf(i))},
+                {"materials", scene.materials.size()}, {"primitives", scene.primitives.size()},
+                {"textures", scene.textures.size()},   {"samplers", scene.samplers.size()}};
+    });
 }
 
 package::ShadowPlacement firstShadowsOf(const Package& package) {
@@ -124,15 +121,10 @@ std::string sceneTable(const inspect::InspectedPackage& inspected) {
 
 // Returns the first few names, and how many more there are.
 std::string materialsText(const inspect::InspectedPackage& inspected, std::uint32_t shaderId) {
-    const auto found = inspected.materials.find(shaderId);
-    if (found == inspected.materials.end()) {
-        return "-";
-    }
-    std::vector<std::string> names;
-    for (const inspect::MaterialPlace& material : found->second) {
-        names.push_back(inspected.materialName(material));
-    }
-    return base::firstOf(names, 3);
+    const std::vector<std::string> names = base::mapped<std::string>(
+        materialsOf(inspected, shaderId),
+        [&](const inspect::MaterialPlace& material) { return inspected.materialName(material); });
+    return names.empty() ? "-" : base::firstOf(names, 3);
 }
 
 // Features that a shader has; their names where there is room for them.
@@ -185,11 +177,7 @@ std::string hitLobesText(const inspect::Manifest& manifest) {
 }
 
 std::vector<std::string> layerNames(const Package& package) {
-    std::vector<std::string> names;
-    for (const package::PackageLayer& layer : package.layers()) {
-        names.push_back(layer.name);
-    }
-    return names;
+    return base::mapped<std::string>(package.layers(), &package::PackageLayer::name);
 }
 
 std::string layersText(const Package& package) {
@@ -199,15 +187,13 @@ std::string layersText(const Package& package) {
 }
 
 base::Json layersToJson(const Package& package) {
-    base::Json list = base::Json::array();
-    for (const package::PackageLayer& layer : package.layers()) {
+    return listOf(package.layers(), [](const package::PackageLayer& layer) -> base::Json {
         const package::LayerFormatInfo& format = package::infoOf(layer.info->format);
-        list.push_back(base::Json{{"name", layer.name},
-                                  {"channels", std::string(layer.info->channels)},
-                                  {"format", std::string(format.qualifier)},
-                                  {"bytes", format.bytes}});
-    }
-    return list;
+        return {{"name", layer.name},
+                {"channels", std::string(layer.info->channels)},
+                {"format", std::string(format.qualifier)},
+                {"bytes", format.bytes}};
+    });
 }
 
 base::Json toJson(const inspect::InspectedPackage& inspected) {
@@ -306,13 +292,12 @@ std::string toText(const inspect::InspectedPackage& inspected, Detail detail) {
 }
 
 base::Json toJson(const inspect::InspectedPackage& inspected, const std::vector<inspect::Disassembly>& list) {
-    base::Json modules = base::Json::array();
-    for (const inspect::Disassembly& entry : list) {
+    const auto entryToJson = [&](const inspect::Disassembly& entry) {
         base::Json module = describe(inspected, *entry.module);
         module["text"] = entry.text;
-        modules.push_back(std::move(module));
-    }
-    return {{"package", inspected.folder}, {"disassembly", modules}};
+        return module;
+    };
+    return {{"package", inspected.folder}, {"disassembly", listOf(list, entryToJson)}};
 }
 
 std::string toText(const inspect::InspectedPackage& inspected,
@@ -325,6 +310,217 @@ std::string toText(const inspect::InspectedPackage& inspected,
     }
     return text;
 }
+
+// --- glint inspect --pipelines: what the compiler of the device makes of a package ---
+
+using inspect::FactInfo;
+using inspect::ReportedPipeline;
+
+constexpr const char* kSortByName = "name";
+
+std::vector<std::string> sortWords() {
+    std::vector<std::string> words{kSortByName};
+    for (const FactInfo& info : inspect::factTable()) {
+        words.emplace_back(info.name);
+    }
+    return words;
+}
+
+// Returns null for the name.
+const FactInfo* factNamed(const std::string& name) {
+    const auto found = std::ranges::find(inspect::factTable(), name, &FactInfo::name);
+    return found == inspect::factTable().end() ? nullptr : &*found;
+}
+
+// Returns one value if both are the same, "before → after" otherwise.
+std::string cellOf(const FactInfo& info, const ReportedPipeline& pipeline, const ReportedPipeline* before) {
+    const std::string text = factText(info, pipeline.facts);
+    const std::string other = before == nullptr ? text : factText(info, before->facts);
+    return text == other ? text : other + " → " + text;
+}
+
+std::vector<std::string> rowOf(const ReportedPipeline& pipeline, const ReportedPipeline* before,
+                               bool traces) {
+    std::vector<std::string> row{pipeline.name};
+    if (traces) {
+        row.push_back(pipeline.tracer.empty() ? "-" : pipeline.tracer);
+    }
+    row.push_back(pipeline.subgroupSize > 0 ? std::to_string(pipeline.subgroupSize) : "-");
+    if (!pipeline.failure.empty()) {
+        row.push_back("failed");
+        return row;
+    }
+    for (const FactInfo& info : inspect::factTable()) {
+        row.push_back(cellOf(info, pipeline, before));
+    }
+    return row;
+}
+
+// Whether pipelines differ in their tracer.
+bool haveTracers(const inspect::PipelineReport& report) {
+    std::set<std::string> tracers;
+    for (const ReportedPipeline& pipeline : report.pipelines) {
+        tracers.insert(pipeline.tracer);
+    }
+    tracers.erase("");
+    return tracers.size() > 1;
+}
+
+// Returns the table, with the facts of `other` beside those of `report` unless it is null.
+std::string pipelineTable(const inspect::PipelineReport& report, const inspect::PipelineReport* other,
+                          Detail detail) {
+    const bool traces = haveTracers(report);
+    Rows rows{{"pipeline"}};
+    if (traces) {
+        rows.front().emplace_back("tracer");
+    }
+    rows.front().emplace_back("subgroup");
+    for (const FactInfo& info : inspect::factTable()) {
+        rows.front().emplace_back(info.column);
+    }
+    for (const ReportedPipeline& pipeline : report.pipelines) {
+        rows.push_back(
+            rowOf(pipeline, other == nullptr ? nullptr : findCounterpart(*other, pipeline), traces));
+    }
+    return formatTable(rows, detail);
+}
+
+std::string toText(const inspect::PipelineReport& report, const inspect::PipelineReport* other,
+                   const std::string& sort, Detail detail) {
+    Rows fields{{"package", report.package},
+                {"device",
+                 fmt::format("{} ({}), subgroups of {}", report.device, report.driver, report.subgroupSize)},
+                {"pipelines", fmt::format("{}, by {}", report.pipelines.size(), sort)}};
+    if (other != nullptr) {
+        fields.push_back(
+            {"before →", fmt::format("{} on {} ({})", other->package, other->device, other->driver)});
+    }
+    std::string text = formatFields(fields) + "\n" + pipelineTable(report, other, detail);
+    if (other != nullptr) {
+        std::vector<std::string> gone;
+        for (const ReportedPipeline& pipeline : other->pipelines) {
+            if (inspect::findCounterpart(report, pipeline) == nullptr) {
+                gone.push_back(pipeline.name);
+            }
+        }
+        text += gone.empty() ? "" : "\n" + formatFields({{"only before", base::join(gone)}}, detail);
+    }
+    return text;
+}
+
+struct PackagePipelineArguments {
+    bool enabled = false;
+    std::string device;         // part of its name; empty: the first suitable one
+    std::string sort = "cost";  // name of a fact, or "name"
+    std::string compare;        // a report or a package; empty: nothing
+    std::string budget;         // a file; empty: none
+    std::int64_t threads = 0;
+    bool validate = false;
+};
+
+Result<inspect::PipelineReport> make(const Console& console, const Package& package,
+                                     const std::string& folder, const PackagePipelineArguments& arguments) {
+    console.progress("making the pipelines of " + folder);
+    GLINT_TRY(const auto manifest, inspect::readManifest(folder));
+    HeadlessOptions options;
+    options.deviceName = arguments.device;
+    options.validation = arguments.validate ? Validation::On : Validation::Off;
+    options.pipelineStatistics = true;
+    inspect::requirePackage(package, options);
+    GLINT_TRY(auto context, Context::createHeadless(options));
+    Result<inspect::PipelineReport> report = inspect::reportPipelines(
+        *context, package, manifest, folder, static_cast<std::uint32_t>(arguments.threads));
+    if (Status valid = measure::checkValidation(console, *context); report && !valid) {
+        return valid.error();
+    }
+    return report;
+}
+
+// Makes or reads the report to compare with.
+Result<inspect::PipelineReport> obtainOther(const Console& console,
+                                            const PackagePipelineArguments& arguments) {
+    if (!std::filesystem::is_directory(arguments.compare)) {
+        return inspect::readPipelineReport(arguments.compare);
+    }
+    GLINT_TRY(const auto package, Package::load(arguments.compare));
+    return make(console, package, arguments.compare, arguments);
+}
+
+// Reports pipelines that could not be made, statistics that are missing, and budgets that are exceeded.
+// Returns whether all is well.
+bool judge(const Console& console, const inspect::PipelineReport& report,
+           const std::optional<inspect::PipelineBudget>& budget) {
+    bool good = true;
+    const auto tell = [&](const Diagnostic& diagnostic) {
+        console.report(diagnostic);
+        good = good && diagnostic.severity != Severity::Error;
+    };
+    for (const ReportedPipeline& pipeline : report.pipelines) {
+        if (!pipeline.failure.empty()) {
+            tell(makeError(
+                "pipeline-failed", report.package,
+                fmt::format("{} could not be made on {}: {}", pipeline.name, report.device, pipeline.failure),
+                "update the driver, or report the module to its makers"));
+        }
+    }
+    if (!report.hasStatistics) {
+        tell(Diagnostic{Severity::Note, "pipeline-statistics", report.device,
+                        "has no VK_KHR_pipeline_executable_properties: there are no statistics",
+                        "use another device"});
+    }
+    if (budget) {
+        std::ranges::for_each(overBudget(report, *budget), tell);
+    }
+    return good;
+}
+
+void addPipelineReportOptions(CLI::App& command, PackagePipelineArguments& arguments) {
+    const OptionGroup group(command, "Pipelines");
+    CLI::Option* const pipelines =
+        &addFlag(command, "--pipelines", arguments.enabled,
+                 "make every pipeline of the package on the device, and show what its driver says of them");
+    const auto ofPipelines = [&](CLI::Option& option) { option.needs(pipelines); };
+    addDeviceChoice(command, arguments.device, arguments.validate);
+    ofPipelines(*command.get_option("--device"));
+    ofPipelines(*command.get_option("--validate"));
+    ofPipelines(addChoice(command, "--sort", arguments.sort, sortWords(), "what the list is sorted by"));
+    ofPipelines(
+        addText(command, "--compare", arguments.compare, "FILE|DIR",
+                "show what was before beside it: a report of --json, or another package (default: nothing)"));
+    ofPipelines(addText(command, "--budget", arguments.budget, "FILE",
+                        "report an error where a pipeline exceeds a limit of the file (default: no limits)"));
+    ofPipelines(addInteger(command, "--pipeline-threads", arguments.threads, 0, 1024,
+                           "threads that make pipelines; 0: as many as the machine runs at once"));
+}
+
+// Makes the pipelines of the package in `folder` and prints the report. Returns the exit code.
+Result<int> showPipelines(const Console& console, const Package& package, const std::string& folder,
+                          const PackagePipelineArguments& arguments) {
+    std::optional<inspect::PipelineBudget> budget;
+    if (!arguments.budget.empty()) {
+        GLINT_TRY(budget, inspect::readPipelineBudget(arguments.budget));
+    }
+    std::optional<inspect::PipelineReport> other;
+    if (!arguments.compare.empty()) {
+        GLINT_TRY(other, obtainOther(console, arguments));
+    }
+    GLINT_TRY(auto report, make(console, package, folder, arguments));
+    sortPipelines(report, factNamed(arguments.sort));
+    const bool good = judge(console, report, budget);
+    const auto toJson = [&] {
+        base::Json json = base::jsonOf(report);
+        json["compared"] = other ? base::jsonOf(*other) : base::Json(nullptr);
+        for (base::Json& pipeline : other ? json["compared"]["pipelines"] : json["compared"]) {
+            pipeline.erase("executables");
+        }
+        return json;
+    };
+    answer(console, toJson,
+           [&](Detail detail) { return toText(report, other ? &*other : nullptr, arguments.sort, detail); });
+    return good ? kExitDone : kExitFailed;
+}
+
+// --- The command ---
 
 struct InspectArguments {
     std::string folder;
@@ -342,11 +538,13 @@ Result<int> show(const Console& console, const InspectArguments& arguments) {
     GLINT_TRY(const auto inspected, inspect::inspectPackage(package, manifest, arguments.folder));
     if (!arguments.disassemble.empty()) {
         GLINT_TRY(const auto list, inspect::disassembleModules(inspected, arguments.disassemble));
-        console.isJson() ? console.result(toJson(inspected, list)) : console.print(toText(inspected, list));
-    } else if (console.isJson()) {
-        console.result(toJson(inspected));
+        answer(
+            console, [&] { return toJson(inspected, list); },
+            [&](Detail) { return toText(inspected, list); });
     } else {
-        console.print(toText(inspected, console.isVerbose() ? Detail::Whole : Detail::Short));
+        answer(
+            console, [&] { return toJson(inspected); },
+            [&](Detail detail) { return toText(inspected, detail); });
     }
     return kExitDone;
 }

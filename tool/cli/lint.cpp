@@ -11,19 +11,13 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
-#include <optional>
 
 namespace glint::cli {
 
 namespace {
 
-std::size_t countIn(const std::vector<compiler::LintFinding>& findings, Severity severity) {
-    return static_cast<std::size_t>(std::ranges::count(findings, severity, &compiler::LintFinding::severity));
-}
-
 base::Json findingsToJson(const std::vector<compiler::LintFinding>& findings, const std::string& where) {
-    base::Json list = base::Json::array();
-    for (const compiler::LintFinding& finding : findings) {
+    return listOf(findings, [&](const compiler::LintFinding& finding) {
         Diagnostic diagnostic = inspect::toDiagnostic(finding, where);
         diagnostic.message = finding.message;
         base::Json json = cli::toJson(diagnostic);
@@ -31,9 +25,8 @@ base::Json findingsToJson(const std::vector<compiler::LintFinding>& findings, co
         json["source"] = base::textOrNull(finding.place.source);
         json["resultId"] = finding.place.id == 0 ? base::Json(nullptr) : base::Json(finding.place.id);
         json["word"] = finding.place.offset == 0 ? base::Json(nullptr) : base::Json(finding.place.offset);
-        list.push_back(std::move(json));
-    }
-    return list;
+        return json;
+    });
 }
 
 base::Json toJson(const inspect::MaliocReport& report) {
@@ -135,8 +128,8 @@ std::string toText(const inspect::LintReport& report, Detail detail) {
             counts.pop_back();
         }
         std::ranges::move(counts, std::back_inserter(row));
-        row.push_back(nonZero(countIn(module.findings, Severity::Error)));
-        row.push_back(nonZero(countIn(module.findings, Severity::Warning)));
+        row.push_back(nonZero(inspect::countIn(module.findings, Severity::Error)));
+        row.push_back(nonZero(inspect::countIn(module.findings, Severity::Warning)));
         if (hasCycles) {
             std::ranges::move(cyclesOf(module), std::back_inserter(row));
         }
@@ -147,17 +140,13 @@ std::string toText(const inspect::LintReport& report, Detail detail) {
 
 // Returns the JSON that docs/lint.md describes.
 base::Json toJson(const inspect::LintReport& report) {
-    base::Json modules = base::Json::array();
-    for (const inspect::LintedModule& module : report.modules) {
-        modules.push_back(toJson(module));
-    }
     base::Json findings = base::Json::array();
     for (const inspect::LintedFolder& folder : report.folders) {
         for (base::Json& finding : findingsToJson(folder.findings, folder.path)) {
             findings.push_back(std::move(finding));
         }
     }
-    return {{"modules", std::move(modules)},
+    return {{"modules", listOf(report.modules, [](const auto& module) { return toJson(module); })},
             {"findings", std::move(findings)},
             {"errors", report.count(Severity::Error)},
             {"warnings", report.count(Severity::Warning)},
@@ -236,11 +225,8 @@ Result<int> lint(const Console& console, const LintArguments& arguments) {
         judge(console.policy(), folder.findings);
         reportFindings(console, folder.findings, folder.path);
     }
-    if (console.isJson()) {
-        console.result(toJson(report));
-    } else {
-        console.print(toText(report, console.isVerbose() ? Detail::Whole : Detail::Short));
-    }
+    answer(
+        console, [&] { return toJson(report); }, [&](Detail detail) { return toText(report, detail); });
     return report.count(Severity::Error) > 0 ? kExitFailed : kExitDone;
 }
 

@@ -1,12 +1,11 @@
 // glint render: renders a picture of a scene with the runtime.
 #include "base/clock.h"
 #include "base/files.h"
+#include "base/lists.h"
 #include "cli/cache.h"
 #include "cli/command_line.h"
 #include "cli/options/options.h"
-#include "cli/render/arguments.h"
 #include "cli/render/frames.h"
-#include "cli/render/report.h"
 #include "image/image_file.h"
 #include "inspect/pipelines.h"
 #include "resolve/light.h"
@@ -18,19 +17,11 @@
 #include <glint/measure/target.h>
 #include <glint/measure/views.h>
 #include <glint/package.h>
-#include <glint/renderer.h>
-#include <glint/session/camera.h>
-#include <glint/session/edits.h>
-#include <glint/session/session.h>
-#include <glint/session/textures.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <iterator>
-#include <memory>
-#include <optional>
 #include <span>
 #include <utility>
 
@@ -172,12 +163,7 @@ std::array<std::uint8_t, 3> colorOf(PixelPath path) {
 // that left the scene. Grey: no ray. Black: no surface. `paths` has width * height pixels.
 image::DisplayImage coverageMap(const std::vector<PixelPath>& paths, std::uint32_t width,
                                 std::uint32_t height) {
-    image::DisplayImage image{width, height, {}};
-    image.pixels.reserve(paths.size());
-    for (const PixelPath path : paths) {
-        image.pixels.push_back(colorOf(path));
-    }
-    return image;
+    return {width, height, base::mapped<image::Color8>(paths, [](PixelPath path) { return colorOf(path); })};
 }
 
 // Writes everything that comes after the pictures.
@@ -381,7 +367,18 @@ Status readAndRender(const Console& console, const RenderArguments& arguments, R
                              : render(console, wanted, std::move(opened), std::move(edits), cache, report);
 }
 
-int run(const Console& console, const RenderArguments& arguments) {
+Result<int> run(const Console& console, const RenderArguments& arguments) {
+    const std::optional<FrameRange> frames = parseFrames(arguments.motion.frames);
+    for (const std::string& file :
+         {frames ? numberedFile(arguments.output, frames->first).string() : arguments.output, arguments.stats,
+          arguments.coverage, arguments.profileOutput}) {
+        if (!file.empty()) {
+            GLINT_TRY_DO(base::checkOutputFile(file));
+        }
+    }
+    if (arguments.denoise) {
+        GLINT_TRY_DO(checkDenoiser());
+    }
     RenderReport report;
     report.scene = arguments.scene;
     report.image = arguments.output;
@@ -390,35 +387,12 @@ int run(const Console& console, const RenderArguments& arguments) {
     report.seed = arguments.frame.seed;
     report.width = arguments.renderer.width;
     report.height = arguments.renderer.height;
-
-    const std::optional<FrameRange> frames = parseFrames(arguments.motion.frames);
-    Status status = okStatus();
-    for (const std::string& file :
-         {frames ? numberedFile(arguments.output, frames->first).string() : arguments.output, arguments.stats,
-          arguments.coverage, arguments.profileOutput}) {
-        if (status && !file.empty()) {
-            status = base::checkOutputFile(file);
-        }
-    }
-    if (status && arguments.denoise) {
-        status = checkDenoiser();
-    }
-    if (!status) {
-        console.report(status.error());
+    GLINT_TRY_DO(readAndRender(console, arguments, report));
+    if (console.refused()) {
         return kExitFailed;
     }
-    status = readAndRender(console, arguments, report);
-    if (!status) {
-        console.report(status.error());
-    }
-    if (!status || console.refused()) {
-        return kExitFailed;
-    }
-    if (console.isJson()) {
-        console.result(base::jsonOf(report));
-    } else {
-        console.print(toText(report, console.isVerbose() ? Detail::Whole : Detail::Short));
-    }
+    answer(
+        console, [&] { return base::jsonOf(report); }, [&](Detail detail) { return toText(report, detail); });
     return kExitDone;
 }
 

@@ -1,15 +1,13 @@
 #include "cli/report.h"
 
-#include "cli/table.h"
+#include "base/lists.h"
 #include "emit/package/manifest.h"
 
-#include <glint/internal/package_modules.h>
 #include <glint/renderer_options.h>
 
 #include <fmt/format.h>
 
 #include <array>
-#include <vector>
 
 namespace glint {
 
@@ -26,39 +24,27 @@ static base::Fields fieldsOf(const TrafficRow*) {
 namespace glint::cli {
 
 base::Json featuresToJson(const materials::MaterialModel& model, materials::FeatureMask mask) {
-    base::Json list = base::Json::array();
-    for (const std::string_view name : model.names(mask)) {
-        list.push_back(std::string(name));
-    }
-    return list;
+    return listOf(model.names(mask), [](std::string_view name) { return std::string(name); });
 }
 
 base::Json materialsToJson(const gltf::SceneList& scenes, std::span<const int> materials) {
-    base::Json list = base::Json::array();
-    for (const int material : materials) {
+    return listOf(materials, [&](int material) -> base::Json {
         const gltf::SceneList::Place place = scenes.place(material);
-        list.push_back(base::Json{
-            {"scene", place.scene}, {"index", place.index}, {"name", scenes.materialName(material)}});
-    }
-    return list;
+        return {{"scene", place.scene}, {"index", place.index}, {"name", scenes.materialName(material)}};
+    });
 }
 
 base::Json droppedToJson(const gltf::SceneList& scenes, const compiler::Plan& plan) {
-    base::Json list = base::Json::array();
-    for (const compiler::DroppedFeature& dropped : plan.dropped) {
-        list.push_back(base::Json{{"feature", dropped.feature},
-                                  {"reason", dropped.reason},
-                                  {"materials", materialsToJson(scenes, dropped.materials)}});
-    }
-    return list;
+    return listOf(plan.dropped, [&](const compiler::DroppedFeature& dropped) -> base::Json {
+        return {{"feature", dropped.feature},
+                {"reason", dropped.reason},
+                {"materials", materialsToJson(scenes, dropped.materials)}};
+    });
 }
 
 std::string featureList(const materials::MaterialModel& model, materials::FeatureMask mask) {
-    std::vector<std::string> names;
-    for (const std::string_view name : model.names(mask)) {
-        names.emplace_back(name);
-    }
-    return base::join(names);
+    const std::vector<std::string_view> names = model.names(mask);
+    return base::join({names.begin(), names.end()});
 }
 
 std::string droppedText(const compiler::Plan& plan) {
@@ -110,11 +96,9 @@ base::Fields fieldsOf(const CountedRow*) {
 }
 
 std::vector<CountedRow> rowsOf(const TrafficReport& report) {
-    std::vector<CountedRow> rows;
-    for (const TrafficRow& row : trafficRows(report.shape)) {
-        rows.push_back({row, report.counts[row.unit]});
-    }
-    return rows;
+    return base::mapped<CountedRow>(trafficRows(report.shape), [&](const TrafficRow& row) {
+        return CountedRow{row, report.counts[row.unit]};
+    });
 }
 
 // The shape of the frames that a program draws as they come: none adds to another.

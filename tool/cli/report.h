@@ -5,7 +5,6 @@
 #include "cli/console.h"
 #include "cli/table.h"
 #include "emit/compile.h"
-#include "emit/package/manifest.h"
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
 #include "resolve/build.h"
@@ -21,6 +20,26 @@
 #include <vector>
 
 namespace glint::cli {
+
+// Gives the result of a command: what toJson() returns with --json, else what toText(detail) returns.
+template <typename ToJson, typename ToText>
+void answer(const Console& console, const ToJson& toJson, const ToText& toText) {
+    if (console.isJson()) {
+        console.result(toJson());
+    } else {
+        console.print(toText(console.isVerbose() ? Detail::Whole : Detail::Short));
+    }
+}
+
+// Returns the list of what toJson(element) returns.
+template <typename List, typename ToJson>
+base::Json listOf(List&& list, const ToJson& toJson) {
+    base::Json json = base::Json::array();
+    for (const auto& element : list) {
+        json.push_back(toJson(element));
+    }
+    return json;
+}
 
 base::Json featuresToJson(const materials::MaterialModel& model, materials::FeatureMask mask);
 // Returns [{"scene", "index", "name"}]; `materials` are indices into scenes.materials().

@@ -1,16 +1,10 @@
 // glint view: shows a scene in a window.
-#include "cli/cache.h"
 #include "cli/command_line.h"
-#include "cli/options/options.h"
 #include "cli/render/arguments.h"
 #include "cli/report.h"
 #include "view/request.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <string>
 
 namespace glint::cli {
 
@@ -22,23 +16,16 @@ namespace fs = std::filesystem;
 constexpr std::uint32_t kSamplesInWindow = 64;
 
 struct ViewArguments : RenderArguments {
-    std::string folder = ".";
-    std::string script;
-    bool plays = false;
-    bool panel = true;
+    view::Request request;  // with the options of the window
 };
 
 view::Request requestOf(const Console& console, const ViewArguments& arguments, CompileCache& cache) {
-    view::Request request;
+    view::Request request = arguments.request;
     request.scene = arguments.scene;
     request.settings = static_cast<const compiler::Settings&>(arguments);
     request.exposure = arguments.exposure;
     request.time = arguments.motion.time;
     request.animation = arguments.motion.animation;
-    request.plays = arguments.plays;
-    request.folder = arguments.folder;
-    request.script = arguments.script;
-    request.showsPanel = arguments.panel;
     request.observer = &console;
     request.modules = cache.modules();
     request.store = cache.store();
@@ -86,11 +73,12 @@ void addView(CLI::App& app, Action& chosen, std::span<const char* const> line, c
     addPackageOption(command, *arguments, "; and the next one when it is written (glint compile --watch)");
     const OptionGroup group(command, "Window");
     addMoment(command, arguments->motion, "begin");
-    addFlag(command, "--play", arguments->plays, "begin to play the animation");
-    addFlag(command, "--panel", arguments->panel, "begin with the panel; Tab shows and hides it");
-    addText(command, "--screenshots", arguments->folder, "DIR",
+    addFlag(command, "--play", arguments->request.plays, "begin to play the animation");
+    addFlag(command, "--panel", arguments->request.showsPanel,
+            "begin with the panel; Tab shows and hides it");
+    addText(command, "--screenshots", arguments->request.folder, "DIR",
             "where screenshots are written, under new names (default: here)");
-    addText(command, "--script", arguments->script, "FILE",
+    addText(command, "--script", arguments->request.script, "FILE",
             "replay keys, mouse moves and clicks (docs/view.md), for tests and tours");
     command.callback([arguments, line, companion, &command, &chosen] {
         checkPackageChoice(command);

@@ -1,5 +1,6 @@
 #include "inspect/diff.h"
 
+#include "base/lists.h"
 #include "base/text.h"
 #include "emit/package/manifest.h"
 
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <string_view>
 #include <tuple>
 
 namespace glint::inspect {
@@ -34,11 +34,10 @@ std::vector<std::pair<std::string, std::string>> settingsOf(const compiler::Mani
     for (const auto& [name, text] : manifest.settings) {
         settings.emplace_back(name, text == "on" ? "true" : text == "off" ? "false" : text);
     }
-    std::vector<std::string> variants;
-    for (const compiler::ManifestScene& scene : manifest.scenes) {
-        variants.push_back(scene.variant.empty() ? "none" : scene.variant);
-    }
-    settings.emplace_back("variant", base::join(variants));
+    const auto variantOf = [](const compiler::ManifestScene& scene) {
+        return scene.variant.empty() ? "none" : scene.variant;
+    };
+    settings.emplace_back("variant", base::join(base::mapped<std::string>(manifest.scenes, variantOf)));
     return settings;
 }
 
@@ -53,9 +52,7 @@ void readCases(const compiler::Manifest& manifest, DiffPackage& package) {
 
 // Returns false if a shader has a material of a scene that is not there.
 bool readMaterials(const compiler::Manifest& manifest, DiffPackage& package) {
-    for (const compiler::ManifestScene& scene : manifest.scenes) {
-        package.scenes.push_back(scene.name);
-    }
+    package.scenes = base::mapped<std::string>(manifest.scenes, &compiler::ManifestScene::name);
     struct Use {
         std::string name;
         std::set<int> shaderIds;
@@ -341,19 +338,16 @@ auto orderOf(const ModuleChange& change) {
 
 Result<DiffPackage> readDiffPackage(const std::filesystem::path& folder) {
     GLINT_TRY(const auto loaded, Package::load(folder));
-    Result<DiffPackage> package = readManifestPart(folder);
-    if (!package) {
-        return package.error();
-    }
+    GLINT_TRY(auto package, readManifestPart(folder));
     for (const package::ModuleEntry& entry : loaded.modules()) {
         package::ModuleKey key{entry.role, entry.index, entry.tracer};
         GLINT_TRY(const auto statistics, compiler::measureSpirv(loaded.spirv(key)));
         DiffModule module{std::string(loaded.string(entry.file)), entry.hash, statistics};
         if (package::findRole(entry.role)->repeated == package::Repeated::ByCase) {
             key.index = 0;
-            package->cases[static_cast<int>(entry.index)].modules[key] = std::move(module);
+            package.cases[static_cast<int>(entry.index)].modules[key] = std::move(module);
         } else {
-            package->passes[key] = std::move(module);
+            package.passes[key] = std::move(module);
         }
     }
     return package;

@@ -2,6 +2,7 @@
 
 #include "base/files.h"
 #include "base/json.h"
+#include "base/lists.h"
 
 #include <glint/internal/package_format.h>
 
@@ -36,16 +37,11 @@ Diagnostic maliocError(const fs::path& where, const std::string& message) {
     return makeError("malioc", where.string(), message, kHint);
 }
 
-// Returns null if `value` has no member of that name.
-const MaliocJson& member(const MaliocJson& value, const char* name) {
+// Returns the value at a JSON pointer, or null if there is none.
+const MaliocJson& at(const MaliocJson& json, const char* pointer) {
     static const MaliocJson null;
-    const auto found = value.is_object() ? value.find(name) : value.end();
-    return value.is_object() && found != value.end() ? *found : null;
-}
-
-const MaliocJson& first(const MaliocJson& list) {
-    static const MaliocJson null;
-    return list.is_array() && !list.empty() ? list.front() : null;
+    const MaliocJson::json_pointer place(pointer);
+    return json.contains(place) ? json.at(place) : null;
 }
 
 std::string textOf(const MaliocJson& value) {
@@ -63,8 +59,8 @@ const MaliocJson& property(const MaliocJson& properties, std::string_view name) 
     static const MaliocJson null;
     if (properties.is_array()) {
         for (const MaliocJson& it : properties) {
-            if (textOf(member(it, "name")) == name) {
-                return member(it, "value");
+            if (textOf(at(it, "/name")) == name) {
+                return at(it, "/value");
             }
         }
     }
@@ -72,9 +68,8 @@ const MaliocJson& property(const MaliocJson& properties, std::string_view name) 
 }
 
 void readCycles(const MaliocJson& performance, MaliocReport& report) {
-    const MaliocJson& pipelines = member(performance, "pipelines");
-    const MaliocJson& longest = member(performance, "longest_path_cycles");
-    const MaliocJson& counts = member(longest, "cycle_count");
+    const MaliocJson& pipelines = at(performance, "/pipelines");
+    const MaliocJson& counts = at(performance, "/longest_path_cycles/cycle_count");
     if (pipelines.is_array() && counts.is_array()) {
         for (std::size_t i = 0; i < std::min(pipelines.size(), counts.size()); ++i) {
             // A path without a bound is null.
@@ -85,7 +80,7 @@ void readCycles(const MaliocJson& performance, MaliocReport& report) {
             }
         }
     }
-    if (const MaliocJson& bound = member(longest, "bound_pipelines"); bound.is_array()) {
+    if (const MaliocJson& bound = at(performance, "/longest_path_cycles/bound_pipelines"); bound.is_array()) {
         for (const MaliocJson& pipeline : bound) {
             if (pipeline.is_string()) {
                 report.boundPipelines.push_back(textOf(pipeline));
@@ -163,25 +158,24 @@ std::optional<fs::path> findProgram(const std::string& program) {
 
 Result<MaliocReport> parseMalioc(std::string_view text) {
     const MaliocJson json = MaliocJson::parse(text, nullptr, false);
-    const MaliocJson& shader = first(member(json, "shaders"));
+    const MaliocJson& shader = at(json, "/shaders/0");
     if (!shader.is_object()) {
         const std::string line(text.substr(0, text.find('\n')));
         return maliocError({}, "malioc printed no report: " + (line.empty() ? "nothing at all" : line));
     }
-    if (const MaliocJson& error = first(member(shader, "errors")); error.is_string()) {
+    if (const MaliocJson& error = at(shader, "/errors/0"); error.is_string()) {
         return maliocError({}, "malioc: " + textOf(error));
     }
     MaliocReport report;
-    report.core = textOf(member(member(shader, "hardware"), "core"));
+    report.core = textOf(at(shader, "/hardware/core"));
     // A compute shader has one variant.
-    const MaliocJson& variant = first(member(shader, "variants"));
-    readCycles(member(variant, "performance"), report);
-    const MaliocJson& properties = member(variant, "properties");
+    readCycles(at(shader, "/variants/0/performance"), report);
+    const MaliocJson& properties = at(shader, "/variants/0/properties");
     report.workRegisters = integerOf(property(properties, "work_registers_used"));
     report.occupancy = integerOf(property(properties, "thread_occupancy"));
     report.spillBytes = integerOf(property(properties, "stack_spill_bytes"));
     // This list belongs to the shader as a whole.
-    for (const MaliocJson* const list : {&member(shader, "properties"), &properties}) {
+    for (const MaliocJson* const list : {&at(shader, "/properties"), &properties}) {
         if (const MaliocJson& slow = property(*list, "has_slow_ray_traversal"); slow.is_boolean()) {
             report.slowRayTraversal = slow.get<bool>();
         }
@@ -211,8 +205,6 @@ Result<MaliocReport> runMalioc(const fs::path& program, const std::string& core,
     }
     return report ? report : maliocError(spirv, report.error().message);
 }
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -337,11 +329,11 @@ bool isStage(const LintedModule& module, const char* stage) {
     return module.lint && std::ranges::find(module.lint->stages, stage) != module.lint->stages.end();
 }
 
+}  // namespace
+
 std::size_t countIn(const std::vector<compiler::LintFinding>& findings, Severity severity) {
     return static_cast<std::size_t>(std::ranges::count(findings, severity, &compiler::LintFinding::severity));
 }
-
-}  // namespace
 
 Result<LintFiles> findLintFiles(const fs::path& path) {
     std::error_code error;
@@ -401,14 +393,8 @@ std::vector<compiler::LintFinding> judgeTogether(std::span<const LintedModule> m
 }
 
 std::size_t LintReport::count(Severity severity) const {
-    std::size_t total = 0;
-    for (const LintedModule& module : modules) {
-        total += countIn(module.findings, severity);
-    }
-    for (const LintedFolder& folder : folders) {
-        total += countIn(folder.findings, severity);
-    }
-    return total;
+    const auto countOf = [severity](const auto& linted) { return countIn(linted.findings, severity); };
+    return base::sumOf<std::size_t>(modules, countOf) + base::sumOf<std::size_t>(folders, countOf);
 }
 
 Diagnostic toDiagnostic(const compiler::LintFinding& finding, const std::string& where) {

@@ -67,6 +67,8 @@ struct LintedFolder {
     std::vector<compiler::LintFinding> findings;  // of its modules together
 };
 
+std::size_t countIn(const std::vector<compiler::LintFinding>& findings, Severity severity);
+
 struct LintReport {
     std::vector<LintedModule> modules;
     std::vector<LintedFolder> folders;

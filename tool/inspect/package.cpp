@@ -1,6 +1,7 @@
 #include "inspect/package.h"
 
 #include "base/files.h"
+#include "base/lists.h"
 #include "base/text.h"
 #include "spirv/compiler.h"
 
@@ -127,11 +128,7 @@ std::size_t InspectedPackage::uniqueFiles() const {
 }
 
 std::uint64_t InspectedPackage::spirvBytes() const {
-    std::uint64_t total = 0;
-    for (const auto& [file, bytes] : bytesByFile(*this)) {
-        total += bytes;
-    }
-    return total;
+    return base::sumOf<std::uint64_t>(bytesByFile(*this), [](const auto& file) { return file.second; });
 }
 
 Result<InspectedPackage> inspectPackage(const Package& package, const Manifest& manifest,

@@ -1,9 +1,9 @@
 #include "inspect/pipelines.h"
 
 #include "base/fields.h"
+#include "base/lists.h"
 #include "base/text.h"
 #include "emit/compile.h"
-#include "inspect/package.h"
 #include "resolve/resolve.h"
 
 #include <glint/internal/package_modules.h>
@@ -16,7 +16,6 @@
 #include <cmath>
 #include <initializer_list>
 #include <map>
-#include <numeric>
 #include <utility>
 
 namespace glint::inspect {
@@ -279,19 +278,11 @@ double weightOf(const ReportedPipeline& pipeline) {
     for (const ReportedModule& module : pipeline.modules) {
         weights[module.file] = compiler::weightOf({1.0, module.instructions, module.textureFetches});
     }
-    double sum = 0.0;
-    for (const auto& [file, weight] : weights) {
-        sum += weight;
-    }
-    return sum;
+    return base::sumOf<double>(weights, [](const auto& file) { return file.second; });
 }
 
 double shareOf(const ReportedPipeline& pipeline) {
-    double share = 0.0;
-    for (const ReportedModule& module : pipeline.modules) {
-        share += module.share;
-    }
-    return share;
+    return base::sumOf<double>(pipeline.modules, &ReportedModule::share);
 }
 
 compiler::ModuleCost summarize(const std::vector<const ReportedPipeline*>& pipelines) {
@@ -299,8 +290,8 @@ compiler::ModuleCost summarize(const std::vector<const ReportedPipeline*>& pipel
     all.role = pipelines.front()->modules.front().role;
     all.tracer = pipelines.front()->tracer;
     all.modules = static_cast<std::uint32_t>(pipelines.size());
-    const auto sumShares = [](double sum, const ReportedPipeline* one) { return sum + shareOf(*one); };
-    const double shares = std::accumulate(pipelines.begin(), pipelines.end(), 0.0, sumShares);
+    const auto shares =
+        base::sumOf<double>(pipelines, [](const ReportedPipeline* one) { return shareOf(*one); });
     for (const ReportedPipeline* const pipeline : pipelines) {
         const double part =
             shares > 0.0 ? shareOf(*pipeline) / shares : 1.0 / static_cast<double>(pipelines.size());
@@ -571,18 +562,14 @@ compiler::GpuCosts gpuOf(std::string name, std::span<const PipelineReport> repor
     gpu.device = reports.front().device;
     gpu.driver = reports.front().driver;
     gpu.subgroupSize = reports.front().subgroupSize;
-    for (const PipelineReport& report : reports) {
-        gpu.packages.push_back(summarize(report));
-    }
+    gpu.packages = base::mapped<compiler::PackageCosts>(
+        reports, [](const PipelineReport& report) { return summarize(report); });
     return gpu;
 }
 
 std::vector<std::string> builtInGpus() {
-    std::vector<std::string> names;
-    for (const base::BuiltinFile& file : gpuTables()) {
-        names.emplace_back(file.name.substr(0, file.name.rfind('.')));
-    }
-    return names;
+    return base::mapped<std::string>(
+        gpuTables(), [](const base::BuiltinFile& file) { return file.name.substr(0, file.name.rfind('.')); });
 }
 
 Result<compiler::GpuCosts> readGpuCosts(const std::string& nameOrFile) {
@@ -708,10 +695,8 @@ Result<PipelineBudget> readPipelineBudget(const std::filesystem::path& file) {
 std::vector<Diagnostic> overBudget(const PipelineReport& report, const PipelineBudget& budget) {
     std::vector<Diagnostic> found;
     // Rules for other devices count as used, unless all are for others.
-    std::vector<bool> used;
-    for (const PipelineBudget::Rule& rule : budget.rules) {
-        used.push_back(!isFor(rule, report));
-    }
+    std::vector<bool> used = base::mapped<bool>(
+        budget.rules, [&](const PipelineBudget::Rule& rule) { return !isFor(rule, report); });
     if (std::ranges::count(used, true) == std::ssize(used)) {
         found.push_back(makeWarning("pipeline-budget-unused", budget.file,
                                     fmt::format("has no rule for {}", report.device),

@@ -14,7 +14,6 @@
 #include <glint/package.h>
 #include <glint/result.h>
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>

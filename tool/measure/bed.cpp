@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "cache/store.h"
 #include "gltf/import.h"
 #include "gltf/scene_list.h"
@@ -6,12 +7,10 @@
 
 #include <glint/measure/bed.h>
 #include <glint/measure/machine.h>
-#include <glint/measure/point.h>
 #include <glint/measure/target.h>
 #include <glint/session/camera.h>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <utility>
 
@@ -20,36 +19,35 @@ namespace glint::measure {
 namespace {
 
 // Opens the device with as many of its optional features as possible, for the default and the sweep.
-Result<std::unique_ptr<Context>> openDevice(const compiler::Settings& render, DeviceOptions& features) {
+Result<std::unique_ptr<Context>> openDevice(const compiler::Settings& render, BedFacts& facts) {
     const HeadlessOptions wanted = session::deviceOptions(render);
     HeadlessOptions options = wanted;
     Result<std::unique_ptr<Context>> context = Diagnostic{};
-    for (const DeviceOptions tried :
-         {DeviceOptions{true, true}, {false, true}, {true, false}, {false, false}}) {
+    for (const auto& [positionFetch, float16] :
+         {std::pair(true, true), std::pair(false, true), std::pair(true, false), std::pair(false, false)}) {
         // It is used if shaders can be compiled for it and the validation layers know it.
-        options.positionFetch =
-            wanted.positionFetch || (tried.positionFetch && compiler::supportsPositionFetch());
-        options.shaderFloat16 = wanted.shaderFloat16 || tried.float16;
+        options.positionFetch = wanted.positionFetch || (positionFetch && compiler::supportsPositionFetch());
+        options.shaderFloat16 = wanted.shaderFloat16 || float16;
         context = Context::createHeadless(options);
         if (context) {
-            features = {options.positionFetch, options.shaderFloat16};
+            facts.positionFetch = options.positionFetch;
+            facts.float16 = options.shaderFloat16;
+            facts.onCpu = isOnCpu(**context);
             break;
         }
     }
     return context;
 }
 
-SceneSize sizeOf(const session::SceneViewData& data) {
+void countTriangles(const session::SceneViewData& data, BedFacts& facts) {
     std::map<std::uint32_t, std::uint64_t> triangles;  // by mesh
     for (const PrimitiveView& primitive : data.primitives) {
         triangles[primitive.mesh] += primitive.indices.size() / 3;
     }
-    SceneSize size;
     for (const InstanceView& instance : data.instances) {
-        size.triangles += triangles[instance.mesh];
-        ++size.instances;
+        facts.triangles += triangles[instance.mesh];
+        ++facts.instances;
     }
-    return size;
 }
 
 // A pass of a case counts with those of the others.
@@ -62,11 +60,9 @@ std::string nameOfPass(const PassTiming& pass) {
 }  // namespace
 
 double stretchMs(std::span<const PassTiming> stretches, Pass pass) {
-    double sum = 0.0;
-    for (const PassTiming& stretch : stretches) {
-        sum += stretch.pass == pass ? stretch.milliseconds : 0.0;
-    }
-    return sum;
+    return base::sumOf<double>(stretches, [pass](const PassTiming& stretch) {
+        return stretch.pass == pass ? stretch.milliseconds : 0.0;
+    });
 }
 
 // Renders the frames before the picture, each with samples of its own, and filters them.
@@ -95,21 +91,13 @@ Result<Exposure> Mount::expose(std::uint32_t seed) const {
         exposure.hitMs += stretchMs(stretches, Pass::Hits);
         return okStatus();
     };
-    Result<LinearImage> image = renderer_->render(frame, samples_, add);
-    if (!image) {
-        return image.error();
-    }
-    GLINT_TRY(auto counters, renderer_->counters());
+    GLINT_TRY(exposure.image, renderer_->render(frame, samples_, add));
+    GLINT_TRY(exposure.counters, renderer_->counters());
     if (filter_ != nullptr) {
-        image = filter_->filter();
-        if (!image) {
-            return image.error();
-        }
+        GLINT_TRY(exposure.image, filter_->filter());
         exposure.milliseconds += filter_->milliseconds();
         exposure.passes[std::string(kFilterPass)] = filter_->milliseconds();
     }
-    exposure.image = std::move(*image);
-    exposure.counters = std::move(counters);
     GLINT_TRY_DO(addSplit(frame, exposure));
     return exposure;
 }
@@ -146,12 +134,11 @@ Result<std::unique_ptr<BenchBed>> BenchBed::create(const Observer& observer, con
         observer.report(*warning);
     }
     bed->camera_ = camera.view;
-    bed->cameraName_ = camera.name;
     bed->sky_ = session::chooseSky(base, scene, data);
-    bed->size_ = sizeOf(data);
-    bed->lights_ = static_cast<std::uint32_t>(data.lights.size());
-    GLINT_TRY(bed->context_, openDevice(base, bed->features_));
-    bed->onCpu_ = isOnCpu(*bed->context_);
+    bed->facts_.cameraName = camera.name;
+    bed->facts_.lights = static_cast<std::uint32_t>(data.lights.size());
+    countTriangles(data, bed->facts_);
+    GLINT_TRY(bed->context_, openDevice(base, bed->facts_));
     GLINT_TRY_DO(bed->resolveBase());
     if (!base.environment.empty()) {
         std::vector<Diagnostic> notes;

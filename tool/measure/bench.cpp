@@ -1,5 +1,14 @@
+#include "base/clock.h"
+#include "base/files.h"
+#include "base/lists.h"
+#include "base/parallel.h"
+#include "cache/action.h"
+#include "cache/store.h"
 #include "gltf/codecs/codecs.h"
-#include "measure/measurer.h"
+#include "image/compare.h"
+#include "image/tone.h"
+#include "measure/calibration_measure.h"
+#include "settings/descriptor.h"
 
 #include <glint/measure/bench.h>
 #include <glint/measure/sweep.h>
@@ -7,14 +16,373 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <limits>
 #include <optional>
+#include <random>
+#include <span>
 #include <utility>
 
 namespace glint::measure {
 
 namespace {
+
+// --- The reference ---
+
+struct ReferenceOptions {
+    // The target for the reference's own relative error: 0.003 is 0.3 % of a pixel's light. Rendering stops
+    // at maxSamples even if the target is not reached.
+    double target = 0.003;
+    std::uint32_t maxSamples = 16384;
+};
+
+constexpr std::string_view kKind = "reference";
+// The samples of a block: enough for their sequence to cover a pixel, and few enough to have many blocks.
+constexpr std::uint32_t kBlock = 32;
+constexpr std::uint32_t kFewestBlocks = 4;
+// The seeds of blocks are far from those of rounds.
+constexpr std::uint32_t kFirstSeed = 0x51EED000U;
+
+// Returns everything that the picture depends on.
+Result<std::string> keyOf(BenchBed& bed, const compiler::Configuration& configuration) {
+    const compiler::Settings& base = bed.base();
+    compiler::Packer packer;
+    packer.add(compiler::programIdentity()).add(std::uint64_t{kBlock});
+    for (const gltf::SourceFile& file : bed.scene().files) {
+        packer.add(file.bytes).add(file.hash);
+    }
+    const compiler::Settings settings = withSettings(base, configuration);
+    for (const compiler::Descriptor& row : compiler::settingsTable()) {
+        if (row.bench.use != compiler::BenchUse::None) {
+            packer.add(row.name).add(std::string_view(row.values.text(settings)));
+        }
+    }
+    packer.add(static_cast<std::uint64_t>(bed.scene().sceneInFile))
+        .add(std::string_view(bed.scene().variant))
+        .add(std::string_view(bed.facts().cameraName))
+        .add(std::string_view(bed.context().deviceName()))
+        .add(std::string_view(bed.context().driverName()));
+    if (!base.environment.empty()) {
+        GLINT_TRY(const auto digest, base::digestFile(base.environment));
+        packer.add(digest.bytes).add(digest.hash);
+    }
+    return packer.take();
+}
+
+std::string pack(const LinearImage& image) {
+    std::string bytes(image.pixels.size() * sizeof(image.pixels[0]), '\0');
+    std::memcpy(bytes.data(), image.pixels.data(), bytes.size());
+    return bytes;
+}
+
+std::optional<LinearImage> unpack(std::optional<std::string_view> bytes, std::uint32_t width,
+                                  std::uint32_t height) {
+    LinearImage image{width, height, {}};
+    image.pixels.resize(std::size_t{width} * height);
+    if (!bytes || bytes->size() != image.pixels.size() * sizeof(image.pixels[0])) {
+        return std::nullopt;
+    }
+    std::memcpy(image.pixels.data(), bytes->data(), bytes->size());
+    return image;
+}
+
+// The cached part of a reference.
+struct Kept {
+    image::MeanImage mean;
+    std::vector<std::uint8_t> surfaces;
+};
+
+std::optional<Kept> findKept(compiler::CacheStore* store, const std::string& key, std::uint32_t width,
+                             std::uint32_t height) {
+    const std::optional<std::string> bytes = store == nullptr ? std::nullopt : store->find(kKind, key);
+    if (!bytes) {
+        return std::nullopt;
+    }
+    compiler::Unpacker unpacker(*bytes);
+    const std::optional<std::uint64_t> blocks = unpacker.number();
+    const std::optional<LinearImage> mean = unpack(unpacker.text(), width, height);
+    const std::optional<LinearImage> error = unpack(unpacker.text(), width, height);
+    const std::optional<std::string_view> surfaces = unpacker.text();
+    if (!blocks || !mean || !error || !surfaces || surfaces->size() != mean->pixels.size() ||
+        !unpacker.atEnd() || *blocks < 2 || *blocks > 0xFFFFFFU) {
+        return std::nullopt;
+    }
+    return Kept{image::MeanImage::restore(*mean, *error, static_cast<std::uint32_t>(*blocks)),
+                {surfaces->begin(), surfaces->end()}};
+}
+
+// Fills in the picture and its uncertainty.
+void judge(const image::MeanImage& sum, std::span<const std::uint8_t> surfaces,
+           const ReferenceOptions& options, Reference& reference) {
+    reference.image = sum.mean();
+    reference.samples = sum.blocks() * kBlock;
+    reference.exposure = image::automaticExposure(reference.image, surfaces);
+    reference.noise = image::noiseOf(reference.image, sum.standardError(), reference.exposure);
+    reference.relativeError = std::sqrt(reference.noise.trimmed);
+    reference.target = options.target;
+    reference.reached = reference.relativeError <= options.target;
+}
+
+// Renders blocks of samples with independent random numbers; their spread gives the uncertainty of their
+// mean. If `store` has the samples of an earlier run of the same program with the same scene, view and
+// device, it continues from them. With a null `store` nothing is kept.
+Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const compiler::BenchFacts& facts,
+                                const ReferenceOptions& options, compiler::CacheStore* store) {
+    const base::Clock::time_point start = base::Clock::now();
+    Reference reference;
+    reference.isFull = facts.fullTransport;
+    reference.configuration = simplified(exactValues(facts), configurationOf(bed.base()));
+    const std::uint32_t width = bed.base().renderer.width;
+    const std::uint32_t height = bed.base().renderer.height;
+    GLINT_TRY(const auto key, keyOf(bed, reference.configuration));
+    std::optional<Kept> kept = findKept(store, key, width, height);
+    reference.cached = kept.has_value();
+    image::MeanImage sum = kept ? std::move(kept->mean) : image::MeanImage(width, height);
+    std::vector<std::uint8_t> surfaces = kept ? std::move(kept->surfaces) : std::vector<std::uint8_t>();
+    const std::uint32_t before = sum.blocks();
+    std::optional<Mount> mount;
+    while (true) {
+        if (sum.blocks() > 0 && sum.blocks() % kFewestBlocks == 0) {
+            judge(sum, surfaces, options, reference);
+            observer.progress(fmt::format("reference: {} samples, within {:.2g} % (target {:.2g} %)",
+                                          reference.samples, 100.0 * reference.relativeError,
+                                          100.0 * options.target));
+            if (reference.reached || reference.samples >= options.maxSamples) {
+                break;
+            }
+        }
+        if (!mount) {
+            observer.progress("compiling the reference");
+            GLINT_TRY(mount, bed.mount(reference.configuration));
+        }
+        GLINT_TRY(const auto block, mount->exposeSamples(kFirstSeed + sum.blocks(), kBlock));
+        sum.add(block);
+        if (surfaces.empty()) {
+            GLINT_TRY(surfaces, mount->surfaces());
+        }
+    }
+    if (store != nullptr && sum.blocks() > before) {
+        compiler::Packer packer;
+        packer.add(std::uint64_t{sum.blocks()})
+            .add(std::string_view(pack(sum.mean())))
+            .add(std::string_view(pack(sum.standardError())))
+            .add(std::string_view(std::string(surfaces.begin(), surfaces.end())));
+        store->put(kKind, key, packer.take());
+    }
+    reference.seconds = std::chrono::duration<double>(base::Clock::now() - start).count();
+    return reference;
+}
+
+// --- The measurements of points, in rounds ---
+
+struct MeasureOptions {
+    std::uint32_t rounds = 9;
+    std::uint32_t seed = 1;   // of the order; round r renders with random numbers of its own, seed + r
+    std::uint32_t batch = 8;  // configurations that are mounted at a time, besides the default
+    const FilterMaker* filter = nullptr;  // of points with filteredFrames
+    ErrorMetric metric = ErrorMetric::RelMse;
+};
+
+// The picture against which errors are measured.
+struct Truth {
+    const LinearImage& image;
+    double exposure = 0.0;  // stops
+};
+
+bool sameBits(const LinearImage& a, const LinearImage& b) {
+    return a.pixels == b.pixels;
+}
+
+// Returns the errors of all pictures, on at most `jobs` threads. The first picture is the default's. A
+// picture that equals the default's gets its errors.
+std::vector<image::ImageErrors> errorsOf(std::span<const LinearImage* const> images, const Truth& truth,
+                                         int jobs) {
+    std::vector<image::ImageErrors> errors(images.size());
+    base::runParallel(images.size(), jobs, [&](std::size_t i) {
+        if (i == 0 || !sameBits(*images[i], *images[0])) {
+            errors[i] = image::measureErrors(*images[i], truth.image, truth.exposure);
+        }
+        return true;
+    });
+    for (std::size_t i = 1; i < images.size(); ++i) {
+        if (sameBits(*images[i], *images[0])) {
+            errors[i] = errors[0];
+        }
+    }
+    return errors;
+}
+
+// Makes the mean of `count` - 1 pictures that of `count`.
+void addToMean(LinearImage& mean, const LinearImage& image, std::uint32_t count) {
+    if (count == 1) {
+        mean = image;
+        return;
+    }
+    const auto share = 1.0F / static_cast<float>(count);
+    for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
+        for (std::size_t c = 0; c < mean.pixels[i].size(); ++c) {
+            mean.pixels[i][c] += (image.pixels[i][c] - mean.pixels[i][c]) * share;
+        }
+    }
+}
+
+// Returns x / y. If both are 0, the ratio is 1, which means no change.
+double ratio(double x, double y) {
+    return x == y ? 1.0 : x / std::max(y, 1e-300);
+}
+
+// Measures in batches, each of which has the default in every round. Ratios are relative to the default in
+// the same round, so a machine that slows down or a clock that drifts does not distort them. Before its
+// rounds a configuration renders once, so that its pipelines are ready. On a GPU it also renders for a few
+// milliseconds before each picture, so that clocks are up.
+class Measurer {
+public:
+    // `base` is the default. Every batch adds times to it, and the first batch adds its errors. All arguments
+    // must outlive the result. Has the errors of BenchBed::mount().
+    static Result<Measurer> create(const Observer& observer, BenchBed& bed, const MeasureOptions& options,
+                                   const Truth& truth, BenchPoint& base) {
+        Measurer measurer(observer, bed, options, truth);
+        GLINT_TRY(auto entry, measurer.mount(base));
+        measurer.baseEntry_.push_back(std::move(entry));
+        return measurer;
+    }
+
+    // Fills in the measurements of `points`. A point that can't be mounted is reported as the warning
+    // "bench-point" and has no measurements.
+    Status measure(std::span<BenchPoint> points) {
+        // The loop runs at least once, for the default.
+        for (std::size_t begin = 0; begin < std::max<std::size_t>(points.size(), 1);
+             begin += options_.batch) {
+            std::vector<Entry> entries;
+            const std::size_t end = std::min(begin + options_.batch, points.size());
+            for (std::size_t i = begin; i < end; ++i) {
+                observer_.progress(
+                    fmt::format("compiling {} of {}: {}", i + 1, points.size(), points[i].name));
+                Result<Entry> entry = mount(points[i]);
+                if (entry) {
+                    entries.push_back(std::move(*entry));
+                } else {
+                    observer_.report(makeWarning("bench-point", points[i].name,
+                                                 fmt::format("was left out: {}", entry.error().message),
+                                                 entry.error().hint));
+                }
+            }
+            observer_.progress(fmt::format("measuring {} to {} of {}", begin + 1, end, points.size()));
+            GLINT_TRY_DO(measureBatch(entries, ++batches_));
+        }
+        return okStatus();
+    }
+
+private:
+    // A configuration on the device, and its picture of the current round.
+    struct Entry {
+        BenchPoint* point = nullptr;
+        Mount mount;
+        Exposure exposure;
+        LinearImage mean;  // of its pictures so far
+    };
+
+    Measurer(const Observer& observer, BenchBed& bed, const MeasureOptions& options, const Truth& truth)
+        : observer_(observer), bed_(bed), options_(options), truth_(truth) {}
+
+    Result<Entry> mount(BenchPoint& point) const {
+        GLINT_TRY(auto mount, point.filteredFrames > 0
+                                  ? bed_.mountFiltered(*options_.filter, point.filteredFrames)
+                                  : bed_.mount(point.configuration, point.package));
+        // Drivers may compile a pipeline when it first runs.
+        GLINT_TRY([[maybe_unused]] const auto first, mount.exposeSamples(0, 1));
+        point.footprint = mount.renderer().footprint();
+        point.cases = mount.cases();
+        point.tracer = std::string(package::nameOf(mount.renderer().tracer()));
+        if (mount.ordersHits()) {
+            point.ordering = std::string(package::nameOf(mount.renderer().ordering()));
+        }
+        return Entry{&point, std::move(mount), {}, {}};
+    }
+
+    Status measureBatch(std::span<Entry> entries, std::uint64_t seed) {
+        std::vector<Entry*> all{&baseEntry_.front()};
+        for (Entry& entry : entries) {
+            all.push_back(&entry);
+        }
+        constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15ULL;  // spreads small seeds over 64 bits
+        std::mt19937_64 random(options_.seed + kOdd * seed);
+        for (std::uint32_t round = 0; round < options_.rounds; ++round) {
+            GLINT_TRY_DO(warmUp(baseEntry_.front(), kRoundWarmUp));
+            for (const std::size_t i : shuffled(all.size(), random)) {
+                GLINT_TRY_DO(expose(*all[i], options_.seed + round));
+            }
+            keep(all, round);
+        }
+        const auto means =
+            base::mapped<const LinearImage*>(all, [](const Entry* entry) { return &entry->mean; });
+        const std::vector<image::ImageErrors> errors = errorsOf(means, truth_, bed_.base().compile.jobs);
+        for (std::size_t i = baseIsKnown_ ? 1 : 0; i < all.size(); ++i) {
+            all[i]->point->errorOfMean = errors[i];
+        }
+        baseIsKnown_ = true;
+        return okStatus();
+    }
+
+    Status warmUp(const Entry& entry, std::chrono::milliseconds time) const {
+        const base::Clock::time_point start = base::Clock::now();
+        while (!bed_.facts().onCpu && base::Clock::now() - start < time) {
+            GLINT_TRY([[maybe_unused]] const auto image, entry.mount.exposeSamples(0, 16));
+        }
+        return okStatus();
+    }
+
+    Status expose(Entry& entry, std::uint32_t seed) const {
+        GLINT_TRY_DO(warmUp(entry, kWarmUp));
+        GLINT_TRY(entry.exposure, entry.mount.expose(seed));
+        return okStatus();
+    }
+
+    void keep(std::span<Entry*> entries, std::uint32_t round) {
+        const auto images = base::mapped<const LinearImage*>(
+            entries, [](const Entry* entry) { return &entry->exposure.image; });
+        const std::vector<image::ImageErrors> errors = errorsOf(images, truth_, bed_.base().compile.jobs);
+        const double baseMs = entries[0]->exposure.milliseconds;
+        const double baseHitMs = entries[0]->exposure.hitMs;
+        for (std::size_t i = 0; i < entries.size(); ++i) {
+            BenchPoint& point = *entries[i]->point;
+            const Exposure& exposure = entries[i]->exposure;
+            point.times.push_back(exposure.milliseconds);
+            point.ratios.push_back(ratio(exposure.milliseconds, baseMs));
+            for (const auto& [name, milliseconds] : exposure.passes) {
+                point.passes[name].push_back(milliseconds);
+            }
+            point.hits.push_back(exposure.hits);
+            point.hitMs.push_back(exposure.hitMs);
+            point.hitRatios.push_back(ratio(exposure.hitMs, baseHitMs));
+            if (i == 0 && baseIsKnown_) {
+                continue;  // the same seeds give the same pictures
+            }
+            addToMean(entries[i]->mean, exposure.image, round + 1);
+            point.errors.push_back(errors[i]);
+            point.errorRatios.push_back(
+                ratio(valueOf(options_.metric, errors[i]), valueOf(options_.metric, errors[0])));
+            point.sameImage = point.sameImage && sameBits(*images[i], *images[0]);
+            if (round == 0) {
+                point.counters = exposure.counters;
+                point.image = exposure.image;
+            }
+        }
+    }
+
+    const Observer& observer_;
+    BenchBed& bed_;
+    MeasureOptions options_;
+    const Truth& truth_;
+    std::vector<Entry> baseEntry_;  // the one of the default
+    bool baseIsKnown_ = false;      // its errors
+    std::uint64_t batches_ = 0;
+};
+
+// --- The bench ---
 
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr Interval kNoOffer{kNever, kNever, kNever, kNever, kNever};
@@ -93,8 +461,8 @@ private:
         compiler::BenchFacts facts = factsOf(bed_.build());
         const std::uint32_t tracers = bed_.context().handles().tracers;
         facts.rayPipeline = (tracers & package::kTracerRayPipeline) != 0;
-        facts.positionFetch = bed_.features().positionFetch;
-        facts.float16 = bed_.features().float16;
+        facts.positionFetch = bed_.facts().positionFetch;
+        facts.float16 = bed_.facts().float16;
         facts.packsTextures = gltf::hasBasisu() && bed_.context().texelFormats().has(TexelFormat::Bc7, true);
         facts.fullTransport = settings_.reference == "full";
         const ReferenceOptions options{settings_.referenceError,
@@ -236,13 +604,12 @@ private:
 void describeScene(BenchBed& bed, BenchReport& report) {
     const compiler::Settings& render = bed.base();
     BenchScene& scene = report.scene;
-    const SceneSize size = bed.sceneSize();
-    scene.triangles = size.triangles;
-    scene.instances = size.instances;
+    scene.triangles = bed.facts().triangles;
+    scene.instances = bed.facts().instances;
     scene.materials = bed.scene().materials.size();
-    scene.lights = bed.lights();
+    scene.lights = bed.facts().lights;
     scene.inFile = gltf::sceneInFile(bed.scene());
-    scene.camera = bed.cameraName();
+    scene.camera = bed.facts().cameraName;
     scene.environment = render.environment;
     scene.width = render.renderer.width;
     scene.height = render.renderer.height;

@@ -6,7 +6,7 @@
 #include "measure/calibration_measure.h"
 
 #include <glint/measure/calibration.h>
-#include <glint/measure/device_file.h>
+#include <glint/measure/report.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,10 +14,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <filesystem>
 #include <string>
-#include <string_view>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -178,12 +175,7 @@ private:
 
     Status write() const {
         const fs::path folder = settings_.output;
-        std::error_code error;
-        fs::create_directories(folder, error);
-        if (error) {
-            return makeError("bench-folder", folder.string(), "can't be made: " + error.message(),
-                             "give another -o");
-        }
+        GLINT_TRY_DO(makeBenchFolder(folder));
         return base::writeFile(folder / kCalibrationFile, base::toText(base::jsonOf(report_)));
     }
 

@@ -1,17 +1,15 @@
 #include "measure/calibration_measure.h"
 
 #include "base/clock.h"
+#include "base/lists.h"
 #include "image/image_file.h"
 #include "image/tone.h"
-#include "measure/measurer.h"
 #include "resolve/resolve.h"
 #include "synthetic/coherence.h"
 
 #include <glint/measure/bed.h>
 #include <glint/measure/machine.h>
 #include <glint/session/camera.h>
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
@@ -78,9 +76,7 @@ Result<CompiledGroup> compileGroup(const CalibrationSettings& settings, std::uin
                                    std::vector<synthetic::CasesOptions> options,
                                    compiler::ModuleCache* cache) {
     CompiledGroup group;
-    for (const synthetic::CasesOptions& one : options) {
-        group.scenes.push_back(synthetic::makeCasesScene(one));
-    }
+    group.scenes = base::mapped<gltf::Scene>(options, synthetic::makeCasesScene);
     group.options = std::move(options);
     GLINT_TRY(const auto build,
               compiler::resolve(group.scenes, settingsOf(settings, tracers), {.tracers = tracers}));

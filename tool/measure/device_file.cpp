@@ -1,6 +1,6 @@
 #include "base/fields.h"
+#include "base/lists.h"
 #include "emit/package/manifest.h"
-#include "plan/strategy_cost.h"
 
 #include <glint/measure/device_file.h>
 #include <glint/measure/statistics.h>
@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <set>
 #include <utility>
@@ -247,10 +246,7 @@ compiler::Round roundOf(const CalibrationPoint& point) {
 DeviceFit fitStrategies(std::span<const CalibrationPoint> points, double subgroupSize) {
     DeviceFit fit;
     const std::vector<Sample> samples = samplesOf(points, subgroupSize, fit.omitted);
-    Samples all;
-    for (const Sample& sample : samples) {
-        all.push_back(&sample);
-    }
+    const auto all = base::mapped<const Sample*>(samples, [](const Sample& sample) { return &sample; });
     const Estimates estimates = estimateHeldOut(samples, fit.quality.held);
     for (const std::string_view strategy : compiler::simplestFirst()) {
         const auto measured = static_cast<std::size_t>(std::ranges::count_if(
@@ -283,8 +279,7 @@ bool counts(const StrategyMeasure& measure) {
 }  // namespace
 
 double meanOf(const std::vector<CaseWork>& work, double CaseWork::*member) {
-    return std::accumulate(work.begin(), work.end(), 0.0,
-                           [&](double sum, const CaseWork& one) { return sum + one.share * one.*member; });
+    return base::sumOf<double>(work, [&](const CaseWork& one) { return one.share * one.*member; });
 }
 
 bool PictureDifference::isWrong() const {

@@ -5,15 +5,11 @@
 #include <glint/measure/bed.h>
 #include <glint/measure/calibration.h>
 #include <glint/measure/machine.h>
-#include <glint/session/session.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
-#include <string>
 #include <utility>
-#include <vector>
 
 namespace glint::measure {
 
@@ -138,7 +134,7 @@ private:
             strategies.push_back(std::move(measured));
         }
         return base::Json{
-            {"triangles", bed->sceneSize().triangles},    {"instances", bed->sceneSize().instances},
+            {"triangles", bed->facts().triangles},        {"instances", bed->facts().instances},
             {"materials", scene.materials.size()},        {"width", settings_.render.renderer.width},
             {"height", settings_.render.renderer.height}, {"samples", settings_.render.samples},
             {"strategies", std::move(strategies)}};

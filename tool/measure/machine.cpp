@@ -8,10 +8,8 @@
 
 #include <ctime>
 #include <fstream>
-#include <string>
 #include <sys/utsname.h>
 #include <thread>
-#include <vector>
 
 namespace glint::measure {
 

@@ -1,3 +1,5 @@
+#include "base/lists.h"
+
 #include <glint/measure/point.h>
 
 #include <algorithm>
@@ -104,11 +106,8 @@ Interval timeRatio(const BenchPoint& point) {
 }
 
 Interval errorOf(const BenchPoint& point, ErrorMetric metric) {
-    std::vector<double> values;
-    for (const image::ImageErrors& errors : point.errors) {
-        values.push_back(valueOf(metric, errors));
-    }
-    return measure::intervalOf(values);
+    return measure::intervalOf(base::mapped<double>(
+        point.errors, [&](const image::ImageErrors& errors) { return valueOf(metric, errors); }));
 }
 
 bool isTimeTie(const BenchPoint& point) {

@@ -1,5 +1,6 @@
 #include "base/fields.h"
 #include "base/files.h"
+#include "base/lists.h"
 #include "base/text.h"
 #include "image/compare.h"
 #include "image/png.h"
@@ -8,7 +9,6 @@
 #include "settings/descriptor.h"
 
 #include <glint/measure/report.h>
-#include <glint/measure/settings.h>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,11 +16,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 #include <set>
-#include <string>
 #include <system_error>
-#include <vector>
 
 namespace glint::measure {
 
@@ -92,9 +89,7 @@ std::string renderCommand(const BenchReport& report, const BenchPoint& point) {
         words.insert(words.end(), {"--samples", given.contains("spp") ? given["spp"] : "1"});
         given.erase("spp");
     }
-    for (const std::string& word : compiler::wordsOf(given)) {
-        words.push_back(word);
-    }
+    std::ranges::move(compiler::wordsOf(given), std::back_inserter(words));
     if (!point.package.empty()) {
         words.insert(words.end(), {"--package", point.package});
     }
@@ -105,25 +100,15 @@ std::string renderCommand(const BenchReport& report, const BenchPoint& point) {
 
 namespace {
 
-template <typename Value>
-Interval overRounds(const BenchPoint& point, const Value& value) {
-    std::vector<double> values;
-    for (const HitTimes& hits : point.hits) {
-        values.push_back(value(hits));
-    }
-    return measure::intervalOf(values);
-}
-
 StrategyRow rowOf(const BenchPoint& point, std::size_t index, const std::string& strategy) {
-    using Hits = HitTimes;
     StrategyRow row;
     row.strategy = strategy;
     row.point = index;
     row.ratio = timeRatio(point);
     row.hits = measure::intervalOf(point.hitMs);
     row.hitRatio = measure::intervalOf(point.hitRatios);
-    row.traceMs = overRounds(point, [](const Hits& hits) { return hits.trace; }).median;
-    row.orderMs = overRounds(point, [](const Hits& hits) { return hits.order; }).median;
+    row.traceMs = measure::intervalOf(base::mapped<double>(point.hits, &HitTimes::trace)).median;
+    row.orderMs = measure::intervalOf(base::mapped<double>(point.hits, &HitTimes::order)).median;
     // Shading gets the rest, because its passes overlap if they are not measured one by one.
     row.shadeMs = std::max(row.hits.median - row.traceMs - row.orderMs, 0.0);
     row.commonMs = std::max(measure::intervalOf(point.times).median - row.hits.median, 0.0);
@@ -134,11 +119,8 @@ StrategyRow rowOf(const BenchPoint& point, std::size_t index, const std::string&
 // Returns the average number of cases among `wave` hits in random order.
 double casesIn(std::span<const std::uint32_t> hits, double wave) {
     const double all = std::accumulate(hits.begin(), hits.end(), 0.0);
-    double cases = 0.0;
-    for (const std::uint32_t count : hits) {
-        cases += all > 0.0 ? 1.0 - std::pow(1.0 - count / all, wave) : 0.0;
-    }
-    return cases;
+    return base::sumOf<double>(
+        hits, [&](std::uint32_t count) { return all > 0.0 ? 1.0 - std::pow(1.0 - count / all, wave) : 0.0; });
 }
 
 void countHits(std::span<const std::uint32_t> buckets, StrategyReport& report) {
@@ -405,6 +387,14 @@ Status checkBenchFolder(const fs::path& folder, const char* mark) {
     return possible ? possible
                     : Status(makeError("bench-folder", folder.string(), possible.error().message,
                                        "give another -o, or check the folder and its permissions"));
+}
+
+Status makeBenchFolder(const fs::path& folder, const std::string& hint) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    return error
+               ? Status(makeError("bench-folder", folder.string(), "can't be made: " + error.message(), hint))
+               : okStatus();
 }
 
 Status writeBench(const BenchReport& report, const fs::path& folder) {

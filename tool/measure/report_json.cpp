@@ -1,16 +1,13 @@
 #include "base/fields.h"
+#include "base/lists.h"
 #include "base/text.h"
 #include "emit/package/manifest.h"
 #include "settings/descriptor.h"
 
 #include <glint/measure/device_file.h>
-#include <glint/measure/machine.h>
 #include <glint/measure/report.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <filesystem>
 #include <string_view>
 #include <utility>
 
@@ -88,25 +85,15 @@ struct AdviceOf {
     }
 };
 
-std::vector<double> valuesOf(const BenchPoint& point, double image::ImageErrors::*member) {
-    std::vector<double> values;
-    for (const image::ImageErrors& errors : point.errors) {
-        values.push_back(errors.*member);
-    }
-    return values;
-}
-
 template <double image::ImageErrors::*Member>
 Interval errorInterval(const BenchPoint& point) {
-    return measure::intervalOf(valuesOf(point, Member));
+    return measure::intervalOf(base::mapped<double>(point.errors, Member));
 }
 
 std::vector<PassTimes> passesOf(const PointOf& it) {
-    std::vector<PassTimes> passes;
-    for (const auto& [name, milliseconds] : it.point().passes) {
-        passes.push_back({name, measure::intervalOf(milliseconds)});
-    }
-    return passes;
+    return base::mapped<PassTimes>(it.point().passes, [](const auto& pass) {
+        return PassTimes{pass.first, measure::intervalOf(pass.second)};
+    });
 }
 
 }  // namespace
@@ -414,7 +401,7 @@ static Fields fieldsOf(const BenchPoint*) {
         output<errorInterval<&Errors::trimmed>>("trimmed", "relMse without the worst 0.1 % of the pixels."),
         output<errorInterval<&Errors::flip>>("flip", "Mean LDR-FLIP of the displayed pictures."),
         output("bias", "Mean of d over mean of r: light that is added or lost.",
-               [](const T& point) { return meanOf(valuesOf(point, &Errors::bias)); })};
+               [](const T& point) { return meanOf(base::mapped<double>(point.errors, &Errors::bias)); })};
 }
 
 namespace {
@@ -518,11 +505,9 @@ std::vector<PointOf> pointsOf(const BenchReport& report) {
 }
 
 std::vector<RowOf> rowsOf(const BenchReport& report) {
-    std::vector<RowOf> rows;
-    for (const StrategyRow& row : report.strategies.rows) {
-        rows.push_back({&report, &row});
-    }
-    return rows;
+    return base::mapped<RowOf>(report.strategies.rows, [&](const StrategyRow& row) {
+        return RowOf{&report, &row};
+    });
 }
 
 std::optional<AdviceOf> adviceOf(const BenchReport& report) {

@@ -2,7 +2,6 @@
 #include "base/json.h"
 #include "base/text.h"
 #include "resolve/light.h"
-#include "settings/descriptor.h"
 
 #include <glint/measure/settings.h>
 #include <glint/session/session.h>
@@ -13,10 +12,7 @@
 #include <optional>
 #include <set>
 #include <sstream>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
 namespace glint::measure {
 

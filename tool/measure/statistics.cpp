@@ -1,10 +1,11 @@
+#include "base/lists.h"
+
 #include <glint/measure/statistics.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
-#include <vector>
 
 namespace glint::measure {
 
@@ -73,18 +74,12 @@ bool isTie(const Interval& interval, double nothing) {
 
 MeanInterval meanOf(std::span<const double> values) {
     const auto count = static_cast<double>(values.size());
-    double sum = 0.0;
-    for (const double value : values) {
-        sum += value;
-    }
-    const double mean = sum / count;
+    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
     if (values.size() < 2) {
         return {mean, mean, mean};
     }
-    double squares = 0.0;
-    for (const double value : values) {
-        squares += (value - mean) * (value - mean);
-    }
+    const auto squares =
+        base::sumOf<double>(values, [&](double value) { return (value - mean) * (value - mean); });
     const double error = std::sqrt(squares / (count - 1.0) / count);
     const double half = studentQuantile(values.size() - 1) * error;
     return {mean, mean - half, mean + half};
@@ -106,11 +101,8 @@ Normal makeNormal(std::span<const std::vector<double>> rows, std::span<const dou
     Normal normal{unknowns, std::vector<double>(unknowns), std::vector<double>(unknowns * unknowns),
                   std::vector<double>(unknowns)};
     for (std::size_t i = 0; i < unknowns; ++i) {
-        double squares = 0.0;
-        for (const std::vector<double>& row : rows) {
-            squares += row[i] * row[i];
-        }
-        normal.lengths[i] = std::sqrt(squares);
+        normal.lengths[i] = std::sqrt(
+            base::sumOf<double>(rows, [i](const std::vector<double>& row) { return row[i] * row[i]; }));
     }
     for (std::size_t i = 0; i < unknowns; ++i) {
         for (std::size_t r = 0; r < rows.size() && normal.lengths[i] > 0.0; ++r) {

@@ -1,3 +1,5 @@
+#include "base/lists.h"
+
 #include <glint/measure/sweep.h>
 
 #include <algorithm>
@@ -115,11 +117,7 @@ std::vector<Rated> fastestWays(std::span<const Setting> settings, std::span<cons
 }
 
 std::vector<Rated> frontOf(std::vector<Rated> points) {
-    std::vector<Rated> front;
-    for (const std::size_t i : paretoFront(points)) {
-        front.push_back(std::move(points[i]));
-    }
-    return front;
+    return base::mapped<Rated>(paretoFront(points), [&](std::size_t i) { return std::move(points[i]); });
 }
 
 // Returns the front that the separable model predicts over all combinations of approximations, for one way of

@@ -1,6 +1,7 @@
 #include "base/text.h"
 #include "base/vectors.h"
 #include "scene/deformed.h"
+#include "session/pose.h"
 
 #include <glint/session/camera.h>
 
@@ -13,8 +14,6 @@
 #include <limits>
 #include <map>
 #include <numbers>
-#include <optional>
-#include <string>
 #include <vector>
 
 namespace glint::session {
@@ -153,14 +152,6 @@ Diagnostic unknownCamera(const gltf::Scene& scene, const std::string& wanted) {
                      "use --camera auto, a name, a number from 0, or a place such as 1,2,3/0,0,0/30");
 }
 
-}  // namespace
-
-bool Bounds::empty() const {
-    return min[0] > max[0] || min[1] > max[1] || min[2] > max[2];
-}
-
-namespace {
-
 // Returns a box that is relative to the scene's origin as one in the world.
 Bounds inWorld(const Bounds& box, const SceneViewData& scene) {
     return box.empty() ? box
@@ -169,6 +160,10 @@ Bounds inWorld(const Bounds& box, const SceneViewData& scene) {
 }
 
 }  // namespace
+
+bool Bounds::empty() const {
+    return min[0] > max[0] || min[1] > max[1] || min[2] > max[2];
+}
 
 Bounds worldBounds(const SceneViewData& scene) {
     const std::vector<Bounds> meshes = meshBounds(scene);
@@ -446,91 +441,38 @@ Unseen lookAt(const Frustum& frustum, const std::vector<glm::dvec3>& positions,
     return nearest;
 }
 
-class Looker {
-public:
-    Looker(const gltf::Scene& scene, const SceneViewData& view, const CameraView& camera)
-        : scene_(scene), view_(view), frustum_(camera), boxes_(scene.meshes.size()) {}
-
-    Unseen instance(std::size_t index) {
-        const InstanceView& placed = view_.instances[index];
-        if (!placed.visible) {
-            return Unseen::Hidden;
+Unseen lookAt(const Frustum& frustum, const gltf::Scene& scene, const SceneViewData& view,
+              std::size_t index) {
+    const InstanceView& placed = view.instances[index];
+    if (!placed.visible) {
+        return Unseen::Hidden;
+    }
+    const bool isDeformed = compiler::isDeformed(scene, scene.nodes[view.sources[index].node]);
+    if (!isDeformed) {
+        std::array<glm::dvec3, 8> corners;
+        for (unsigned number = 0; number < corners.size(); ++number) {
+            corners[number] =
+                base::transformed(placed.objectToWorld, corner(view.meshBoxes[placed.mesh], number) -
+                                                            base::toVector(view.meshOrigins[placed.mesh]));
         }
-        const gltf::Node& node = scene_.nodes[view_.sources[index].node];
-        const gltf::Mesh& mesh = scene_.meshes[placed.mesh];
-        if (compiler::isDeformed(scene_, node)) {
-            return deformed(node, mesh, placed);
-        }
-        const Unseen box = frustum_.side(cornersOf(placed));
-        if (box != Unseen::None) {
+        if (const Unseen box = frustum.side(corners); box != Unseen::None) {
             return box;
         }
-        const glm::dmat3x4 rows(glm::make_mat3x4(placed.objectToWorld.data()));
-        const double mirror = glm::determinant(glm::dmat3(rows)) < 0.0 ? -1.0 : 1.0;
-        Unseen nearest = Unseen::Hidden;
-        for (const gltf::Primitive& primitive : mesh.primitives) {
-            std::vector<glm::dvec3> positions;
-            positions.reserve(primitive.positions.size());
-            for (const gltf::Float3& position : primitive.positions) {
-                positions.push_back(glm::dvec4(base::toVector(position), 1.0) * rows);
-            }
-            nearest = std::max(nearest, lookAt(frustum_, positions, primitive.indices,
-                                               isDoubleSided(primitive) ? 0.0 : mirror));
-            if (nearest == Unseen::None) {
-                break;
-            }
-        }
-        return nearest;
     }
-
-private:
-    bool isDoubleSided(const gltf::Primitive& primitive) const {
-        return scene_.materials[static_cast<std::size_t>(primitive.material)].doubleSided;
-    }
-
-    // Counts the triangles' sides as unknown.
-    Unseen deformed(const gltf::Node& node, const gltf::Mesh& mesh, const InstanceView& placed) const {
-        const std::vector<gltf::Matrix4> joints =
-            placed.joints.empty() ? std::vector<gltf::Matrix4>()
-                                  : jointMatrices(scene_, scene_.skins[static_cast<std::size_t>(node.skin)]);
-        Unseen nearest = Unseen::Hidden;
-        for (const gltf::Primitive& primitive : mesh.primitives) {
-            std::vector<glm::dvec3> positions;
-            for (const std::array<double, 3>& position : deformedPositions(primitive, node.weights, joints)) {
-                const glm::dvec3 point = base::toVector(position);
-                positions.push_back(joints.empty() ? base::transformed(placed.objectToWorld, point) : point);
-            }
-            nearest = std::max(nearest, lookAt(frustum_, positions, primitive.indices, 0.0));
+    const glm::dmat3x4 rows(glm::make_mat3x4(placed.objectToWorld.data()));
+    const double mirror = glm::determinant(glm::dmat3(rows)) < 0.0 ? -1.0 : 1.0;
+    Unseen nearest = Unseen::Hidden;
+    for (const gltf::Primitive& primitive : scene.meshes[placed.mesh].primitives) {
+        const bool isDoubleSided = scene.materials[static_cast<std::size_t>(primitive.material)].doubleSided;
+        // Deformed triangles count as seen from both sides.
+        nearest = std::max(nearest, lookAt(frustum, placedPositions(scene, view, index, primitive),
+                                           primitive.indices, isDeformed || isDoubleSided ? 0.0 : mirror));
+        if (nearest == Unseen::None) {
+            break;
         }
-        return nearest;
     }
-
-    // Returns the corners of the mesh's box in the world.
-    std::array<glm::dvec3, 8> cornersOf(const InstanceView& placed) {
-        std::optional<Bounds>& box = boxes_[placed.mesh];
-        if (!box) {
-            box = Bounds{{1.0, 1.0, 1.0}, {-1.0, -1.0, -1.0}};
-            for (const gltf::Primitive& primitive : scene_.meshes[placed.mesh].primitives) {
-                for (const gltf::Float3& position : primitive.positions) {
-                    const std::array<double, 3> point{position[0], position[1], position[2]};
-                    box = united(*box, {point, point});
-                }
-            }
-        }
-        std::array<glm::dvec3, 8> corners;
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-            corners[i] = base::transformed(placed.objectToWorld, {((i & 1U) != 0 ? box->max : box->min)[0],
-                                                                  ((i & 2U) != 0 ? box->max : box->min)[1],
-                                                                  ((i & 4U) != 0 ? box->max : box->min)[2]});
-        }
-        return corners;
-    }
-
-    const gltf::Scene& scene_;
-    const SceneViewData& view_;
-    Frustum frustum_;
-    std::vector<std::optional<Bounds>> boxes_;
-};
+    return nearest;
+}
 
 std::string textOf(Unseen reason, const CameraView& view) {
     switch (reason) {
@@ -571,9 +513,9 @@ std::optional<Diagnostic> nothingSeen(const gltf::Scene& scene, const SceneViewD
     for (std::size_t i = 0; i < view.origin.size(); ++i) {
         placed.position[i] -= view.origin[i];
     }
-    Looker looker(scene, view, placed);
+    const Frustum frustum(placed);
     for (std::size_t i = 0; i < view.instances.size(); ++i) {
-        const Unseen reason = looker.instance(i);
+        const Unseen reason = lookAt(frustum, scene, view, i);
         if (reason == Unseen::None && !isCertain) {
             return std::nullopt;
         }

@@ -1,5 +1,6 @@
 // The file of edits: its members, and which of them an edit of each kind has.
 #include "base/fields.h"
+#include "base/lists.h"
 #include "base/text.h"
 
 #include <glint/session/edits.h>
@@ -89,10 +90,7 @@ void checkValues(base::JsonReader& reader, const std::string& place, const Edit&
     count("scale", edit.scale, 3);
     count("matrix", edit.matrix, 16);
     count("color", edit.color, 3);
-    double square = 0.0;
-    for (const double one : edit.rotation) {
-        square += one * one;
-    }
+    const auto square = base::sumOf<double>(edit.rotation, [](double one) { return one * one; });
     // glTF wants unit quaternions; numbers that people type are rounded.
     if (!edit.rotation.empty() && !(std::abs(square - 1.0) < 0.01)) {
         reader.fail(place + "/rotation", "is no quaternion of length 1");

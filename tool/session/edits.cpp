@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "base/text.h"
 #include "base/vectors.h"
 #include "gltf/import.h"
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <functional>
 #include <limits>
 #include <utility>
@@ -89,18 +89,11 @@ Result<int> nodeOf(const Edit& edit, const char* member, const std::string& text
     if (const std::optional<int> found = findNode(scene, text)) {
         return *found;
     }
-    std::vector<std::string> names;
-    for (const Node& node : scene.nodes) {
-        names.push_back(node.name);
-    }
-    return unknown(edit, member, "node", text, std::move(names));
+    return unknown(edit, member, "node", text, base::mapped<std::string>(scene.nodes, &Node::name));
 }
 
 Result<int> materialOf(const Edit& edit, const Scene& scene) {
-    std::vector<std::string> names;
-    for (const materials::Material& material : scene.materials) {
-        names.push_back(material.name);
-    }
+    std::vector<std::string> names = base::mapped<std::string>(scene.materials, &materials::Material::name);
     const auto found = std::ranges::find(names, edit.material);
     if (found != names.end()) {
         return static_cast<int>(found - names.begin());

@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "emit/material_layout.h"
 
 #include <glint/session/live_scene.h>
@@ -7,7 +8,6 @@
 
 #include <algorithm>
 #include <tuple>
-#include <utility>
 
 namespace glint::session {
 
@@ -24,11 +24,7 @@ auto valuesOf(const LightView& light) {
 }
 
 std::vector<int> listMaterials(const gltf::Mesh& mesh) {
-    std::vector<int> materials;
-    for (const gltf::Primitive& primitive : mesh.primitives) {
-        materials.push_back(primitive.material);
-    }
-    return materials;
+    return base::mapped<int>(mesh.primitives, &gltf::Primitive::material);
 }
 
 void addOnce(std::vector<AttributeMask>& masks, AttributeMask mask) {

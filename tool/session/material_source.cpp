@@ -4,7 +4,6 @@
 
 #include <glint/session/material_source.h>
 
-#include <algorithm>
 #include <cstddef>
 #include <interop/scene.h>
 

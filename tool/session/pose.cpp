@@ -1,10 +1,9 @@
 #include "session/pose.h"
 
+#include "base/lists.h"
 #include "base/vectors.h"
 #include "gltf/motion/animatable.h"
 #include "gltf/motion/transform.h"
-
-#include <glint/session/scene_view.h>
 
 #include <algorithm>
 #include <cmath>
@@ -128,9 +127,8 @@ Locals restOf(const gltf::Scene& scene) {
         locals.pose.weights.push_back(drawn ? node.restWeights : std::vector<double>());
         locals.pose.visible.push_back(node.visible);
     }
-    for (const gltf::AnimatedMaterial& animated : scene.animatedMaterials) {
-        locals.pose.materials.push_back(animated.rest);
-    }
+    locals.pose.materials =
+        base::mapped<materials::Material>(scene.animatedMaterials, &gltf::AnimatedMaterial::rest);
     locals.pose.lights = scene.restLights;
     locals.pose.cameras = scene.restCameras;
     return locals;
@@ -295,6 +293,23 @@ std::vector<std::array<double, 3>> deformedPositions(const gltf::Primitive& prim
             base::toArray(follows ? skinned(primitive.influences, vertex, point, joints) : point));
     }
     return positions;
+}
+
+std::vector<glm::dvec3> placedPositions(const gltf::Scene& scene, const SceneViewData& view,
+                                        std::size_t instance, const gltf::Primitive& primitive) {
+    const InstanceView& placed = view.instances[instance];
+    const gltf::Node& node = scene.nodes[view.sources[instance].node];
+    const bool skinned = !placed.joints.empty();
+    const std::vector<gltf::Matrix4> joints =
+        skinned ? jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)])
+                : std::vector<gltf::Matrix4>();
+    // Skinned vertices are in the world already.
+    const glm::dvec3 from = base::toVector(skinned ? view.origin : view.meshOrigins[placed.mesh]);
+    return base::mapped<glm::dvec3>(
+        deformedPositions(primitive, node.weights, joints), [&](const std::array<double, 3>& position) {
+            const glm::dvec3 point = base::toVector(position) - from;
+            return skinned ? point : base::transformed(placed.objectToWorld, point);
+        });
 }
 
 }  // namespace glint::session

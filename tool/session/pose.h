@@ -1,10 +1,13 @@
-// Computes the value of an animated property between its keyframes.
+// Computes the value of an animated property between its keyframes, and where a pose places vertices.
 #pragma once
 
 #include "gltf/animation.h"
 
+#include <glint/session/scene_view.h>
+
 #include <glm/gtc/quaternion.hpp>
 
+#include <cstddef>
 #include <vector>
 
 namespace glint::session {
@@ -22,5 +25,10 @@ std::vector<double> sampleNumbers(const gltf::AnimationSampler& sampler, double 
 // Returns the rotation at `time`, which has unit length. `sampler.width` is 4. Linear interpolation is
 // spherical. A rotation of length 0 has no meaning, and counts as no rotation.
 Quaternion sampleRotation(const gltf::AnimationSampler& sampler, double time);
+
+// Returns the positions of a primitive of an instance at the pose of `scene`, from which `view` was made.
+// They are relative to the scene's origin, as lights are.
+std::vector<glm::dvec3> placedPositions(const gltf::Scene& scene, const SceneViewData& view,
+                                        std::size_t instance, const gltf::Primitive& primitive);
 
 }  // namespace glint::session

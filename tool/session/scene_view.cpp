@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "base/vectors.h"
 #include "gltf/motion/transform.h"
 
@@ -16,17 +17,9 @@ using Place = std::array<double, 3>;
 LightView toView(const gltf::Light& light, const SceneViewData& data) {
     LightView view;
     view.size = light.type == gltf::LightType::Directional ? data.directionalSize : data.placedSize;
-    switch (light.type) {
-        case gltf::LightType::Directional:
-            view.type = LightView::Type::Directional;
-            break;
-        case gltf::LightType::Point:
-            view.type = LightView::Type::Point;
-            break;
-        case gltf::LightType::Spot:
-            view.type = LightView::Type::Spot;
-            break;
-    }
+    view.type = light.type == gltf::LightType::Directional ? LightView::Type::Directional
+                : light.type == gltf::LightType::Point     ? LightView::Type::Point
+                                                           : LightView::Type::Spot;
     for (std::size_t i = 0; i < 3; ++i) {
         view.intensity[i] = light.shown ? light.color[i] * light.intensity : 0.0F;
     }
@@ -39,21 +32,15 @@ LightView toView(const gltf::Light& light, const SceneViewData& data) {
 }
 
 std::vector<MorphTargetView> toViews(const std::vector<gltf::MorphTarget>& targets) {
-    std::vector<MorphTargetView> views;
-    views.reserve(targets.size());
-    for (const gltf::MorphTarget& target : targets) {
-        views.push_back({target.positions, target.normals, target.tangents});
-    }
-    return views;
+    return base::mapped<MorphTargetView>(targets, [](const gltf::MorphTarget& target) {
+        return MorphTargetView{target.positions, target.normals, target.tangents};
+    });
 }
 
 std::vector<AttributeView> toViews(const std::vector<gltf::VertexValues>& attributes) {
-    std::vector<AttributeView> views;
-    views.reserve(attributes.size());
-    for (const gltf::VertexValues& attribute : attributes) {
-        views.push_back({attribute.name, attribute.channels, attribute.values});
-    }
-    return views;
+    return base::mapped<AttributeView>(attributes, [](const gltf::VertexValues& attribute) {
+        return AttributeView{attribute.name, attribute.channels, attribute.values};
+    });
 }
 
 PrimitiveView toView(const gltf::Primitive& primitive, std::size_t mesh, std::size_t index) {
@@ -72,10 +59,6 @@ PrimitiveView toView(const gltf::Primitive& primitive, std::size_t mesh, std::si
     return view;
 }
 
-bool hasTriangles(const gltf::Primitive& primitive) {
-    return primitive.indices.size() >= 3;
-}
-
 // Returns the mesh that has the vertices of a node's mesh.
 std::size_t verticesOf(const gltf::Scene& scene, const gltf::Node& node) {
     const int copyOf = scene.meshes[static_cast<std::size_t>(node.mesh)].copyOf;
@@ -91,11 +74,6 @@ std::vector<bool> placedMeshes(const gltf::Scene& scene) {
         }
     }
     return placed;
-}
-
-// Returns the determinant of the linear part.
-double determinantOf(const gltf::Matrix4& m) {
-    return glm::determinant(glm::dmat3(base::toMatrix(m)));
 }
 
 // Returns whether the node's mesh follows its skin. The node's own transform then has no effect (glTF 2.0,
@@ -173,12 +151,10 @@ void rebase(const gltf::Primitive& primitive, const Place& origin, SceneViewData
     if (origin == Place{}) {
         return;
     }
-    std::vector<gltf::Float3>& positions = data.positions.emplace_back();
-    positions.reserve(primitive.positions.size());
-    for (const gltf::Float3& position : primitive.positions) {
-        positions.push_back(base::toFloat3(base::toVector(position) - base::toVector(origin)));
-    }
-    view.positions = positions;
+    view.positions = data.positions.emplace_back(
+        base::mapped<gltf::Float3>(primitive.positions, [&](const gltf::Float3& position) {
+            return base::toFloat3(base::toVector(position) - base::toVector(origin));
+        }));
 }
 
 gltf::Matrix4 translation(const glm::dvec3& by) {
@@ -331,7 +307,7 @@ void listPrimitives(const gltf::Scene& scene, std::size_t mesh, SceneViewData& d
     data.meshOrigins[mesh] = originOf(data.meshBoxes[mesh]);
     const std::vector<gltf::Primitive>& primitives = scene.meshes[mesh].primitives;
     for (std::size_t index = 0; index < primitives.size(); ++index) {
-        if (hasTriangles(primitives[index])) {
+        if (primitives[index].indices.size() >= 3) {
             PrimitiveView& view = data.primitives.emplace_back(toView(primitives[index], mesh, index));
             rebase(primitives[index], data.meshOrigins[mesh], data, view);
             view.targets = data.targets.emplace_back(toViews(primitives[index].targets));
@@ -419,7 +395,8 @@ void poseSceneView(const gltf::Scene& scene, SceneViewData& data) {
         // the front (section 3.7.4). If it is negative, the instance mirrors X, and so do its joints before
         // that.
         const Place& mesh = data.meshOrigins[instance.mesh];
-        const float mirror = skinned && determinantOf(node.world) < 0.0 ? -1.0F : 1.0F;
+        const float mirror =
+            skinned && glm::determinant(glm::dmat3(base::toMatrix(node.world))) < 0.0 ? -1.0F : 1.0F;
         instance.objectToWorld =
             skinned ? InstanceView{}.objectToWorld
                     : toRows(rebased(worldOf(scene, node, data.sources[i].placement), mesh, data.origin));

@@ -1,8 +1,8 @@
+#include "base/lists.h"
 #include "cache/store.h"
 #include "emit/compile.h"
 #include "gltf/import.h"
 #include "resolve/light.h"
-#include "resolve/resolve.h"
 #include "scene/deformed.h"
 
 #include <glint/package_shape.h>
@@ -146,11 +146,10 @@ Status checkPackage(const Package& package, const compiler::Build& build) {
 }
 
 Result<std::shared_ptr<const Package>> loadPackage(const compiler::CompiledPackage& compiled) {
-    std::vector<package::EmbeddedFile> files;
-    files.reserve(compiled.files.size());
-    for (const compiler::PackageFile& file : compiled.files) {
-        files.push_back({file.name, file.bytes});
-    }
+    const auto files =
+        base::mapped<package::EmbeddedFile>(compiled.files, [](const compiler::PackageFile& file) {
+            return package::EmbeddedFile{file.name, file.bytes};
+        });
     GLINT_TRY(auto loaded, Package::load(files));
     return std::make_shared<const Package>(std::move(loaded));
 }

@@ -1,7 +1,8 @@
+#include "base/lists.h"
 #include "base/vectors.h"
 #include "image/image_file.h"
 #include "image/tone.h"
-#include "scene/deformed.h"
+#include "session/pose.h"
 
 #include <glint/session/sky.h>
 
@@ -27,33 +28,6 @@ double handedness(const std::array<float, 12>& rows) {
     return glm::dot(glm::cross(x, y), z) < 0.0 ? -1.0 : 1.0;
 }
 
-// Returns the positions of a primitive of an instance relative to the scene's origin, as lights are.
-std::vector<glm::dvec3> placedPositions(const gltf::Scene& scene, const SceneViewData& view,
-                                        const gltf::Node& node, const InstanceView& instance,
-                                        const gltf::Primitive& primitive) {
-    std::vector<glm::dvec3> positions;
-    const bool skinned = !instance.joints.empty();
-    if (compiler::isDeformed(scene, node)) {
-        const std::vector<gltf::Matrix4> joints =
-            skinned ? jointMatrices(scene, scene.skins[static_cast<std::size_t>(node.skin)])
-                    : std::vector<gltf::Matrix4>();
-        for (const std::array<double, 3>& position : deformedPositions(primitive, node.weights, joints)) {
-            positions.push_back(base::toVector(position));
-        }
-    } else {
-        positions.reserve(primitive.positions.size());
-        for (const gltf::Float3& position : primitive.positions) {
-            positions.push_back(base::toVector(position));
-        }
-    }
-    // Skinned vertices are in the world already.
-    const glm::dvec3 from = base::toVector(skinned ? view.origin : view.meshOrigins[instance.mesh]);
-    for (glm::dvec3& position : positions) {
-        position = skinned ? position - from : base::transformed(instance.objectToWorld, position - from);
-    }
-    return positions;
-}
-
 // Returns a vector along the normal of the triangle's front; its length is twice the area.
 glm::dvec3 areaVector(const Corners& corners) {
     return glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
@@ -68,10 +42,9 @@ void visitTriangles(const gltf::Scene& scene, const SceneViewData& view,
         if (!instance.visible) {
             continue;
         }
-        const gltf::Node& node = scene.nodes[view.sources[i].node];
         const bool mirrored = handedness(instance.objectToWorld) < 0.0;
         for (const gltf::Primitive& primitive : scene.meshes[instance.mesh].primitives) {
-            const std::vector<glm::dvec3> positions = placedPositions(scene, view, node, instance, primitive);
+            const std::vector<glm::dvec3> positions = placedPositions(scene, view, i, primitive);
             for (std::size_t first = 0; first + 2 < primitive.indices.size(); first += 3) {
                 Corners corners{positions[primitive.indices[first]], positions[primitive.indices[first + 1]],
                                 positions[primitive.indices[first + 2]]};
@@ -201,10 +174,8 @@ std::optional<double> typicalIlluminance(std::vector<LitPatch> patches) {
         return !std::isfinite(patch.illuminance) || patch.illuminance <= 0.0;
     });
     std::ranges::sort(patches, std::greater(), &LitPatch::illuminance);
-    double flux = 0.0;
-    for (const LitPatch& patch : patches) {
-        flux += patch.illuminance * patch.area;
-    }
+    const auto flux =
+        base::sumOf<double>(patches, [](const LitPatch& patch) { return patch.illuminance * patch.area; });
     double received = 0.0;
     double area = 0.0;
     double sum = 0.0;

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>

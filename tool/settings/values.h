@@ -166,6 +166,26 @@ constexpr SettingValues limit(double max) {
             .max = max};
 }
 
+// A number, one value of which has a name.
+template <const auto& kNamed, auto... Path>
+constexpr SettingValues numberOr(double max, std::string_view type) {
+    using Value = std::remove_reference_t<decltype(memberOf<Path...>(std::declval<Settings&>()))>;
+    return {.form = ValueForm::Whole,
+            .text =
+                [](const Settings& settings) {
+                    const Value value = memberOf<Path...>(settings);
+                    return value == kNamed.value ? std::string(kNamed.name) : fmt::format("{}", value);
+                },
+            .set =
+                [](Settings& settings, std::string_view text) {
+                    memberOf<Path...>(settings) = text == kNamed.name ? kNamed.value : numberOf<Value>(text);
+                },
+            .words = [] { return wordsNamed<Value>(std::span(&kNamed, 1)); },
+            .min = 1,
+            .max = max,
+            .type = type};
+}
+
 // A set of bits. `kAdvised`, if it is not null, stands for "auto".
 template <typename Value, bool Settings::*kAdvised, auto... Path>
 constexpr SettingValues bits(std::string_view automatic = {}) {
@@ -495,24 +515,9 @@ inline constexpr SettingValues kSky{
         "is 1 if the scene has none",
     .type = "auto|FACTOR"};
 
-inline constexpr SettingValues kScreenSteps{
-    .form = ValueForm::Whole,
-    .text =
-        [](const Settings& settings) {
-            const std::uint32_t steps = settings.frame.screenSteps;
-            return steps == 0 ? std::string("off") : fmt::format("{}", steps);
-        },
-    .set =
-        [](Settings& settings, std::string_view text) {
-            settings.frame.screenSteps = text == "off" ? 0 : numberOf<std::uint32_t>(text);
-        },
-    .words =
-        [] {
-            return std::vector<SettingWord>{{"off", ""}};
-        },
-    .min = 1,
-    .max = 1024,
-    .type = "off|N"};
+inline constexpr Named<std::uint32_t> kNoSteps{0, "off"};
+inline constexpr SettingValues kScreenSteps =
+    numberOr<kNoSteps, &Settings::frame, &FrameOptions::screenSteps>(1024, "off|N");
 
 inline constexpr SettingValues kLights{
     .form = ValueForm::Whole,
@@ -539,27 +544,10 @@ inline constexpr SettingValues kLights{
     .max = package::kMaxLightSamples,
     .type = "auto|all|K"};
 
-inline constexpr std::string_view kUnlimited = "unlimited";
-
-inline constexpr SettingValues kBounces{
-    .form = ValueForm::Whole,
-    .text =
-        [](const Settings& settings) {
-            const std::uint32_t bounces = settings.compile.maxBounces;
-            return bounces == package::kMaxBounces ? std::string(kUnlimited) : fmt::format("{}", bounces);
-        },
-    .set =
-        [](Settings& settings, std::string_view text) {
-            settings.compile.maxBounces =
-                text == kUnlimited ? package::kMaxBounces : numberOf<std::uint32_t>(text);
-        },
-    .words =
-        [] {
-            return std::vector<SettingWord>{{std::string(kUnlimited), "64"}};
-        },
-    .min = 1,
-    .max = package::kMaxBounces,
-    .type = "N|unlimited"};
+inline constexpr Named<std::uint32_t> kUnlimited{package::kMaxBounces, "unlimited", "64"};
+inline constexpr SettingValues kBounces =
+    numberOr<kUnlimited, &Settings::compile, &CompileSettings::maxBounces>(package::kMaxBounces,
+                                                                           "N|unlimited");
 
 inline constexpr Named<bool> kEnergyNames[] = {{true, "on"}, {false, "off"}};
 inline constexpr Named<bool> kTrustNames[] = {

@@ -1,9 +1,9 @@
+#include "base/lists.h"
 #include "base/text.h"
 #include "cli/bench/bench.h"
 #include "cli/options/options.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -160,15 +160,6 @@ void checkCalibrateOptions(const CLI::App& command, const CalibrateArguments& ar
     }
 }
 
-std::vector<std::uint32_t> casesOf(const CalibrateArguments& arguments) {
-    const auto given = parseCounts(arguments.caseWords, 1, synthetic::kMaxCases);
-    return given ? std::vector<std::uint32_t>(given->begin(), given->end()) : std::vector<std::uint32_t>();
-}
-
-std::vector<std::uint64_t> raysOf(const CalibrateArguments& arguments) {
-    return parseCounts(arguments.rayWords, kMinRays, kMaxRays).value_or(std::vector<std::uint64_t>());
-}
-
 namespace {
 
 constexpr std::int64_t kRounds = 11;
@@ -294,9 +285,14 @@ void settleBench(const CLI::App& command, BenchArguments& arguments) {
                                        "with -DGLINT_BUILD_EXAMPLES=ON");
         }
     }
-    for (const std::string& text : arguments.candidateWords) {
-        arguments.candidates.push_back(parseCandidate(text));
+    CalibrateArguments& calibrate = arguments.calibrate;
+    if (const auto cases = parseCounts(calibrate.caseWords, 1, synthetic::kMaxCases)) {
+        calibrate.cases.assign(cases->begin(), cases->end());
     }
+    if (const auto rays = parseCounts(calibrate.rayWords, kMinRays, kMaxRays)) {
+        calibrate.rays = *rays;
+    }
+    arguments.candidates = base::mapped<measure::Candidate>(arguments.candidateWords, parseCandidate);
     if (arguments.rounds == 0) {
         const bool isShort = !arguments.calibrate.deviceReport.empty() && arguments.quick;
         arguments.rounds = isShort                                          ? 1

@@ -13,34 +13,22 @@
 
 #include <CLI/CLI.hpp>
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace glint::cli {
 
-struct CalibrateArguments {
+struct CalibrateArguments : measure::CalibrationSettings {
     bool enabled = false;
     // The words as given. "auto" depends on the device and --quick.
     std::string caseWords = "auto";
     std::string rayWords = "auto";
-    std::vector<std::string> costs{"cheap", "expensive"};
-    std::vector<std::string> coherences{"coherent", "incoherent"};
-    std::string shares = "uniform";
-    std::int64_t lights = 0;
-    bool shadows = false;
-    std::string pictures;      // folder; empty: none are written
     std::string deviceReport;  // file; empty: none is made
 };
 
 void addCalibrateOptions(CLI::App& command, CalibrateArguments& arguments);
 // Throws a CLI::ParseError if options contradict each other.
 void checkCalibrateOptions(const CLI::App& command, const CalibrateArguments& arguments);
-
-// Parses "1,4,16"; empty for "auto". The text must have passed the checks of addCalibrateOptions().
-std::vector<std::uint32_t> casesOf(const CalibrateArguments& arguments);
-// Parses "16k,1M" in the same way; k is a thousand, M a million.
-std::vector<std::uint64_t> raysOf(const CalibrateArguments& arguments);
 
 // --- The command line of glint bench ---
 

@@ -4,8 +4,6 @@
 #include "cli/bench/bench.h"
 #include "cli/table.h"
 
-#include <glint/measure/report.h>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

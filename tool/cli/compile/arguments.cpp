@@ -2,22 +2,15 @@
 #include "base/text.h"
 #include "cli/compile/compile.h"
 #include "cli/options/options.h"
-#include "cli/options/setting_options.h"
-#include "emit/compile.h"
 #include "emit/package/compiled_package.h"
 #include "emit/package/header.h"
 #include "materials/declarations.h"
 #include "resolve/host.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <iterator>
-#include <string_view>
-#include <utility>
 
 namespace glint::cli {
 
@@ -134,6 +127,14 @@ void finishCompile(const CLI::App& command, CompileArguments& arguments) {
         arguments.depfile.targets = {arguments.planOnly.path.empty() ? mainOutputs(arguments).front()
                                                                      : arguments.planOnly.buildFile()};
     }
+    const auto emits = [&](const char* what) {
+        return std::ranges::find(arguments.emit, what) != arguments.emit.end();
+    };
+    arguments.settings.compile.emitHeader = emits("header");
+    arguments.settings.compile.emitGlsl = emits("glsl");
+    arguments.settings.compile.emitLibrary = emits("library");
+    arguments.settings.compile.emitLinkable = emits("linkable");
+    arguments.settings.compile.modules = arguments.modules;
     arguments.options = describeOptions(command);
     // The words already contain what the settings file says.
     constexpr std::string_view kOwn[] = {kPlanOnly, kLauncher, kModules, "--settings"};
@@ -156,26 +157,23 @@ void finishCompile(const CLI::App& command, CompileArguments& arguments) {
 }
 
 Status checkOutputs(const CompileArguments& arguments) {
-    Status possible = okStatus();
     if (!arguments.planOnly.path.empty()) {
-        possible = base::checkOutputFolder(arguments.planOnly.path);
+        GLINT_TRY_DO(base::checkOutputFolder(arguments.planOnly.path));
     } else if (!arguments.output.empty()) {
-        possible = compiler::checkPackageFolder(arguments.output);
+        GLINT_TRY_DO(compiler::checkPackageFolder(arguments.output));
     }
-    if (possible && arguments.planOnly.path.empty() && !arguments.embed.empty()) {
+    if (arguments.planOnly.path.empty() && !arguments.embed.empty()) {
         // Its folder is made.
-        possible = base::checkOutputFolder(std::filesystem::path(arguments.embed).parent_path());
+        const Status possible = base::checkOutputFolder(std::filesystem::path(arguments.embed).parent_path());
         if (!possible) {
-            possible = makeError(possible.error().id, arguments.embed, possible.error().message,
-                                 possible.error().hint);
+            return makeError(possible.error().id, arguments.embed, possible.error().message,
+                             possible.error().hint);
         }
     }
-    std::error_code error;
-    if (possible && std::filesystem::is_directory(arguments.embed, error)) {
-        possible = base::checkOutputFile(arguments.embed);
+    if (std::error_code error; std::filesystem::is_directory(arguments.embed, error)) {
+        GLINT_TRY_DO(base::checkOutputFile(arguments.embed));
     }
-    return possible && !arguments.depfile.file.empty() ? base::checkOutputFile(arguments.depfile.file)
-                                                       : possible;
+    return arguments.depfile.file.empty() ? okStatus() : base::checkOutputFile(arguments.depfile.file);
 }
 
 std::vector<std::string> mainOutputs(const CompileArguments& arguments) {
@@ -188,19 +186,6 @@ std::vector<std::string> mainOutputs(const CompileArguments& arguments) {
         files.push_back(compiler::embeddedHeader(arguments.embed).string());
     }
     return files;
-}
-
-compiler::Settings settingsOf(const CompileArguments& arguments) {
-    const auto emits = [&](const char* what) {
-        return std::find(arguments.emit.begin(), arguments.emit.end(), what) != arguments.emit.end();
-    };
-    compiler::Settings settings = arguments.settings;
-    settings.compile.emitHeader = emits("header");
-    settings.compile.emitGlsl = emits("glsl");
-    settings.compile.emitLibrary = emits("library");
-    settings.compile.emitLinkable = emits("linkable");
-    settings.compile.modules = arguments.modules;
-    return settings;
 }
 
 std::vector<std::filesystem::path> furtherInputs(const CompileArguments& arguments) {

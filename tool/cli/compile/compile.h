@@ -39,7 +39,7 @@ struct CompileArguments {
     std::vector<std::string> reportWords;  // those that decide which diagnostics are errors
     compiler::PlanFolder planOnly;         // empty: no plan
     std::string launcher;                  // of the plan's compilations
-    std::string modules;                   // folder of compiled modules; empty: they are compiled
+    std::string modules;                   // CompileSettings::modules
     bool dryRun = false;
     bool watch = false;
     std::vector<std::string> line;  // the command line, without the program; for --watch
@@ -51,9 +51,6 @@ Status checkOutputs(const CompileArguments& arguments);
 // Fills in the members that follow from the parsed `command`. Throws a CLI::ParseError if options contradict
 // each other.
 void finishCompile(const CLI::App& command, CompileArguments& arguments);
-
-// Returns the settings with what else the package is to contain.
-compiler::Settings settingsOf(const CompileArguments& arguments);
 
 // Returns the files that stand for the whole output: the manifest, and those of --embed.
 std::vector<std::string> mainOutputs(const CompileArguments& arguments);

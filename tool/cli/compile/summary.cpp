@@ -6,9 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdint>
-#include <utility>
-
 namespace glint::cli {
 
 namespace {

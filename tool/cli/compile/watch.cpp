@@ -1,9 +1,8 @@
 #include "base/clock.h"
 #include "base/files.h"
-#include "base/input_watch.h"
+#include "base/lists.h"
 #include "cli/compile/compile.h"
 #include "cli/options/options.h"
-#include "cli/options/setting_options.h"
 #include "emit/package/compiled_package.h"
 
 #include <glint/package.h>
@@ -11,17 +10,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
-#include <filesystem>
 #include <iterator>
-#include <optional>
 #include <set>
 #include <system_error>
 #include <thread>
-#include <utility>
 
 namespace glint::cli {
 
@@ -52,11 +46,8 @@ Result<CompileArguments> parseAgain(const std::vector<std::string>& line) {
     addCompileOptions(command, arguments);
     ReportArguments report;
     addReportOptions(command, report);
-    std::vector<const char*> pointers;
-    pointers.reserve(line.size());
-    for (const std::string& word : line) {
-        pointers.push_back(word.c_str());
-    }
+    const auto pointers =
+        base::mapped<const char*>(line, [](const std::string& word) { return word.c_str(); });
     GLINT_TRY(const auto completed, completeLine(app, pointers));
     try {
         std::vector<std::string> words(completed.words.rbegin(), completed.words.rend());

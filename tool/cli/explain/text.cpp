@@ -1,5 +1,5 @@
+#include "base/lists.h"
 #include "cli/report.h"
-#include "cli/table.h"
 #include "emit/package/manifest.h"
 #include "plan/plan_cost.h"
 
@@ -28,11 +28,8 @@ std::string percent(double share) {
 
 // Returns the first names, and how many more there are.
 std::string materialsText(const compiler::Build& build, const std::vector<int>& materials) {
-    std::vector<std::string> names;
-    for (const int material : materials) {
-        names.push_back(build.scenes->materialName(material));
-    }
-    return base::firstOf(names, 3, "; ");
+    const auto nameOf = [&](int material) { return build.scenes->materialName(material); };
+    return base::firstOf(base::mapped<std::string>(materials, nameOf), 3, "; ");
 }
 
 std::string headText(const compiler::Build& build) {
@@ -185,16 +182,11 @@ base::Json keyToJson(const compiler::Build& build, const compiler::KeyCost& cost
 
 base::Json caseToJson(const compiler::Build& build, const compiler::CaseCost& cost) {
     const compiler::Case& shaderCase = caseOf(build, cost.shaderId);
-    base::Json keys = base::Json::array();
-    for (const compiler::KeyCost& key : cost.keys) {
-        keys.push_back(keyToJson(build, key));
-    }
-    base::Json branches = base::Json::array();
-    for (const compiler::BranchCost& branch : cost.branches) {
-        branches.push_back(base::Json{{"feature", branch.feature->name},
-                                      {"share", compiler::roundedShare(branch.share)},
-                                      {"inVain", branch.cost}});
-    }
+    const auto branchToJson = [](const compiler::BranchCost& branch) -> base::Json {
+        return {{"feature", branch.feature->name},
+                {"share", compiler::roundedShare(branch.share)},
+                {"inVain", branch.cost}};
+    };
     base::Json nearest;
     if (cost.nearest) {
         nearest = base::Json{
@@ -210,8 +202,8 @@ base::Json caseToJson(const compiler::Build& build, const compiler::CaseCost& co
             {"ownInstructions", cost.ownInstructions},
             {"inVain", cost.inVain},
             {"spared", cost.saved},
-            {"branches", branches},
-            {"keys", keys},
+            {"branches", listOf(cost.branches, branchToJson)},
+            {"keys", listOf(cost.keys, [&](const compiler::KeyCost& key) { return keyToJson(build, key); })},
             {"nearest", nearest}};
 }
 
@@ -244,23 +236,15 @@ std::string planText(const compiler::Build& build, Detail detail) {
 
 base::Json planToJson(const compiler::Build& build) {
     const compiler::PlanCost cost = costPlan(build.plan, build.settings.compile.plan);
-    base::Json cases = base::Json::array();
-    for (const compiler::CaseCost& entry : cost.cases) {
-        cases.push_back(caseToJson(build, entry));
-    }
-    base::Json merges = base::Json::array();
-    for (const compiler::MergeEstimate& merge : build.merges) {
+    const auto mergeToJson = [&](const compiler::MergeEstimate& merge) -> base::Json {
         base::Json times = base::Json::object();
         for (std::size_t i = 0; i < build.mergedFor.size(); ++i) {
             times[build.mergedFor[i]] = merge.ms[i];
         }
-        merges.push_back(base::Json{{"name", merge.name},
-                                    {"cases", merge.cases},
-                                    {"inVain", merge.inVain},
-                                    {"firstHitsMilliseconds", merge.firstMs},
-                                    {"milliseconds", times},
-                                    {"chosen", merge.chosen}});
-    }
+        return {{"name", merge.name},     {"cases", merge.cases},
+                {"inVain", merge.inVain}, {"firstHitsMilliseconds", merge.firstMs},
+                {"milliseconds", times},  {"chosen", merge.chosen}};
+    };
     const int budget = budgetOf(build.settings.compile.plan);
     return {{"maxShaders", budget > 0 ? base::Json(budget) : base::Json()},
             {"hits", countsHits(build.settings.compile.plan) ? "counted" : "expected"},
@@ -268,8 +252,9 @@ base::Json planToJson(const compiler::Build& build) {
             {"inVain", cost.inVain},
             {"caseCost", compiler::kCaseCost},
             {"cost", compiler::totalCost(cost.inVain, cost.cases.size())},
-            {"cases", cases},
-            {"merges", merges}};
+            {"cases",
+             listOf(cost.cases, [&](const compiler::CaseCost& entry) { return caseToJson(build, entry); })},
+            {"merges", listOf(build.merges, mergeToJson)}};
 }
 
 std::string strategiesText(const compiler::StrategyAdvice& advice) {
@@ -346,11 +331,8 @@ std::set<materials::FeatureMask> primaryMasksOf(const compiler::Build& build, co
 }
 
 base::Json primaryToJson(const compiler::Build& build, const compiler::Key& key, int material) {
-    base::Json list = base::Json::array();
-    for (const materials::FeatureMask& mask : primaryMasksOf(build, key, material)) {
-        list.push_back(featuresToJson(*build.plan.model, mask));
-    }
-    return list;
+    return listOf(primaryMasksOf(build, key, material),
+                  [&](const materials::FeatureMask& mask) { return featuresToJson(*build.plan.model, mask); });
 }
 
 // The values of the material that animations change: planning drops no feature for a value that passes.
@@ -378,41 +360,35 @@ std::string sharesText(const compiler::Build& build, const compiler::Key& key, c
 }  // namespace
 
 base::Json materialToJson(const compiler::Build& build, int material) {
-    base::Json keys = base::Json::array();
-    for (const compiler::Key* key : keysOf(build, material)) {
+    const auto keyOfMaterial = [&](const compiler::Key* key) -> base::Json {
         const compiler::Case& shader = caseOf(build, key->shaderId);
-        keys.push_back(base::Json{{"mask", toHex(key->mask)},
-                                  {"features", featuresToJson(*build.plan.model, key->mask)},
-                                  {"onPrimarySurfaces", primaryToJson(build, *key, material)},
-                                  {"share", compiler::roundedShare(key->share)},
-                                  {"case",
-                                   {{"id", shader.shaderId},
-                                    {"name", shader.name},
-                                    {"keys", shader.keys.size()},
-                                    {"share", compiler::roundedShare(shader.share)},
-                                    {"reason", toString(shader.reason)},
-                                    {"always", featuresToJson(*build.plan.model, shader.always)},
-                                    {"sometimes", featuresToJson(*build.plan.model, shader.sometimes)}}},
-                                  {"primitives", primitivesOf(build, *key, material)}});
-    }
-    base::Json dropped = base::Json::array();
-    for (const auto& [feature, reason] : dropsOf(build, material)) {
-        dropped.push_back(base::Json{{"feature", feature}, {"reason", reason}});
-    }
+        return {{"mask", toHex(key->mask)},
+                {"features", featuresToJson(*build.plan.model, key->mask)},
+                {"onPrimarySurfaces", primaryToJson(build, *key, material)},
+                {"share", compiler::roundedShare(key->share)},
+                {"case",
+                 {{"id", shader.shaderId},
+                  {"name", shader.name},
+                  {"keys", shader.keys.size()},
+                  {"share", compiler::roundedShare(shader.share)},
+                  {"reason", toString(shader.reason)},
+                  {"always", featuresToJson(*build.plan.model, shader.always)},
+                  {"sometimes", featuresToJson(*build.plan.model, shader.sometimes)}}},
+                {"primitives", primitivesOf(build, *key, material)}};
+    };
+    const auto dropToJson = [](const Drop& drop) -> base::Json {
+        return {{"feature", drop.first}, {"reason", drop.second}};
+    };
     return {{"index", material},
             {"name", build.scenes->materialName(material)},
-            {"keys", keys},
-            {"dropped", dropped},
+            {"keys", listOf(keysOf(build, material), keyOfMaterial)},
+            {"dropped", listOf(dropsOf(build, material), dropToJson)},
             {"animated", changesOf(*build.scenes, material)}};
 }
 
 Rows materialRows(const compiler::Build& build, int material, Detail detail) {
-    const std::vector<const compiler::Key*> keys = keysOf(build, material);
-    if (keys.empty()) {
-        return {};
-    }
     Rows rows;
-    for (const compiler::Key* key : keys) {
+    for (const compiler::Key* key : keysOf(build, material)) {
         const compiler::Case& shader = caseOf(build, key->shaderId);
         rows.push_back({"  key", toHex(key->mask)});
         rows.push_back({"    features", featureList(*build.plan.model, key->mask)});
@@ -427,6 +403,9 @@ Rows materialRows(const compiler::Build& build, int material, Detail detail) {
         rows.push_back({"    hits", sharesText(build, *key, shader)});
         rows.push_back({"    branches on", featureList(*build.plan.model, shader.sometimes)});
         rows.push_back({"    primitives", base::firstOf(primitivesOf(build, *key, material), 1)});
+    }
+    if (rows.empty()) {
+        return rows;
     }
     for (const auto& [feature, reason] : dropsOf(build, material)) {
         rows.push_back({"  dropped", fmt::format("{}: {}", feature, reason)});

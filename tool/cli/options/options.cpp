@@ -1,7 +1,6 @@
 #include "cli/options/options.h"
 
 #include "base/text.h"
-#include "cli/console.h"
 #include "cli/table.h"
 #include "settings/settings.h"
 
@@ -12,7 +11,6 @@
 #include <filesystem>
 #include <memory>
 #include <sstream>
-#include <string_view>
 
 namespace glint::cli {
 
@@ -269,13 +267,7 @@ std::string checkWarning(const std::string& value) {
 }  // namespace
 
 ConsoleOptions ReportArguments::options() const {
-    ConsoleOptions options;
-    options.json = json;
-    options.quiet = quiet;
-    options.verbose = verbose;
-    options.color = color == "always"  ? ColorChoice::Always
-                    : color == "never" ? ColorChoice::Never
-                                       : ColorChoice::Auto;
+    ConsoleOptions options = *this;
     for (const std::string& id : werror) {
         if (id == kAll) {
             options.policy.allErrors = true;
@@ -308,8 +300,8 @@ void addReportOptions(CLI::App& command, ReportArguments& arguments) {
     }
     addFlag(command, "-q,--quiet", arguments.quiet, "print only errors");
     addFlag(command, "-v,--verbose", arguments.verbose, "print what is read, decided and made, with times");
-    addChoice(command, "--color", arguments.color, {"auto", "always", "never"},
-              "colour of diagnostics; auto: where stderr is a terminal and NO_COLOR is not set");
+    addNamed(command, "--color", arguments.color,
+             "colour of diagnostics; auto: where stderr is a terminal and NO_COLOR is not set");
     command
         .add_flag("--werror", arguments.werror,
                   "treat warnings as errors; --werror=ID: only those of this\n"

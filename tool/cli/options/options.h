@@ -157,14 +157,11 @@ void addWords(const CLI::Option& option, std::vector<std::string>& words);
 // Options that decide which diagnostics count, by id, and how a command reports: --json, --quiet, --verbose,
 // --color, --werror, -W.
 
-struct ReportArguments {
-    bool json = false;
-    bool quiet = false;
-    bool verbose = false;
-    std::string color = "auto";
+struct ReportArguments : ConsoleOptions {
     std::vector<std::string> werror;    // "true" for --werror, else an id
     std::vector<std::string> warnings;  // of -W: "no-ID", "error", "error=ID"
 
+    // Returns the options with the policy that these words ask for.
     ConsoleOptions options() const;
     // Throws a CLI::ParseError if the options contradict each other.
     void check() const;

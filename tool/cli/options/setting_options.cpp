@@ -1,9 +1,9 @@
 #include "cli/options/setting_options.h"
 
+#include "base/lists.h"
 #include "base/text.h"
 #include "cli/options/options.h"
 #include "cli/table.h"
-#include "settings/descriptor.h"
 
 #include <glint/measure/settings.h>
 
@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
-#include <optional>
 #include <string_view>
 
 namespace glint::cli {
@@ -21,11 +20,7 @@ namespace glint::cli {
 namespace {
 
 std::vector<std::string> namesOf(const std::vector<compiler::SettingWord>& words) {
-    std::vector<std::string> names;
-    for (const compiler::SettingWord& word : words) {
-        names.push_back(word.name);
-    }
-    return names;
+    return base::mapped<std::string>(words, &compiler::SettingWord::name);
 }
 
 std::string typeOf(const compiler::Descriptor& row) {
@@ -128,18 +123,6 @@ void refuseNames(std::string_view setting, const std::vector<std::string>& names
     }
 }
 
-}  // namespace
-
-void addSettings(CLI::App& command, compiler::SettingCommand which, compiler::Settings& settings) {
-    for (const compiler::Descriptor& row : compiler::settingsTable()) {
-        if ((row.commands & which) != 0) {
-            addSetting(command, row, settings);
-        }
-    }
-}
-
-namespace {
-
 // Packages for scenes that are edited, and for hosts that bring textures of their own, trust no textures.
 void checkTrust(const CLI::App& command, const compiler::Settings& settings) {
     if (settings.compile.trustTextures && !trustsTextures(settings) &&
@@ -153,6 +136,14 @@ void checkTrust(const CLI::App& command, const compiler::Settings& settings) {
 }
 
 }  // namespace
+
+void addSettings(CLI::App& command, compiler::SettingCommand which, compiler::Settings& settings) {
+    for (const compiler::Descriptor& row : compiler::settingsTable()) {
+        if ((row.commands & which) != 0) {
+            addSetting(command, row, settings);
+        }
+    }
+}
 
 void checkSettings(const CLI::App& command, const compiler::Settings& settings) {
     checkTrust(command, settings);

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <string_view>
 #include <utility>
-#include <vector>
 
 namespace glint::cli {
 

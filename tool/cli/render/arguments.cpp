@@ -1,8 +1,7 @@
 #include "cli/render/arguments.h"
 
+#include "base/lists.h"
 #include "base/text.h"
-#include "cli/options/options.h"
-#include "cli/options/setting_options.h"
 #include "cli/table.h"
 #include "emit/compile.h"
 #include "image/image_file.h"
@@ -56,11 +55,8 @@ Result<std::vector<std::size_t>> chooseAnimations(const gltf::Scene& scene, cons
     if (number && static_cast<std::size_t>(*number) < all.size()) {
         return std::vector{static_cast<std::size_t>(*number)};
     }
-    std::vector<std::string> names;
-    names.reserve(all.size() + 1);
-    for (const std::size_t index : all) {
-        names.push_back(animationName(scene, index));
-    }
+    std::vector<std::string> names =
+        base::mapped<std::string>(all, [&](std::size_t index) { return animationName(scene, index); });
     const std::string known = base::enumeration(names);
     names.emplace_back("all");
     return makeError("animation-unknown", scene.path,
@@ -212,11 +208,7 @@ constexpr const char* kView = "--view";
 constexpr const char* kViewReference = "--view-reference";
 
 std::vector<std::string> viewNames() {
-    std::vector<std::string> names;
-    for (const measure::ViewInfo& view : measure::viewTable()) {
-        names.emplace_back(view.name);
-    }
-    return names;
+    return base::mapped<std::string>(measure::viewTable(), &measure::ViewInfo::name);
 }
 
 // Says what is wrong with a text that names no view.

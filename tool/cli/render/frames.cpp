@@ -8,9 +8,6 @@
 #include <glint/session/live_scene.h>
 
 #include <algorithm>
-#include <chrono>
-#include <memory>
-#include <optional>
 #include <utility>
 
 namespace glint::cli {

@@ -31,7 +31,6 @@ struct PipelineCacheReport {
     std::uint64_t savedBytes = 0;
     std::optional<std::uint32_t> hits;  // PipelineMaking::cacheHits
 };
-base::Fields fieldsOf(const PipelineCacheReport*);
 
 // The times from nothing to a picture, wall clock.
 struct StartReport {
@@ -53,12 +52,6 @@ struct PipelineReport {
     std::optional<std::vector<PipelineStatistics>> statistics;  // absent: not asked for, or not to be had
 };
 
-// Returns "8 in 12.3 ms by 4 threads; cache of 1.2 MiB, 8 found in it".
-std::string toText(const PipelineReport& report);
-
-base::Fields fieldsOf(const StartReport*);
-std::string toText(const StartReport& start);
-
 // Returns a table with a row for each executable, and the facts that inspect::factsOf() finds.
 std::string tableOf(std::span<const PipelineStatistics> pipelines);
 // Returns a cell of tables: "72", "38 %", or "-".
@@ -70,8 +63,6 @@ struct MemoryReport {
     std::uint64_t frameAllocatedBytes = 0;
     std::uint64_t sceneAllocatedBytes = 0;
 };
-
-std::uint64_t bytesOf(const std::vector<MemoryItem>& items);
 
 base::Fields fieldsOf(const MemoryReport*);
 std::string toText(const MemoryReport& memory);

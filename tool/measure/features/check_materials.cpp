@@ -14,7 +14,6 @@
 #include <cstring>
 #include <iterator>
 #include <numbers>
-#include <utility>
 
 namespace glint::measure {
 

@@ -1,6 +1,6 @@
 #include "measure/features/checks.h"
 
-#include "measure/features/integrals.h"
+#include "base/lists.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <string>
 #include <utility>
 
 namespace glint::measure {
@@ -172,11 +171,8 @@ Result<std::vector<Direction>> surfaceViews(const FeatureOnDevice& on, const std
         }
     }
     GLINT_TRY(const auto outputs, on.evaluator.run(inputs));
-    std::vector<Direction> found;
-    for (const compiler::FeatureKernelOutput& output : outputs) {
-        found.push_back(toDirection(output.view));
-    }
-    return found;
+    return base::mapped<Direction>(
+        outputs, [](const compiler::FeatureKernelOutput& output) { return toDirection(output.view); });
 }
 
 // A material of the feature, seen from somewhere.
@@ -255,10 +251,10 @@ Result<std::vector<double>> baseEnergies(const FeatureOnDevice& on, const std::v
     const std::vector<std::vector<Direction>> none(seen.size());
     const Result<std::vector<LobeIntegrals>> integrals =
         integrateLobes(none, [&](std::span<const LobeQuery> queries) -> Result<std::vector<LobeValues>> {
-            std::vector<compiler::FeatureKernelInput> inputs;
-            for (const LobeQuery& query : queries) {
-                inputs.push_back(inputOf(whole, bases[query.lobe], seen[query.lobe].view, query.direction));
-            }
+            const auto inputs =
+                base::mapped<compiler::FeatureKernelInput>(queries, [&](const LobeQuery& query) {
+                    return inputOf(whole, bases[query.lobe], seen[query.lobe].view, query.direction);
+                });
             GLINT_TRY(const auto outputs, on.evaluator.run(inputs));
             std::vector<LobeValues> values(outputs.size());
             for (std::size_t i = 0; i < values.size(); ++i) {
@@ -269,11 +265,8 @@ Result<std::vector<double>> baseEnergies(const FeatureOnDevice& on, const std::v
     if (!integrals) {
         return integrals.error();
     }
-    std::vector<double> energies;
-    for (const LobeIntegrals& integral : *integrals) {
-        energies.push_back(largestOf(integral.whole));
-    }
-    return energies;
+    return base::mapped<double>(*integrals,
+                                [](const LobeIntegrals& integral) { return largestOf(integral.whole); });
 }
 
 CheckOutcome outcomeOf(MaterialCheck check, double limit) {
@@ -473,27 +466,20 @@ Result<IntegralOutcomes> checkIntegrals(const FeatureOnDevice& on) {
     GLINT_TRY(const auto samples, sampleAll(on, seen));
     const Result<std::vector<LobeIntegrals>> integrals =
         integrateLobes(samples, [&](std::span<const LobeQuery> queries) -> Result<std::vector<LobeValues>> {
-            std::vector<compiler::FeatureKernelInput> inputs;
-            inputs.reserve(queries.size());
-            for (const LobeQuery& query : queries) {
-                const SeenMaterial& one = seen[query.lobe];
-                inputs.push_back(inputOf(on, *one.material, one.view, query.direction));
-            }
+            const auto inputs =
+                base::mapped<compiler::FeatureKernelInput>(queries, [&](const LobeQuery& query) {
+                    const SeenMaterial& one = seen[query.lobe];
+                    return inputOf(on, *one.material, one.view, query.direction);
+                });
             GLINT_TRY(const auto outputs, on.evaluator.run(inputs));
-            std::vector<LobeValues> values;
-            values.reserve(outputs.size());
-            for (const compiler::FeatureKernelOutput& output : outputs) {
-                values.push_back(valuesOf(output));
-            }
-            return values;
+            return base::mapped<LobeValues>(outputs, valuesOf);
         });
     if (!integrals) {
         return integrals.error();
     }
-    std::vector<compiler::FeatureKernelInput> straight;
-    for (const SeenMaterial& one : seen) {
-        straight.push_back(inputOf(on, *one.material, one.view, {0, 0, 1}));
-    }
+    const auto straight = base::mapped<compiler::FeatureKernelInput>(seen, [&](const SeenMaterial& one) {
+        return inputOf(on, *one.material, one.view, {0, 0, 1});
+    });
     GLINT_TRY(const auto shares, on.evaluator.run(straight));
     GLINT_TRY(const auto bases, baseEnergies(on, seen));
     std::uint64_t evaluations = 0;

@@ -5,20 +5,61 @@
 #include "emit/feature_kernel.h"
 #include "gltf/scene.h"
 #include "materials/material_model.h"
-#include "measure/features/integrals.h"
 
 #include <glint/context.h>
 #include <glint/internal/scene_kernel.h>
 #include <glint/measure/check_materials.h>
 #include <glint/session/session.h>
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace glint::measure {
+
+using Direction = std::array<double, 3>;
+
+// --- Integrals of lobes over all directions, by squares that are split where a lobe is sharp. Samples are
+// compared with the squares' shares. They use only a lobe's values and samples ---
+
+// The values of one lobe for one direction.
+struct LobeValues {
+    double density = 0.0;
+    std::array<double, 3> reflected{};  // of the lobe, times the cosine
+    std::array<double, 3> whole{};      // of the whole BSDF, times the cosine
+};
+
+// One direction at which one of the lobes is wanted.
+struct LobeQuery {
+    std::size_t lobe = 0;
+    Direction direction{};
+};
+using LobeFunction = std::function<Result<std::vector<LobeValues>>(std::span<const LobeQuery>)>;
+
+struct LobeIntegrals {
+    double density = 0.0;
+    std::array<double, 3> reflected{};
+    std::array<double, 3> whole{};
+    // The sum of the changes by the last splits: an upper estimate of the errors.
+    double densityError = 0.0;
+    double wholeError = 0.0;
+    double lost = 0.0;  // share of the samples that have no direction
+    // The probability of a deviation at least as large as this one, if samples follow the density.
+    double significance = 1.0;
+    std::uint64_t evaluations = 0;
+};
+
+// `samples` has the sampled directions of each lobe, (0, 0, 0) where there is none. Lobes without samples are
+// integrated all the same. Has the errors of `function`.
+Result<std::vector<LobeIntegrals>> integrateLobes(std::span<const std::vector<Direction>> samples,
+                                                  const LobeFunction& function);
+
+// --- The scene and its features ---
 
 // The material on which a feature is checked.
 struct CheckedMaterial {

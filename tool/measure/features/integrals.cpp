@@ -1,4 +1,5 @@
-#include "measure/features/integrals.h"
+#include "base/lists.h"
+#include "measure/features/checks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -49,28 +50,41 @@ std::array<double, 2> toSquare(const Direction& direction) {
     return {radius * (angle - 6.0 * kQuarterPi) / kQuarterPi, -radius};
 }
 
-}  // namespace
+constexpr std::uint32_t kDeepestLevel = 17;
 
-double HemisphereCell::solidAngle() const {
-    return std::ldexp(2.0 * std::numbers::pi, -2 * static_cast<int>(level));
-}
+// A square of a hemisphere at one level of a quadtree. All squares of a level have the same solid angle. The
+// edges of the two roots are the horizon.
+struct HemisphereCell {
+    bool lower = false;
+    std::uint32_t level = 0;
+    std::uint32_t x = 0;  // below 2^level
+    std::uint32_t y = 0;
 
-Direction HemisphereCell::at(double u, double v) const {
-    const double scale = std::ldexp(2.0, -static_cast<int>(level));
-    Direction direction = fromSquare((x + u) * scale - 1.0, (y + v) * scale - 1.0);
-    direction[2] = lower ? -direction[2] : direction[2];
-    return direction;
-}
-
-std::uint64_t HemisphereCell::place() const {
-    std::uint64_t code = lower ? 1 : 0;
-    for (std::uint32_t bit = kDeepestLevel; bit-- > 0;) {
-        const std::uint32_t shift = kDeepestLevel - level;
-        code = code << 2U | (((y << shift) >> bit & 1U) << 1U) | ((x << shift) >> bit & 1U);
+    HemisphereCell child(std::uint32_t number) const {
+        return {lower, level + 1, 2 * x + number % 2, 2 * y + number / 2};
     }
-    return code;
-}
+    double solidAngle() const {
+        return std::ldexp(2.0 * std::numbers::pi, -2 * static_cast<int>(level));
+    }
+    // The direction at (u, v) in [0, 1]² of the square.
+    Direction at(double u, double v) const {
+        const double scale = std::ldexp(2.0, -static_cast<int>(level));
+        Direction direction = fromSquare((x + u) * scale - 1.0, (y + v) * scale - 1.0);
+        direction[2] = lower ? -direction[2] : direction[2];
+        return direction;
+    }
+    // A number that sorts cells along a curve that stays near itself: the Morton order of their corners.
+    std::uint64_t place() const {
+        std::uint64_t code = lower ? 1 : 0;
+        for (std::uint32_t bit = kDeepestLevel; bit-- > 0;) {
+            const std::uint32_t shift = kDeepestLevel - level;
+            code = code << 2U | (((y << shift) >> bit & 1U) << 1U) | ((x << shift) >> bit & 1U);
+        }
+        return code;
+    }
+};
 
+// The place of a direction: the cell of kDeepestLevel that has it.
 HemisphereCell cellOf(const Direction& direction) {
     const std::array<double, 2> place = toSquare({direction[0], direction[1], std::abs(direction[2])});
     constexpr double kSide = 1U << kDeepestLevel;
@@ -80,13 +94,12 @@ HemisphereCell cellOf(const Direction& direction) {
     return {direction[2] < 0.0, kDeepestLevel, index(place[0]), index(place[1])};
 }
 
+// Returns whether `cell` is `outer` or within it.
 bool liesWithin(const HemisphereCell& cell, const HemisphereCell& outer) {
     const std::uint32_t shift = cell.level - outer.level;
     return cell.lower == outer.lower && cell.level >= outer.level && cell.x >> shift == outer.x &&
            cell.y >> shift == outer.y;
 }
-
-namespace {
 
 // Cells start at this level, which has 32 squares on the sphere.
 constexpr std::uint32_t kFirstLevel = 2;
@@ -128,6 +141,13 @@ struct Bin {
     double share = 0.0;  // integral of the density
     std::size_t samples = 0;
 };
+
+// The probability that chi-square with so many degrees of freedom is at least `statistic`.
+double chiSquareTail(double statistic, double freedom) {
+    // Wilson and Hilferty 1931: the cube root of chi-square over its degrees of freedom is nearly normal.
+    const double spread = 2.0 / (9.0 * freedom);
+    return 0.5 * std::erfc((std::cbrt(statistic / freedom) - (1.0 - spread)) / std::sqrt(2.0 * spread));
+}
 
 class Integration {
 public:
@@ -276,10 +296,7 @@ private:
         double freedom = -1.0;
         double expected = 0.0;
         double found = 0.0;
-        double remaining = 0.0;
-        for (const Bin& bin : bins) {
-            remaining += count * bin.share;
-        }
+        auto remaining = base::sumOf<double>(bins, [&](const Bin& bin) { return count * bin.share; });
         for (const Bin& bin : bins) {
             expected += count * bin.share;
             found += static_cast<double>(bin.samples);
@@ -307,12 +324,6 @@ private:
 Result<std::vector<LobeIntegrals>> integrateLobes(std::span<const std::vector<Direction>> samples,
                                                   const LobeFunction& function) {
     return Integration(samples, function).run();
-}
-
-double chiSquareTail(double statistic, double freedom) {
-    // Wilson and Hilferty 1931: the cube root of chi-square over its degrees of freedom is nearly normal.
-    const double spread = 2.0 / (9.0 * freedom);
-    return 0.5 * std::erfc((std::cbrt(statistic / freedom) - (1.0 - spread)) / std::sqrt(2.0 * spread));
 }
 
 }  // namespace glint::measure

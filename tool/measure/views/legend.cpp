@@ -1,5 +1,4 @@
 // Draws the legend of a view.
-#include "image/text.h"
 
 #include <glint/measure/views.h>
 
@@ -7,11 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <string>
-#include <string_view>
 #include <utility>
-#include <vector>
 
 namespace glint::measure {
 

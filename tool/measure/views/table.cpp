@@ -1,5 +1,4 @@
 // The table of views, and the function by which each shows its layers.
-#include "image/text.h"
 #include "plan/cost.h"
 
 #include <glint/internal/package_modules.h>
@@ -13,6 +12,7 @@
 #include <functional>
 #include <limits>
 #include <set>
+#include <utility>
 
 namespace glint::measure {
 
@@ -83,6 +83,37 @@ public:
         return values_.marks.size();
     }
 
+    // Calls show(pixel, value) for each pixel of a layer that has a value. The others have no surface.
+    template <typename Show>
+    void eachSurface(const std::vector<std::uint32_t>& layer, const Show& show) {
+        for (std::size_t i = 0; i < size(); ++i) {
+            if (layer[i] == kNoLayerValue) {
+                mark(i, kMarkSurfaceless);
+            } else {
+                show(i, layer[i]);
+            }
+        }
+    }
+    // Calls show(pixel, shader) for each pixel whose ray has a hit with a shader. The others are marked.
+    template <typename Show>
+    void eachHit(const std::vector<std::uint32_t>& shaders, const Show& show) {
+        for (std::size_t i = 0; i < size(); ++i) {
+            switch (shaders[i]) {
+                case package::kNoRay:
+                    mark(i, kMarkRayless);
+                    break;
+                case package::kRayLeftScene:
+                    mark(i, kMarkSky);
+                    break;
+                case package::kRayEndedOnScreen:
+                    mark(i, kMarkScreen);
+                    break;
+                default:
+                    show(i, shaders[i]);
+            }
+        }
+    }
+
 private:
     ViewValues& values_;
 };
@@ -101,31 +132,20 @@ std::string caseName(const ViewInput& input, std::uint32_t shaderId) {
 
 void showShaders(const ViewInput& input, ViewValues& values) {
     Filler filler(input, values);
-    const std::vector<std::uint32_t>& shaders = integersOf(input, "shader");
-    for (std::size_t i = 0; i < filler.size(); ++i) {
-        if (shaders[i] == kNoLayerValue) {
-            filler.mark(i, kMarkSurfaceless);
-        } else {
-            filler.category(i, shaders[i], [&] { return caseName(input, shaders[i]); });
-        }
-    }
+    filler.eachSurface(integersOf(input, "shader"), [&](std::size_t i, std::uint32_t shader) {
+        filler.category(i, shader, [&] { return caseName(input, shader); });
+    });
 }
 
 void showMaterials(const ViewInput& input, ViewValues& values) {
     Filler filler(input, values);
-    const std::vector<std::uint32_t>& materials = integersOf(input, "material");
-    for (std::size_t i = 0; i < filler.size(); ++i) {
-        const std::uint32_t number = materials[i];
-        if (number == kNoLayerValue) {
-            filler.mark(i, kMarkSurfaceless);
-            continue;
-        }
+    filler.eachSurface(integersOf(input, "material"), [&](std::size_t i, std::uint32_t number) {
         filler.category(i, number, [&] {
             const bool isNamed = number < input.materialNames.size() && !input.materialNames[number].empty();
             return isNamed ? fmt::format("{} {}", number, input.materialNames[number])
                            : fmt::format("material {}", number);
         });
-    }
+    });
 }
 
 // A set of lobes has the place among those of the scene as its number, so that its colour depends on the
@@ -142,21 +162,15 @@ void showKeys(const ViewInput& input, ViewValues& values) {
     known.erase(kNoLayerValue);
     known.erase(0);
     const std::vector<std::uint32_t> ordered(known.begin(), known.end());
-    for (std::size_t i = 0; i < filler.size(); ++i) {
-        if (lobes[i] == kNoLayerValue) {
-            filler.mark(i, kMarkSurfaceless);
-            continue;
-        }
-        if (lobes[i] == 0) {
+    filler.eachSurface(lobes, [&](std::size_t i, std::uint32_t set) {
+        if (set == 0) {
             filler.category(i, kBaseAlone, "base alone", {44, 52, 66});
-            continue;
+            return;
         }
-        const auto place = std::ranges::lower_bound(ordered, lobes[i]) - ordered.begin();
-        filler.category(i, static_cast<std::uint32_t>(place), [&] {
-            const std::vector<std::string> names = input.package->featureNames({lobes[i], 0, 0, 0});
-            return fmt::format("{}", fmt::join(names, " "));
-        });
-    }
+        const auto place = std::ranges::lower_bound(ordered, set) - ordered.begin();
+        filler.category(i, static_cast<std::uint32_t>(place),
+                        [&] { return fmt::format("{}", fmt::join(input.package->featureNames({set, 0, 0, 0}), " ")); });
+    });
 }
 
 void showNonFinite(const ViewInput& input, ViewValues& values) {
@@ -199,42 +213,17 @@ void showDistance(const ViewInput& input, ViewValues& values) {
     }
 }
 
-// Marks the pixels whose ray has no hit with a shader. Returns whether the pixel is such a one.
-bool markUnhit(Filler& filler, std::size_t pixel, std::uint32_t shader) {
-    switch (shader) {
-        case package::kNoRay:
-            filler.mark(pixel, kMarkRayless);
-            return true;
-        case package::kRayLeftScene:
-            filler.mark(pixel, kMarkSky);
-            return true;
-        case package::kRayEndedOnScreen:
-            filler.mark(pixel, kMarkScreen);
-            return true;
-        default:
-            return false;
-    }
-}
-
 void showHitShaders(const ViewInput& input, ViewValues& values) {
     Filler filler(input, values);
-    const std::vector<std::uint32_t>& shaders = integersOf(input, "hit-shader");
-    for (std::size_t i = 0; i < filler.size(); ++i) {
-        if (!markUnhit(filler, i, shaders[i])) {
-            filler.category(i, shaders[i], [&] { return caseName(input, shaders[i]); });
-        }
-    }
+    filler.eachHit(integersOf(input, "hit-shader"), [&](std::size_t i, std::uint32_t shader) {
+        filler.category(i, shader, [&] { return caseName(input, shader); });
+    });
 }
 
 void showFallbacks(const ViewInput& input, ViewValues& values) {
     Filler filler(input, values);
-    const std::vector<std::uint32_t>& shaders = integersOf(input, "hit-shader");
     const std::span<const package::CaseEntry> cases = input.package->cases();
-    for (std::size_t i = 0; i < filler.size(); ++i) {
-        const std::uint32_t shader = shaders[i];
-        if (markUnhit(filler, i, shader)) {
-            continue;
-        }
+    filler.eachHit(integersOf(input, "hit-shader"), [&](std::size_t i, std::uint32_t shader) {
         if (shader < cases.size() && cases[shader].keyCount > 0) {
             filler.category(i, 0, "has a case", image::categoryColor(4));
         } else if (input.package->shape().fallback) {
@@ -242,23 +231,19 @@ void showFallbacks(const ViewInput& input, ViewValues& values) {
         } else {
             filler.category(i, 2, "no case: magenta", {255, 0, 255});
         }
-    }
+    });
 }
 
 void showDivergence(const ViewInput& input, ViewValues& values) {
     Filler filler(input, values);
     const std::vector<std::uint32_t>& run = integersOf(input, "cases-run");
-    const std::vector<std::uint32_t>& shaders = integersOf(input, "hit-shader");
-    for (std::size_t i = 0; i < filler.size(); ++i) {
-        if (markUnhit(filler, i, shaders[i])) {
-            continue;
-        }
+    filler.eachHit(integersOf(input, "hit-shader"), [&](std::size_t i, std::uint32_t) {
         if (run[i] == kNoLayerValue) {
             filler.mark(i, kMarkUngrouped);
         } else {
             filler.number(i, run[i]);
         }
-    }
+    });
 }
 
 // Workgroups of one dispatch, and of the dispatches of the cases, have different numbers.
@@ -276,32 +261,23 @@ void showGroups(const ViewInput& input, ViewValues& values) {
     for (auto& [group, number] : numbers) {
         number = next++;
     }
-    for (std::size_t i = 0; i < filler.size(); ++i) {
-        if (markUnhit(filler, i, shaders[i])) {
-            continue;
-        }
+    filler.eachHit(shaders, [&](std::size_t i, std::uint32_t shader) {
         if (groups[i] == kNoLayerValue) {
             filler.mark(i, kMarkUngrouped);
-            continue;
+            return;
         }
-        const std::pair group(input.dispatchesCases ? shaders[i] : 0U, groups[i]);
+        const std::pair group(input.dispatchesCases ? shader : 0U, groups[i]);
         filler.oneOfMany(i, numbers.at(group), [&] {
             return input.dispatchesCases ? fmt::format("group {} of shader {}", group.second, group.first)
                                          : fmt::format("group {}", group.second);
         });
-    }
+    });
 }
 
 void showBranches(const ViewInput& input, ViewValues& values) {
     Filler filler(input, values);
-    const std::vector<std::uint32_t>& branches = integersOf(input, "branches");
-    for (std::size_t i = 0; i < filler.size(); ++i) {
-        if (branches[i] == kNoLayerValue) {
-            filler.mark(i, kMarkSurfaceless);
-        } else {
-            filler.number(i, branches[i]);
-        }
-    }
+    filler.eachSurface(integersOf(input, "branches"),
+                       [&](std::size_t i, std::uint32_t branches) { filler.number(i, branches); });
 }
 
 double weightOfFeatures(materials::FeatureMask always, materials::FeatureMask sometimes,
@@ -324,25 +300,20 @@ void showCost(const ViewInput& input, ViewValues& values) {
     for (const package::CaseEntry& entry : input.package->cases()) {
         ofCase.push_back(weightOfFeatures(input.model->maskOf(entry.always), input.model->maskOf(entry.sometimes), input));
     }
-    const std::vector<std::uint32_t>& materials = integersOf(input, "material");
     std::vector<const std::vector<std::uint32_t>*> hits;  // of each effect
     for (const auto& [name, layer] : input.layers) {
         if (name.ends_with(".hit-shader")) {
             hits.push_back(&layer.integers);
         }
     }
-    for (std::size_t i = 0; i < filler.size(); ++i) {
-        if (materials[i] == kNoLayerValue) {
-            filler.mark(i, kMarkSurfaceless);
-            continue;
-        }
-        double weight = ofMaterial[materials[i]];
+    filler.eachSurface(integersOf(input, "material"), [&](std::size_t i, std::uint32_t material) {
+        double weight = ofMaterial[material];
         for (const std::vector<std::uint32_t>* const shaders : hits) {
             const std::uint32_t shader = (*shaders)[i];
             weight += shader < ofCase.size() ? ofCase[shader] : 0.0;
         }
         filler.number(i, weight);
-    }
+    });
 }
 
 void showTextureLevel(const ViewInput& input, ViewValues& values) {
@@ -399,95 +370,47 @@ void showDifference(const ViewInput& input, ViewValues& values) {
     }
 }
 
+ViewInfo view(std::string_view name, std::string_view what, ViewScale scale, std::string_view unit,
+              std::vector<std::string_view> layers, decltype(ViewInfo::evaluate) evaluate,
+              bool readsReference = false, std::string_view everySource = {}) {
+    return {name, what, scale, unit, std::move(layers), evaluate, readsReference, everySource};
+}
+
 // To add a view, add a row here, and its picture to docs/views.md.
 const std::vector<ViewInfo>& rows() {
     using enum ViewScale;
     static const std::vector<ViewInfo> kRows = {
-        {"shader",
-         "case that shades the material where rays hit it",
-         Categories,
-         "case",
-         {"shader"},
-         showShaders},
-        {"key", "set of lobes of the surface's key", Categories, "lobes", {"lobes"}, showKeys},
-        {"material", "material of the surface", Categories, "material", {"material"}, showMaterials},
-        {"hit-shader",
-         "case that shades what the ray hits",
-         Categories,
-         "case",
-         {"hit-shader"},
-         showHitShaders},
-        {"fallback",
-         "hits that the fallback shades, and hits without a case",
-         Categories,
-         "hits",
-         {"hit-shader"},
-         showFallbacks},
-        {"bucket",
-         "workgroup that shades the hit; neighbours in order have different colours",
-         Categories,
-         "workgroup",
-         {"workgroup", "hit-shader"},
-         showGroups},
-        {"divergence",
-         "cases that the hit's subgroup runs one after the other",
-         FromOne,
-         "cases",
-         {"cases-run", "hit-shader"},
-         showDivergence},
-        {"branches",
-         "optional features that the shading runs for the pixel's subgroup",
-         FromZero,
-         "features",
-         {"branches"},
-         showBranches},
-        {"rays", "rays that are traced for the pixel", FromZero, "rays a sample", {"rays"}, showCount},
-        {"candidates",
-         "triangles whose alpha these rays test",
-         FromZero,
-         "tests a sample",
-         {"candidates"},
-         showCount},
-        {"cost",
-         "instructions that shade the surface and what its rays hit, by the cost model",
-         FromZero,
-         "instructions",
-         {"material"},
-         showCost,
-         false,
-         "hit-shader"},
-        {"clocks",
-         "ticks of the device's clock for shading and tracing",
-         Logarithmic,
-         "ticks a sample",
-         {"clocks"},
-         showCount},
-        {"texture-level",
-         "finest level of the surface's textures; below 0 they are magnified",
-         Linear,
-         "levels",
-         {"texture-level", "footprint"},
-         showTextureLevel},
-        {"footprint",
-         "width of the pixel on the surface",
-         Logarithmic,
-         "metres",
-         {"footprint"},
-         showFootprint},
-        {"hit-distance", "distance that the ray travels", Logarithmic, "metres", {"distance"}, showDistance},
-        {"non-finite",
-         "samples that are not a number or infinite, and count as black",
-         Categories,
-         "pixels",
-         {"non-finite"},
-         showNonFinite},
-        {"difference",
-         "relative error against the picture of --view-reference",
-         Logarithmic,
-         "relative error",
-         {},
-         showDifference,
-         true},
+        view("shader", "case that shades the material where rays hit it", Categories, "case", {"shader"},
+             showShaders),
+        view("key", "set of lobes of the surface's key", Categories, "lobes", {"lobes"}, showKeys),
+        view("material", "material of the surface", Categories, "material", {"material"}, showMaterials),
+        view("hit-shader", "case that shades what the ray hits", Categories, "case", {"hit-shader"},
+             showHitShaders),
+        view("fallback", "hits that the fallback shades, and hits without a case", Categories, "hits",
+             {"hit-shader"}, showFallbacks),
+        view("bucket", "workgroup that shades the hit; neighbours in order have different colours",
+             Categories, "workgroup", {"workgroup", "hit-shader"}, showGroups),
+        view("divergence", "cases that the hit's subgroup runs one after the other", FromOne, "cases",
+             {"cases-run", "hit-shader"}, showDivergence),
+        view("branches", "optional features that the shading runs for the pixel's subgroup", FromZero,
+             "features", {"branches"}, showBranches),
+        view("rays", "rays that are traced for the pixel", FromZero, "rays a sample", {"rays"}, showCount),
+        view("candidates", "triangles whose alpha these rays test", FromZero, "tests a sample",
+             {"candidates"}, showCount),
+        view("cost", "instructions that shade the surface and what its rays hit, by the cost model", FromZero,
+             "instructions", {"material"}, showCost, false, "hit-shader"),
+        view("clocks", "ticks of the device's clock for shading and tracing", Logarithmic, "ticks a sample",
+             {"clocks"}, showCount),
+        view("texture-level", "finest level of the surface's textures; below 0 they are magnified", Linear,
+             "levels", {"texture-level", "footprint"}, showTextureLevel),
+        view("footprint", "width of the pixel on the surface", Logarithmic, "metres", {"footprint"},
+             showFootprint),
+        view("hit-distance", "distance that the ray travels", Logarithmic, "metres", {"distance"},
+             showDistance),
+        view("non-finite", "samples that are not a number or infinite, and count as black", Categories,
+             "pixels", {"non-finite"}, showNonFinite),
+        view("difference", "relative error against the picture of --view-reference", Logarithmic,
+             "relative error", {}, showDifference, true),
     };
     return kRows;
 }

@@ -1,6 +1,5 @@
 // Makes views of a renderer's frames.
 #include "base/fields.h"
-#include "image/text.h"
 #include "image/tone.h"
 #include "settings/settings.h"
 

@@ -17,10 +17,8 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -107,13 +105,13 @@ private:
     bool ordersHits_ = false;
 };
 
-// The optional features of a device.
-struct DeviceOptions {
-    bool positionFetch = false;  // and the compiler
-    bool float16 = false;
-};
-
-struct SceneSize {
+// What a bench knows of its scene and its device.
+struct BedFacts {
+    bool positionFetch = false;  // of the device and the compiler
+    bool float16 = false;        // of the device
+    bool onCpu = false;
+    std::string cameraName;
+    std::uint32_t lights = 0;
     std::uint64_t triangles = 0;  // of all instances
     std::uint32_t instances = 0;
 };
@@ -148,23 +146,8 @@ public:
     const gltf::Scene& scene() const {
         return scene_;
     }
-    const std::string& cameraName() const {
-        return cameraName_;
-    }
-    const DeviceOptions& features() const {
-        return features_;
-    }
-    const SceneSize& sceneSize() const {
-        return size_;
-    }
-    const session::SkyChoice& sky() const {
-        return sky_;
-    }
-    std::uint32_t lights() const {
-        return lights_;
-    }
-    bool onCpu() const {
-        return onCpu_;
+    const BedFacts& facts() const {
+        return facts_;
     }
 
 private:
@@ -199,12 +182,8 @@ private:
     std::unique_ptr<Context> context_;
     std::unique_ptr<Environment> environment_;
     CameraView camera_;
-    std::string cameraName_;
     session::SkyChoice sky_;
-    DeviceOptions features_;
-    bool onCpu_ = false;
-    std::uint32_t lights_ = 0;
-    SceneSize size_;
+    BedFacts facts_;
     // A package that is mounted, or was.
     struct Known {
         compiler::Settings settings;  // of the build

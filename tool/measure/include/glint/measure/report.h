@@ -169,6 +169,9 @@ inline constexpr const char* kSettingsFile = "settings.json";
 // empty, or could be created. Writes nothing yet.
 Status checkBenchFolder(const std::filesystem::path& folder, const char* mark = kReportFile);
 
+// Makes a folder and its parents. Error "bench-folder".
+Status makeBenchFolder(const std::filesystem::path& folder, const std::string& hint = "give another -o");
+
 // Writes pictures first, then settings, report and page, each replaced as a whole. Pictures of an earlier
 // bench that this one lacks are removed. Errors "file-write", "png-encode".
 Status writeBench(const BenchReport& report, const std::filesystem::path& folder);
