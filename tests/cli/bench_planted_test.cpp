@@ -4,6 +4,7 @@
 #include "cli/planted.h"
 #include "cli/tiny_scene.h"
 #include "image/image_file.h"
+#include "support/must.h"
 
 #include <array>
 #include <map>
@@ -56,8 +57,7 @@ protected:
             image.pixels.push_back(isLight ? std::array<std::uint8_t, 3>{250, 250, 250}
                                            : std::array<std::uint8_t, 3>{20, 20, 20});
         }
-        const Status written = writeImage(path("checkerboard.png"), image);
-        ASSERT_TRUE(written.ok());
+        must(writeImage(path("checkerboard.png"), image));
     }
 
     // Compiles a package with that name.

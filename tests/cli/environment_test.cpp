@@ -2,6 +2,7 @@
 #include "cli/tiny_scene.h"
 #include "image/image_file.h"
 #include "support/hdr_writer.h"
+#include "support/must.h"
 
 #include <cmath>
 #include <limits>
@@ -46,11 +47,10 @@ TEST_F(EnvironmentCommand, LightsTheScene) {
     EXPECT_EQ(map.at("levels"), 4);
     EXPECT_NE(outcome.err.find("note: is 64 x 32, and resampled to 256 x 128"), std::string::npos)
         << outcome.err;
-    const Result<LinearImage> image = image::readImage(path("a.exr"));
-    ASSERT_TRUE(image);
+    const LinearImage image = must(image::readImage(path("a.exr")));
     // The top left shows the sky.
-    EXPECT_NEAR(image->pixels[0][0], 1.0F, 1e-3F);
-    EXPECT_NEAR(image->pixels[0][1], 4.0F, 1e-3F);
+    EXPECT_NEAR(image.pixels[0][0], 1.0F, 1e-3F);
+    EXPECT_NEAR(image.pixels[0][1], 4.0F, 1e-3F);
     const Outcome none = render("b.png", {"--json"});
     ASSERT_EQ(none.exit, 0) << none.err;
     EXPECT_TRUE(none.json().at("environment").is_null());

@@ -2,6 +2,7 @@
 #include "cli/tiny_scene.h"
 #include "image/image_file.h"
 #include "image/tone.h"
+#include "support/must.h"
 
 #include <algorithm>
 #include <array>
@@ -77,10 +78,9 @@ TEST_F(RenderCommand, ViewsAreDrawnWithALegendAndTheirNumbers) {
     const nlohmann::json stats = nlohmann::json::parse(readText(path("stats.json")));
     EXPECT_EQ(stats["view"]["name"], "rays");
     EXPECT_EQ(stats["view"]["numbers"], stats["width"].get<int>() * stats["height"].get<int>());
-    const Result<LinearImage> picture = image::readImage(path("a.png"));
-    ASSERT_TRUE(picture.ok());
-    EXPECT_EQ(picture->width, stats["width"]);
-    EXPECT_GT(picture->height, stats["height"]);
+    const LinearImage picture = must(image::readImage(path("a.png")));
+    EXPECT_EQ(picture.width, stats["width"]);
+    EXPECT_GT(picture.height, stats["height"]);
 
     ASSERT_EQ(run({"compile", scene_, "-o", "package"}).exit, 0);
     const Outcome lacking = render("b.png", {"--view", "rays", "--package", "package"});

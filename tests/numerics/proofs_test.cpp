@@ -3,6 +3,7 @@
 #include "proofs.h"
 
 #include "proof_functions.h"
+#include "support/must.h"
 #include "verify/concrete.h"
 #include "verify/evaluate.h"
 #include "verify/interval.h"
@@ -342,10 +343,9 @@ TEST(Proofs, AMissingCheckOfADomainIsFound) {
         {"for (int k = 0; k < 4; ++k) { o[0] += i[0]; }", {"x", 0.0, 1.0}, ProofState::Proved, ""},
     };
     for (const Planted& planted : cases) {
-        const Result<verify::Program> program = compileClaim(planted.code);
-        ASSERT_TRUE(program) << toString(program.error());
+        const verify::Program program = must(compileClaim(planted.code));
         const verify::Claim claim{{planted.input}, {{"result", -kLargest, kLargest}}};
-        const verify::ProofResult result = verify::prove(*program, claim, {});
+        const verify::ProofResult result = verify::prove(program, claim, {});
         EXPECT_EQ(result.state, planted.state)
             << planted.code << ": " << result.undecidedWhy
             << (result.counterexample ? result.counterexample->what : std::string());

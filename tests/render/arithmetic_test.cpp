@@ -2,6 +2,7 @@
 // many samples.
 #include "render/hit_kernel.h"
 #include "render/scene_builder.h"
+#include "support/must.h"
 
 #include <algorithm>
 #include <array>
@@ -56,15 +57,13 @@ TEST(Directions, OfEveryLength) {
     const gltf::Scene scene = anyScene();
     const LoadedScene loaded(scene, compiler::PlanOptions{});
     ASSERT_TRUE(loaded.ok());
-    const Result<std::unique_ptr<HitKernel>> kernel = HitKernel::create(scene, loaded, "direction_or.comp");
-    ASSERT_TRUE(kernel) << toString(kernel.error());
+    const std::unique_ptr<HitKernel> kernel = must(HitKernel::create(scene, loaded, "direction_or.comp"));
     const auto count = static_cast<std::uint32_t>(rays.size());
-    const Result<std::vector<std::uint32_t>> words = (*kernel)->run({}, rays, count, 3 * rays.size());
-    ASSERT_TRUE(words) << toString(words.error());
+    const std::vector<std::uint32_t> words = must(kernel->run({}, rays, count, 3 * rays.size()));
     for (std::size_t i = 0; i < rays.size(); ++i) {
         Double3 got{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            got[axis] = std::bit_cast<float>((*words)[3 * i + axis]);
+            got[axis] = std::bit_cast<float>(words[3 * i + axis]);
         }
         const Double3 expected = i < vectors.size() ? unitOf(vectors[i]) : Double3{2, 2, 2};
         for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -87,13 +86,11 @@ TEST(RunningMean, OfManySamplesIsThatInDoublePrecision) {
     const gltf::Scene scene = anyScene();
     const LoadedScene loaded(scene, compiler::PlanOptions{});
     ASSERT_TRUE(loaded.ok());
-    const Result<std::unique_ptr<HitKernel>> kernel = HitKernel::create(scene, loaded, "running_mean.comp");
-    ASSERT_TRUE(kernel) << toString(kernel.error());
+    const std::unique_ptr<HitKernel> kernel = must(HitKernel::create(scene, loaded, "running_mean.comp"));
     gpu::FrameConstants constants{};
     constants.sampleIndex = kSamples;
     constants.seed = kSeed;
-    const Result<std::vector<std::uint32_t>> words = (*kernel)->run(constants, {}, kPixels, 3 * kPixels);
-    ASSERT_TRUE(words) << toString(words.error());
+    const std::vector<std::uint32_t> words = must(kernel->run(constants, {}, kPixels, 3 * kPixels));
     Double3 largest{};
     for (std::uint32_t pixel = 0; pixel < kPixels; ++pixel) {
         Double3 sums{};
@@ -106,7 +103,7 @@ TEST(RunningMean, OfManySamplesIsThatInDoublePrecision) {
         }
         for (std::size_t kind = 0; kind < 3; ++kind) {
             const double mean = sums[kind] / kSamples;
-            const double got = std::bit_cast<float>((*words)[3 * pixel + kind]);
+            const double got = std::bit_cast<float>(words[3 * pixel + kind]);
             largest[kind] = std::max(largest[kind], std::abs(got - mean) / mean);
         }
     }

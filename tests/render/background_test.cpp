@@ -3,6 +3,7 @@
 #include "render/hall.h"
 #include "render/harness.h"
 #include "renderer/renderer.h"
+#include "support/must.h"
 
 #include <gtest/gtest.h>
 
@@ -152,10 +153,9 @@ TEST_F(Background, EveryStateOnTheWayGivesTheSamePicture) {
             EXPECT_FALSE(progress.error) << name;
         }
         EXPECT_EQ(progress.adopted, progress.wanted) << name;
-        const Result<FrameCounters> counters = renderer->counters();
-        ASSERT_TRUE(counters);
-        EXPECT_EQ(counters->unknownShader, 0U) << name;
-        EXPECT_FALSE(counters->draft) << name;
+        const FrameCounters counters = must(renderer->counters());
+        EXPECT_EQ(counters.unknownShader, 0U) << name;
+        EXPECT_FALSE(counters.draft) << name;
         expectNoValidationMessages();
     });
 }
@@ -195,11 +195,10 @@ TEST_F(Background, DraftsAreInNoMean) {
     drafting->waitForPipelines();
     // The drafts end with the third sample; the picture is the mean of the third and the fourth.
     std::uint32_t sample = 0;
-    const Result<LinearImage> image = drafting->render(setup_.frame, 4, [&] {
+    const LinearImage image = must(drafting->render(setup_.frame, 4, [&] {
         adoptedAtOnce = ++sample == 2 ? 1 : 0;
         return okStatus();
-    });
-    ASSERT_TRUE(image);
+    }));
     EXPECT_EQ(drafting->pipelineProgress().drafts, 2U);
     // The third and the fourth sample are what four samples have beyond two.
     const Result<LinearImage> two = other->render(withCones(setup_.frame, 4), 2);
@@ -211,7 +210,7 @@ TEST_F(Background, DraftsAreInNoMean) {
             wanted.pixels[i][channel] = 2.0F * four->pixels[i][channel] - two->pixels[i][channel];
         }
     }
-    expectSameImage(*image, wanted, "the third and the fourth sample");
+    expectSameImage(image, wanted, "the third and the fourth sample");
     expectNoValidationMessages();
 }
 
@@ -260,9 +259,8 @@ TEST_F(Background, FramesFollowEachOtherWhileThreadsWork) {
     PipelineProgress progress = renderer->pipelineProgress();
     for (int frame = 0; frame < 1000 && progress.adopted < progress.wanted; ++frame) {
         const LinearImage image = renderedBy(*renderer, setup_);
-        const Result<FrameCounters> counters = renderer->counters();
-        ASSERT_TRUE(counters);
-        if (!counters->draft) {
+        const FrameCounters counters = must(renderer->counters());
+        if (!counters.draft) {
             expectSameImage(image, reference, "frame " + std::to_string(frame));
         }
         progress = renderer->pipelineProgress();
@@ -275,17 +273,16 @@ TEST_F(Background, FramesFollowEachOtherWhileThreadsWork) {
 
 // Gives every geometry a shader ID that no case has.
 void forgetCases(GpuScene::State& scene) {
-    Result<std::unique_ptr<Uploader>> uploader = Uploader::create(sharedContext().state());
-    ASSERT_TRUE(uploader);
+    std::unique_ptr<Uploader> uploader = must(Uploader::create(sharedContext().state()));
     constexpr std::uint32_t kUnknown = 77;
     std::vector<std::uint8_t> bytes(sizeof kUnknown);
     std::memcpy(bytes.data(), &kUnknown, sizeof kUnknown);
     for (std::size_t i = 0; i < scene.shaderIds.size(); ++i) {
         const std::size_t place = i * sizeof(gpu::GeometryRecord) + offsetof(gpu::GeometryRecord, shaderId);
-        ASSERT_TRUE((*uploader)->copyToBuffer(bytes, scene.geometries, place));
+        ASSERT_TRUE(uploader->copyToBuffer(bytes, scene.geometries, place));
         scene.shaderIds[i] = kUnknown;
     }
-    ASSERT_TRUE((*uploader)->finish());
+    ASSERT_TRUE(uploader->finish());
 }
 
 TEST_F(Background, TheFallbackShadesUnknownShaderIds) {

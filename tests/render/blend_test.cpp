@@ -4,6 +4,7 @@
 #include "interop/scene.h"
 #include "render/pixel_test.h"
 #include "support/models.h"
+#include "support/must.h"
 
 #include <glint/internal/package_modules.h>
 
@@ -290,21 +291,20 @@ TEST(Blend, AlphaBlendModeTestShowsItsCheckMarks) {
     }
     gltf::ImportOptions import;
     import.decodeImages = true;
-    Result<gltf::Scene> scene = gltf::importScene(path, import);
-    ASSERT_TRUE(scene.ok()) << toString(scene.error());
+    gltf::Scene scene = must(gltf::importScene(path, import));
     // The marks lie on slanted labels; the camera looks along their normal.
     constexpr double kUp = 0.5547002;
     constexpr double kBack = 0.8320503;
-    addCamera(*scene);
-    gltf::Camera& camera = scene->cameras.front();
+    addCamera(scene);
+    gltf::Camera& camera = scene.cameras.front();
     camera.yfov = 2.0 * std::atan(0.13);
     camera.world = {1, 0, 0, 0, 0, kUp, -kBack, 0, 0, kBack, kUp, 0, 0, kBack, 0.409 + kUp, 1};
     compiler::CompileSettings settings = blendSettings();
     settings.strategies = package::kStrategyUber;
     settings.effects = {false, 0};
-    const LoadedScene loaded(*scene, settings);
+    const LoadedScene loaded(scene, settings);
     ASSERT_TRUE(loaded.ok());
-    RenderSetup setup = squareSetup(*scene);
+    RenderSetup setup = squareSetup(scene);
     for (const float x : {-2.6F, -1.1F}) {
         setup.frame.camera.position[0] = x;
         const LinearImage image = loaded.render(package::kStrategyUber, setup);

@@ -5,6 +5,7 @@
 #include "image/compare.h"
 #include "render/hall.h"
 #include "render/harness.h"
+#include "support/must.h"
 
 #include <memory>
 #include <optional>
@@ -64,26 +65,22 @@ TEST_F(FilteredHall, KeepsItsEdgesAndConverges) {
         return image::measureErrors(image, truth, 0.0).relMse;
     };
     const double plain = errorOf(picture(1, kFilteredSamples));
-    const auto denoiser = makeDenoiser();
-    ASSERT_TRUE(denoiser.ok()) << toString(denoiser.error());
-    const Result<LinearImage> first = (*denoiser)->filter();
-    ASSERT_TRUE(first.ok()) << toString(first.error());
-    EXPECT_LT(errorOf(*first), 1.6 * plain) << "edges were taken for noise";
-    EXPECT_GT((*denoiser)->milliseconds(), 0.0);
+    const auto denoiser = must(makeDenoiser());
+    const LinearImage first = must(denoiser->filter());
+    EXPECT_LT(errorOf(first), 1.6 * plain) << "edges were taken for noise";
+    EXPECT_GT(denoiser->milliseconds(), 0.0);
     std::optional<LinearImage> last;
     for (std::uint32_t i = 2; i <= 16; ++i) {
         picture(i, kFilteredSamples);
-        Result<LinearImage> filtered = (*denoiser)->filter();
-        ASSERT_TRUE(filtered.ok());
-        last = std::move(*filtered);
+        LinearImage filtered = must(denoiser->filter());
+        last = std::move(filtered);
     }
     EXPECT_LT(errorOf(*last), 0.5 * plain);
     // After a restart nothing is left of the frames before.
-    (*denoiser)->restart();
+    denoiser->restart();
     picture(1, kFilteredSamples);
-    const Result<LinearImage> again = (*denoiser)->filter();
-    ASSERT_TRUE(again.ok());
-    expectSameImage(*again, *first, "after a restart");
+    const LinearImage again = must(denoiser->filter());
+    expectSameImage(again, first, "after a restart");
     expectNoValidationMessages();
 }
 

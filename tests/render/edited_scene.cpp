@@ -3,6 +3,7 @@
 #include "context/context.h"
 #include "render/scene_builder.h"
 #include "resolve/resolve.h"
+#include "support/must.h"
 #include "support/shared_modules.h"
 
 #include <glint/session/session.h>
@@ -311,9 +312,8 @@ void EditedScene::switchPackage() {
         ASSERT_NE(packages_.back()->scene(0).materials.recordBytes, package().scene(0).materials.recordBytes);
     }
     current_ = 1 - current_;
-    const Result<Renderer::Replacement> replaced = renderer_->replacePackage(packages_[current_]);
-    ASSERT_TRUE(replaced) << toString(replaced.error());
-    EXPECT_TRUE(replaced->missing.empty());
+    const Renderer::Replacement replaced = must(renderer_->replacePackage(packages_[current_]));
+    EXPECT_TRUE(replaced.missing.empty());
     const std::uint64_t before = renderer_->replacementProgress().inUse;
     frame();
     EXPECT_EQ(renderer_->replacementProgress().inUse, before + 1);

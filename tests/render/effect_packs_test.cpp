@@ -3,6 +3,7 @@
 #include "materials/declaration_files.h"
 #include "materials/declarations.h"
 #include "render/pixel_test.h"
+#include "support/must.h"
 #include "support/printed_files.h"
 #include "support/temporary_folder.h"
 
@@ -118,23 +119,21 @@ TEST_F(EffectOfThePage, LeavesNothingWhereItIsNotNamed) {
     compiler::CompileSettings settings = settingsWith({});
     settings.effects.automatic = true;
     settings.strategies = package::kStrategyUber;
-    const Result<compiler::CompiledPackage> package = compilePackage(scene, settings);
-    ASSERT_TRUE(package) << toString(package.error());
-    EXPECT_EQ(package->plan.effects.effects.all, 0U);
-    const compiler::EffectDecision& decision = package->plan.effects.decisions.back();
+    const compiler::CompiledPackage package = must(compilePackage(scene, settings));
+    EXPECT_EQ(package.plan.effects.effects.all, 0U);
+    const compiler::EffectDecision& decision = package.plan.effects.decisions.back();
     EXPECT_EQ(decision.name, "translucency");
     EXPECT_TRUE(decision.usable);
     EXPECT_EQ(decision.reason, "refines the sky's light; no file asks for it, so it has to be named");
-    for (const compiler::CompiledModule& module : package->modules) {
+    for (const compiler::CompiledModule& module : package.modules) {
         EXPECT_EQ(module.name.find("translucency"), std::string::npos) << module.name;
     }
 }
 
 TEST_F(EffectOfThePage, MayComposeItsLight) {
     const auto path = folder_.path() / "translucency" / "translucency.json";
-    Result<base::Bytes> bytes = base::readFile(path);
-    ASSERT_TRUE(bytes);
-    std::string text(bytes->begin(), bytes->end());
+    base::Bytes bytes = must(base::readFile(path));
+    std::string text(bytes.begin(), bytes.end());
     const std::string sample = "\"sample\": \"translucency.glsl\"";
     const std::size_t place = text.find(sample);
     ASSERT_NE(place, std::string::npos);
@@ -182,10 +181,9 @@ TEST_F(EffectOfThePage, IsTheSameInTheSources) {
     const std::string name = "effects/translucency/translucency";
     std::map<std::string, std::string> texts;
     for (const char* const extension : {".json", ".glsl"}) {
-        const Result<base::Bytes> bytes =
-            base::readFile(folder_.path() / ("translucency/translucency" + std::string(extension)));
-        ASSERT_TRUE(bytes);
-        texts[extension] = std::string(bytes->begin(), bytes->end());
+        const base::Bytes bytes =
+            must(base::readFile(folder_.path() / ("translucency/translucency" + std::string(extension))));
+        texts[extension] = std::string(bytes.begin(), bytes.end());
     }
     std::vector<materials::DeclarationFile> files;
     for (const base::BuiltinFile& file : materials::declarationFiles()) {
@@ -193,9 +191,8 @@ TEST_F(EffectOfThePage, IsTheSameInTheSources) {
     }
     const std::string declaration = name + ".json";
     files.push_back({declaration, texts[".json"]});
-    Result<materials::MaterialModel> built = readDeclarations(files);
-    ASSERT_TRUE(built) << toString(built.error());
-    built->sources.push_back({name + ".glsl", texts[".glsl"]});
+    materials::MaterialModel built = must(readDeclarations(files));
+    built.sources.push_back({name + ".glsl", texts[".glsl"]});
     const auto modulesOf = [](const gltf::Scene& scene) {
         const Result<compiler::CompiledPackage> package =
             compilePackage(scene, settingsWith({"translucency"}));
@@ -207,7 +204,7 @@ TEST_F(EffectOfThePage, IsTheSameInTheSources) {
         }
         return hashes;
     };
-    const auto own = modulesOf(sheetAndPanel(*built));
+    const auto own = modulesOf(sheetAndPanel(built));
     EXPECT_EQ(own.count("translucency_rays.comp"), 1U);
     EXPECT_EQ(own, modulesOf(sheetAndPanel(model())));
 }

@@ -6,6 +6,7 @@
 #include "render/scene_builder.h"
 #include "render/ways.h"
 #include "resolve/light.h"
+#include "support/must.h"
 #include "support/nightly.h"
 
 #include <gtest/gtest.h>
@@ -406,8 +407,7 @@ TEST(EmissiveLights, LampsThatMoveAreFollowed) {
         ASSERT_TRUE(moving.ok());
         constexpr std::array<float, 1> kBent{1.0F};
         instances[2].morphWeights = kBent;
-        const Status moved = moving.gpuScene().updateAndWait({instances, {}});
-        ASSERT_TRUE(moved) << toString(moved.error());
+        must(moving.gpuScene().updateAndWait({instances, {}}));
         expectSameMean(estimate(moving, scene, ways, 32), estimate(expected, still, ways, 32), "moved");
         instances[1].visible = instances[2].visible = false;
         ASSERT_TRUE(moving.gpuScene().updateAndWait({instances, {}}));
@@ -439,8 +439,7 @@ TEST(EmissiveLights, ASkinnedLampIsFollowed) {
     const MeanEstimate before = estimate(moving, rest, ways, 32);
     session::SceneViewData data = session::makeSceneView(rest);
     session::poseSceneView(bent, data);
-    const Status moved = moving.gpuScene().updateAndWait(data.motion());
-    ASSERT_TRUE(moved) << toString(moved.error());
+    must(moving.gpuScene().updateAndWait(data.motion()));
     const MeanEstimate after = estimate(moving, rest, ways, 32);
     expectSameMean(after, estimate(expected, still, ways, 32), "bent");
     EXPECT_GT(std::abs(after.mean - before.mean), 0.02 * before.mean) << "bending changes nothing";

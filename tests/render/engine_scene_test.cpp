@@ -6,6 +6,7 @@
 #include "render/replacement.h"
 #include "render/scene_builder.h"
 #include "scene/scene_store.h"
+#include "support/must.h"
 
 #include <glint/session/scene_view.h>
 #include <glint/steps.h>
@@ -256,10 +257,10 @@ TEST(EngineSceneContent, FramesInFlightKeepTheirs) {
         expectOthers(wanted[0], wanted[1]);
         expectOthers(wanted[1], wanted[2]);
         VkCommandBuffer commands = engine.begin();
-        auto scene = EngineScene::record(sharedContext(), *package, small.view(), commands, engine.frame());
-        ASSERT_TRUE(scene) << toString(scene.error());
-        const std::uint64_t bytes = (*scene)->bytes();
-        const auto steps = engine.makeSteps(*package, **scene, strategy);
+        auto scene =
+            must(EngineScene::record(sharedContext(), *package, small.view(), commands, engine.frame()));
+        const std::uint64_t bytes = scene->bytes();
+        const auto steps = engine.makeSteps(*package, *scene, strategy);
         ASSERT_NE(steps, nullptr);
         std::vector<std::size_t> order{0};
         FinishedRecordings finished;
@@ -268,14 +269,12 @@ TEST(EngineSceneContent, FramesInFlightKeepTheirs) {
         const std::array contents{&small, &large, &repainted};
         for (const std::size_t next : {1U, 0U, 2U, 1U, 1U}) {
             commands = engine.begin();
-            (*scene)->complete(engine.completed());
+            scene->complete(engine.completed());
             finished.completed(*steps, engine.completed());
             const Content& content = *contents[next];
             const bool isSame = order.back() == next;
-            const Status updated =
-                isSame ? (*scene)->update(commands, content.instances, content.lights, engine.frame())
-                       : (*scene)->update(commands, *package, content.view(), engine.frame());
-            ASSERT_TRUE(updated) << toString(updated.error());
+            must(isSame ? scene->update(commands, content.instances, content.lights, engine.frame())
+                        : scene->update(commands, *package, content.view(), engine.frame()));
             ASSERT_TRUE(engine.ask(*steps, *content.gpu));
             finished.recorded(*steps, engine.frame());
             engine.submit();
@@ -285,12 +284,12 @@ TEST(EngineSceneContent, FramesInFlightKeepTheirs) {
         for (std::size_t i = 0; i < order.size(); ++i) {
             EXPECT_EQ(engine.answers(i), wanted[order[i]]) << "frame " << i;
         }
-        EXPECT_GT((*scene)->bytes(), bytes);
-        (*scene)->complete(engine.completed());
-        const Status refused = (*scene)->update(VK_NULL_HANDLE, small.instances, {}, engine.frame());
+        EXPECT_GT(scene->bytes(), bytes);
+        scene->complete(engine.completed());
+        const Status refused = scene->update(VK_NULL_HANDLE, small.instances, {}, engine.frame());
         ASSERT_FALSE(refused) << "the geometries name more instances";
         EXPECT_EQ(refused.error().id, "engine-scene");
-        EXPECT_EQ((*scene)->update(VK_NULL_HANDLE, large.instances, {}, 0).error().id, "engine-scene")
+        EXPECT_EQ(scene->update(VK_NULL_HANDLE, large.instances, {}, 0).error().id, "engine-scene")
             << "the frame's number has fallen";
     }
     expectNoValidationMessages();
@@ -345,9 +344,8 @@ TEST(EngineSceneContent, MaterialsHaveTheHostsValues) {
                            engine.expected(*otherRepainted, *otherWanted.gpu, kUber),
                            engine.expected(*original, *content.gpu, kUber)};
     expectOthers(light[0], light[2]);
-    auto scene = EngineScene::record(sharedContext(), *original, view, engine.begin(), engine.frame());
-    ASSERT_TRUE(scene) << toString(scene.error());
-    const auto steps = engine.makeSteps(*original, **scene, kUber);
+    auto scene = must(EngineScene::record(sharedContext(), *original, view, engine.begin(), engine.frame()));
+    const auto steps = engine.makeSteps(*original, *scene, kUber);
     ASSERT_NE(steps, nullptr);
     ASSERT_TRUE(engine.ask(*steps, *content.gpu));
     ASSERT_TRUE(steps->replacePackage(other));
@@ -355,7 +353,7 @@ TEST(EngineSceneContent, MaterialsHaveTheHostsValues) {
     ASSERT_TRUE(steps->replacePackage(original));
     engine.submit();
     const VkCommandBuffer commands = engine.begin();
-    ASSERT_TRUE((*scene)->update(commands, *original, content.view(), engine.frame()));
+    ASSERT_TRUE(scene->update(commands, *original, content.view(), engine.frame()));
     ASSERT_TRUE(engine.ask(*steps, *content.gpu));
     engine.submit();
     engine.drain();
@@ -364,7 +362,7 @@ TEST(EngineSceneContent, MaterialsHaveTheHostsValues) {
     }
     const auto refusal = [&](std::span<const MaterialView> materials) {
         view.materials = materials;
-        return (*scene)->update(VK_NULL_HANDLE, *original, view, engine.frame()).error().id;
+        return scene->update(VK_NULL_HANDLE, *original, view, engine.frame()).error().id;
     };
     const MaterialView unknown[] = {values[1], values[1], {99, record}};
     EXPECT_EQ(refusal(unknown), "scene-material");
@@ -393,23 +391,21 @@ TEST(RayStepsReplacement, BatchesUseTheNewPackageAtOnce) {
         expectOthers(wanted[0], wanted[1]);
         const VkCommandBuffer commands = engine.begin();
         auto scene =
-            EngineScene::record(sharedContext(), *original, content.view(), commands, engine.frame());
-        ASSERT_TRUE(scene) << toString(scene.error());
-        const auto steps = engine.makeSteps(*original, **scene, strategy);
-        const auto second = engine.makeSteps(*original, **scene, strategy);
+            must(EngineScene::record(sharedContext(), *original, content.view(), commands, engine.frame()));
+        const auto steps = engine.makeSteps(*original, *scene, strategy);
+        const auto second = engine.makeSteps(*original, *scene, strategy);
         ASSERT_TRUE(steps != nullptr && second != nullptr);
         std::vector<std::size_t> order;
         FinishedRecordings finished;
         for (const std::size_t number : {0U, 0U, 1U, 1U, 0U, 1U}) {
             if (!order.empty()) {
                 engine.begin();
-                (*scene)->complete(engine.completed());
+                scene->complete(engine.completed());
                 finished.completed(*steps, engine.completed());
             }
             const bool switches = !order.empty() && order.back() != number;
             if (switches) {
-                const auto replaced = steps->replacePackage(number == 0 ? original : other);
-                ASSERT_TRUE(replaced) << toString(replaced.error());
+                const auto replaced = must(steps->replacePackage(number == 0 ? original : other));
                 EXPECT_TRUE(steps->replacementProgress().ready);
             }
             // The second one switches with the first.

@@ -1,6 +1,7 @@
 // Tests pictures lit by environment maps whose pixels can be computed by hand.
 #include "context/context.h"
 #include "render/pixel_test.h"
+#include "support/must.h"
 
 #include <glint/environment.h>
 
@@ -304,9 +305,8 @@ TEST_F(EnvironmentMap, ChangesBetweenFrames) {
         const std::unique_ptr<Environment> environment =
             makeEnvironment(8, 4, [&](gltf::Float3) { return color; });
         ASSERT_TRUE(environment);
-        const Result<LinearImage> image = renderer->render(setupWith(scene, environment.get()).frame);
-        ASSERT_TRUE(image);
-        expectColor(at(*image, 16, 16), color, 1e-5F, "centre");
+        const LinearImage image = must(renderer->render(setupWith(scene, environment.get()).frame));
+        expectColor(at(image, 16, 16), color, 1e-5F, "centre");
     }
     expectNoValidationMessages();
 }

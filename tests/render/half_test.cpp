@@ -4,6 +4,7 @@
 #include "render/pixel_test.h"
 #include "render/rooms.h"
 #include "support/effect_bits.h"
+#include "support/must.h"
 #include "support/nightly.h"
 
 #include <algorithm>
@@ -45,14 +46,13 @@ void expectAlike(const gltf::Scene& scene, package::Strategy strategy, double bo
     const LinearImage half = rendered(scene, strategy, package::ShadingPrecision::Half, setup);
     ASSERT_EQ(single.pixels.size(), half.pixels.size());
     ASSERT_FALSE(half.pixels.empty());
-    const Result<image::ImageDifference> difference = image::compareImages(half, single, "half", "single");
-    ASSERT_TRUE(difference) << toString(difference.error());
-    EXPECT_EQ(difference->nonFinite, 0U);
-    EXPECT_EQ(difference->referenceNonFinite, 0U);
-    EXPECT_LE(difference->relMse, bound);
+    const image::ImageDifference difference = must(image::compareImages(half, single, "half", "single"));
+    EXPECT_EQ(difference.nonFinite, 0U);
+    EXPECT_EQ(difference.referenceNonFinite, 0U);
+    EXPECT_LE(difference.relMse, bound);
     // The pictures must differ, or 16 bits were not used.
-    EXPECT_GT(difference->relMse, 0.0);
-    std::printf("relMSE %.2e, largest relative error %.2e\n", difference->relMse, difference->relative.value);
+    EXPECT_GT(difference.relMse, 0.0);
+    std::printf("relMSE %.2e, largest relative error %.2e\n", difference.relMse, difference.relative.value);
     expectNoValidationMessages();
 }
 
@@ -62,9 +62,8 @@ TEST(Half, TheGalleryIsNearlyTheSame) {
     }
     gltf::ImportOptions options;
     options.decodeImages = true;
-    const Result<gltf::Scene> scene = importScene(GLINT_GALLERY_SCENE, options);
-    ASSERT_TRUE(scene) << toString(scene.error());
-    expectAlike(*scene, package::kStrategyUber, 2e-6);
+    const gltf::Scene scene = must(importScene(GLINT_GALLERY_SCENE, options));
+    expectAlike(scene, package::kStrategyUber, 2e-6);
 }
 
 TEST(Half, ARoomOfMaterialsIsNearlyTheSame) {
@@ -177,9 +176,8 @@ TEST(Half, NeedsTheFeature) {
     const LoadedScene loaded(scene, settingsOf(package::kStrategyUber, package::ShadingPrecision::Half));
     ASSERT_TRUE(loaded.ok());
     EXPECT_EQ(loaded.package().precision(), package::ShadingPrecision::Half);
-    const Result<std::unique_ptr<Context>> context = Context::createHeadless({});
-    ASSERT_TRUE(context) << toString(context.error());
-    const auto uploaded = GpuScene::upload(**context, loaded.package(), session::makeSceneView(scene).view());
+    const std::unique_ptr<Context> context = must(Context::createHeadless({}));
+    const auto uploaded = GpuScene::upload(*context, loaded.package(), session::makeSceneView(scene).view());
     ASSERT_FALSE(uploaded);
     EXPECT_EQ(uploaded.error().id, "half-precision");
     EXPECT_NE(uploaded.error().hint.find("--precision 32"), std::string::npos);

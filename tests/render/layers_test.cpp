@@ -4,6 +4,7 @@
 #include "render/layered_scene.h"
 #include "render/scene_builder.h"
 #include "render/ways.h"
+#include "support/must.h"
 
 #include <fmt/format.h>
 
@@ -48,9 +49,8 @@ TEST(Layers, DemodulatedLightTimesAlbedoGivesThePicture) {
             ASSERT_NE(renderer, nullptr);
             FrameOptions frame = defaultSetup(hallBehindGlass(), options.width, options.height).frame;
             frame.maxReflectionRoughness = 1.0F;
-            const Result<LinearImage> image = renderer->render(frame, samples);
-            ASSERT_TRUE(image.ok()) << toString(image.error());
-            LinearImage sum = *image;
+            const LinearImage image = must(renderer->render(frame, samples));
+            LinearImage sum = image;
             const LayerSet layers(*renderer);
             const std::pair<const char*, const char*> sources[] = {{"direct", "albedo"},
                                                                    {"reflection", "albedo-specular"},
@@ -69,7 +69,7 @@ TEST(Layers, DemodulatedLightTimesAlbedoGivesThePicture) {
                     }
                 }
             }
-            expectSameImage(sum, *image, nameOf(way) + ", " + std::to_string(samples) + " samples");
+            expectSameImage(sum, image, nameOf(way) + ", " + std::to_string(samples) + " samples");
             for (const auto& [source, albedo] : sources) {
                 EXPECT_GT(layers.sum(std::string(source) + ".radiance"), 0.0) << source << " brings no light";
             }
@@ -158,10 +158,9 @@ TEST(Layers, LightsThatRefractedRaysFindAreOfTheRefraction) {
     frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     for (const bool refracts : {true, false}) {
         frame.effects = refracts ? package::kAllEffects : ~compiler::builtinEffects({"refraction"});
-        const Result<LinearImage> image = renderer->render(frame, 3);
-        ASSERT_TRUE(image.ok()) << toString(image.error());
+        const LinearImage image = must(renderer->render(frame, 3));
         const LayerSet layers(*renderer);
-        LinearImage sum = *image;
+        LinearImage sum = image;
         for (std::size_t i = 0; i < sum.pixels.size(); ++i) {
             for (std::size_t c = 0; c < 3; ++c) {
                 sum.pixels[i][c] = layers.at("emission", i, c);
@@ -173,7 +172,7 @@ TEST(Layers, LightsThatRefractedRaysFindAreOfTheRefraction) {
                             layers.at("refraction.radiance", i, c), 1e-4);
             }
         }
-        expectSameImage(sum, *image, refracts ? "with refraction" : "without refraction");
+        expectSameImage(sum, image, refracts ? "with refraction" : "without refraction");
         EXPECT_EQ(layers.sum("refraction.radiance") > 1.0, refracts);
         EXPECT_EQ(layers.sum("refraction.variance") > 0.0, refracts);
     }

@@ -9,6 +9,7 @@
 #include "render/pixel_test.h"
 #include "spirv/compiler.h"
 #include "spirv/optimize.h"
+#include "support/must.h"
 #include "support/nightly.h"
 #include "support/shared_modules.h"
 
@@ -101,10 +102,9 @@ protected:
         compiler::CompileSettings settings = librarySettings();
         settings.emitLibrary = true;
         settings.emitLinkable = true;
-        Result<std::vector<compiler::PackageFile>> files = makeLibrary(
-            gltf::SceneList({&libraryScene(), 1}), loaded_.compiled().plan, settings, &sharedModules());
-        ASSERT_TRUE(files) << toString(files.error());
-        files_ = std::move(*files);
+        std::vector<compiler::PackageFile> files = must(makeLibrary(
+            gltf::SceneList({&libraryScene(), 1}), loaded_.compiled().plan, settings, &sharedModules()));
+        files_ = std::move(files);
     }
 
     std::string fileText(std::string_view name) const {
@@ -270,8 +270,7 @@ TEST_F(Library, LinkedGivesWhatTheGlslGives) {
         "0u).x +\n"
         "          glintHostLight(0u, vec3(0.0), vec3(0.0)).distance);\n";
     source.glsl.insert(source.glsl.rfind('}'), "    if (GLINT_FRAME.width == 0u) {\n" + calls + "    }\n");
-    const Result<std::vector<std::uint32_t>> program = compileLinkable(source, names, {});
-    ASSERT_TRUE(program) << toString(program.error());
+    const std::vector<std::uint32_t> program = must(compileLinkable(source, names, {}));
 
     const std::string bytes = fileText("library/glint_library.spv");
     std::vector<std::uint32_t> module(bytes.size() / sizeof(std::uint32_t));
@@ -284,9 +283,8 @@ TEST_F(Library, LinkedGivesWhatTheGlslGives) {
     spvtools::SpirvTools tools(SPV_ENV_UNIVERSAL_1_5);
     ASSERT_TRUE(tools.Assemble(kSky, &sky));
     std::vector<std::uint32_t> linked;
-    ASSERT_EQ(spvtools::Link(context, {*program, sky, module}, &linked), SPV_SUCCESS) << message;
-    const Status valid = compiler::validateSpirv(linked, "linked");
-    ASSERT_TRUE(valid) << toString(valid.error());
+    ASSERT_EQ(spvtools::Link(context, {program, sky, module}, &linked), SPV_SUCCESS) << message;
+    must(compiler::validateSpirv(linked, "linked"));
 
     const std::vector<float> values = valuesOf(linked, kValues);
     ASSERT_EQ(values.size(), expected.size());
@@ -318,19 +316,17 @@ std::string hostBodies(const std::string& host) {
 
 // A shader of a user's own has nothing of Glint's but the library. At night it is that of the gallery.
 TEST(LibraryFiles, CompileInAShaderOfAUser) {
-    const Result<gltf::Scene> scene =
-        test::nightly() ? gltf::importScene(GLINT_GALLERY_SCENE) : Result<gltf::Scene>(libraryScene());
-    ASSERT_TRUE(scene) << toString(scene.error());
-    const gltf::SceneList list({&*scene, 1});
+    const gltf::Scene scene =
+        must(test::nightly() ? gltf::importScene(GLINT_GALLERY_SCENE) : Result<gltf::Scene>(libraryScene()));
+    const gltf::SceneList list({&scene, 1});
     compiler::CompileSettings settings = librarySettings();
     settings.plan.merge = compiler::MergePolicy::Family;
     settings.emitLibrary = true;
     const compiler::Plan plan = makePlan(list.materials(), list.primitives(), settings.plan);
-    const Result<std::vector<compiler::PackageFile>> files = makeLibrary(list, plan, settings);
-    ASSERT_TRUE(files) << toString(files.error());
-    ASSERT_EQ(files->size(), 2 + plan.cases.size());
+    const std::vector<compiler::PackageFile> files = must(makeLibrary(list, plan, settings));
+    ASSERT_EQ(files.size(), 2 + plan.cases.size());
     EXPECT_GE(plan.cases.size(), 2U);
-    const std::string host = textOf(files->front());
+    const std::string host = textOf(files.front());
     ASSERT_NE(hostBodies(host).find("glintHostTexture("), std::string::npos);
     // Names that a user may have, too.
     const std::string user =
@@ -342,14 +338,14 @@ TEST(LibraryFiles, CompileInAShaderOfAUser) {
         "    sum = glintEvaluate(surface, sum, sum) + glintRadiance(surface).radiance +\n"
         "          glintSample(surface, sum, sum).weight * glintDensity(surface, sum, sum) +\n"
         "          glintMirror(surface).weight + glintRayOrigin(surface, sum);\n";
-    for (std::size_t i = 1; i < files->size(); ++i) {
+    for (std::size_t i = 1; i < files.size(); ++i) {
         // Every text is compiled. Only the switch and one case are called, too, which takes most of the time.
-        const std::string text = textOf((*files)[i]);
+        const std::string text = textOf(files[i]);
         for (const char* const foreign : {"void main", "binding", "push_constant", "#include", "#line"}) {
-            EXPECT_EQ(text.find(foreign), std::string::npos) << (*files)[i].name << ": " << foreign;
+            EXPECT_EQ(text.find(foreign), std::string::npos) << files[i].name << ": " << foreign;
         }
         const Result<std::vector<std::uint32_t>> words = compiler::compileShader(
-            {(*files)[i].name, compiler::ShaderStage::Compute,
+            {files[i].name, compiler::ShaderStage::Compute,
              "#version 460\n" + host + text + hostBodies(host) + user + (i <= 2 ? calls : "") + "}\n",
              functionsOfCases(plan)},
             {});

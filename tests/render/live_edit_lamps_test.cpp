@@ -3,6 +3,7 @@
 #include "render/scene_builder.h"
 #include "scene/gpu_scene_state.h"
 #include "scene/scene_store.h"
+#include "support/must.h"
 
 #include <gtest/gtest.h>
 
@@ -200,8 +201,7 @@ TEST(LiveEditLampKeys, AKeyMakesAMaterialALight) {
     // A coated material shines, which no light of the package has.
     lamps.edited.scene.materials[2]["emissiveFactor"] = {4.0F, 4.0F, 4.0F};
     const MaterialHandle coated = lamps.edited.materials[2].handle;
-    const Result<EditReport> set = lamps.edited.editor().setMaterial(coated, lamps.edited.source(2).view());
-    ASSERT_TRUE(set) << toString(set.error());
+    const EditReport set = must(lamps.edited.editor().setMaterial(coated, lamps.edited.source(2).view()));
     ASSERT_TRUE(lamps.edited.editor().setInstanceMaterial(lamps.edited.instances[1].handle, 0, coated));
     const LinearImage edited = lamps.edited.picture();
     EXPECT_EQ(lamps.emitters(), before);  // the tent was a light before
@@ -228,14 +228,12 @@ TEST(LiveEditLampKeys, OtherLightsNeedAFallback) {
     ASSERT_TRUE(lamps.edited.ok());
     EditedScene& edited = lamps.edited;
     edited.scene.materials[2]["emissiveFactor"] = {4.0F, 4.0F, 4.0F};
-    const Result<MaterialHandle> coated = edited.editor().addMaterial(edited.source(2).view());
-    ASSERT_TRUE(coated) << toString(coated.error());
-    const Result<EditReport> set =
-        edited.editor().setInstanceMaterial(edited.instances[0].handle, 0, *coated);
+    const MaterialHandle coated = must(edited.editor().addMaterial(edited.source(2).view()));
+    const Result<EditReport> set = edited.editor().setInstanceMaterial(edited.instances[0].handle, 0, coated);
     ASSERT_FALSE(set);
     EXPECT_EQ(set.error().id, "scene-edit-case");
     EXPECT_NE(set.error().message.find("clearcoat"), std::string::npos) << set.error().message;
-    EXPECT_TRUE(edited.editor().removeMaterial(*coated));
+    EXPECT_TRUE(edited.editor().removeMaterial(coated));
 }
 
 // A lamp that takes the place of one that was removed comes after those that were there before. Without a

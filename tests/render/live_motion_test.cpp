@@ -6,6 +6,7 @@
 #include "render/replacement.h"
 #include "render/scene_builder.h"
 #include "scene/scene_store.h"
+#include "support/must.h"
 #include "support/nightly.h"
 
 #include <glint/session/scene_view.h>
@@ -139,8 +140,7 @@ public:
             ASSERT_NE(packages_.back(), nullptr);
         }
         current_ = 1 - current_;
-        const Result<Renderer::Replacement> replaced = renderer_->replacePackage(packages_[current_]);
-        ASSERT_TRUE(replaced) << toString(replaced.error());
+        const Renderer::Replacement replaced = must(renderer_->replacePackage(packages_[current_]));
     }
     bool isSwitched() const {
         return current_ > 0;
@@ -241,9 +241,8 @@ private:
         placed.objectToWorld = instance.view.objectToWorld;
         placed.joints = instance.joints;
         placed.morphWeights = instance.weights;
-        const Result<AddedInstance> made = editor().addInstance(placed);
-        ASSERT_TRUE(made) << toString(made.error());
-        instance.handle = made->instance;
+        const AddedInstance made = must(editor().addInstance(placed));
+        instance.handle = made.instance;
         instance.view.visible = true;
         // Moving a vector keeps its elements in place.
         instances_.push_back(std::move(instance));

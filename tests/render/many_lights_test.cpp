@@ -1,6 +1,7 @@
 // Lights that a hierarchy chooses: the means of their pictures are those of all lights.
 #include "render/hit_kernel.h"
 #include "render/pixel_test.h"
+#include "support/must.h"
 
 #include <algorithm>
 #include <bit>
@@ -242,8 +243,7 @@ TEST(ManyLights, TheHierarchyFollowsLightsThatMove) {
     ASSERT_TRUE(moving.ok());
     const double away = meanOf(moving.render(package::kStrategyUber, setupOf(scene, 1, 1)));
     EXPECT_EQ(away, 0.0) << "out of range";
-    const Status moved = moving.gpuScene().updateAndWait({instances, lights});
-    ASSERT_TRUE(moved) << toString(moved.error());
+    must(moving.gpuScene().updateAndWait({instances, lights}));
     const LinearImage image = moving.render(package::kStrategyUber, setupOf(scene, 64, 1));
     ASSERT_FALSE(image.pixels.empty());
     EXPECT_NEAR(meanOf(image), meanOf(reference), 0.02 * meanOf(reference));
@@ -257,8 +257,7 @@ void expectChancesOfTheChoice(std::uint32_t samples) {
     const gltf::Scene scene = hallOfLights();
     const LoadedScene loaded = load(scene, samples);
     ASSERT_TRUE(loaded.ok());
-    const Result<std::unique_ptr<HitKernel>> kernel = kernelOf(scene, loaded, samples);
-    ASSERT_TRUE(kernel) << toString(kernel.error());
+    const std::unique_ptr<HitKernel> kernel = must(kernelOf(scene, loaded, samples));
     const auto all = static_cast<float>(samples);
     std::mt19937 random(5);
     std::uniform_real_distribution<float> unit(0.0F, 1.0F);
@@ -274,12 +273,11 @@ void expectChancesOfTheChoice(std::uint32_t samples) {
         rays[i].direction = {all * place, unit(random), unit(random)};
     }
     const auto count = static_cast<std::uint32_t>(rays.size());
-    const Result<std::vector<std::uint32_t>> words =
-        (*kernel)->run({}, rays, count, std::size_t{kWordsOfChoice} * count);
-    ASSERT_TRUE(words) << toString(words.error());
+    const std::vector<std::uint32_t> words =
+        must(kernel->run({}, rays, count, std::size_t{kWordsOfChoice} * count));
     std::map<std::uint32_t, std::pair<double, int>> chosen;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        const std::uint32_t* const word = words->data() + kWordsOfChoice * i;
+        const std::uint32_t* const word = words.data() + kWordsOfChoice * i;
         const auto chance = std::bit_cast<float>(word[1]);
         EXPECT_EQ(word[4], 0U) << "lights that arrive at point " << i << " can't be chosen";
         const auto sum = std::bit_cast<float>(word[3]);
@@ -332,20 +330,18 @@ TEST(ManyLights, LightsAreChosenByWhatTheyBring) {
         }
         const LoadedScene loaded = load(scene, 1);
         ASSERT_TRUE(loaded.ok());
-        const Result<std::unique_ptr<HitKernel>> kernel = kernelOf(scene, loaded, 1);
-        ASSERT_TRUE(kernel) << toString(kernel.error());
+        const std::unique_ptr<HitKernel> kernel = must(kernelOf(scene, loaded, 1));
         constexpr std::uint32_t kCount = 512;
         std::vector<gpu::RayRecord> rays(kCount);
         for (gpu::RayRecord& ray : rays) {
             ray.origin = {20.0F * unit(random) - 10.0F, 0.0F, 20.0F * unit(random) - 10.0F};
             ray.target = 0x7FFF0000U;  // up
         }
-        const Result<std::vector<std::uint32_t>> words =
-            (*kernel)->run({}, rays, kCount, std::size_t{kWordsOfChoice} * kCount);
-        ASSERT_TRUE(words) << toString(words.error());
+        const std::vector<std::uint32_t> words =
+            must(kernel->run({}, rays, kCount, std::size_t{kWordsOfChoice} * kCount));
         double moments = 0.0;
         for (std::uint32_t i = 0; i < kCount; ++i) {
-            moments += std::bit_cast<float>((*words)[kWordsOfChoice * i + 5]) / kCount;
+            moments += std::bit_cast<float>(words[kWordsOfChoice * i + 5]) / kCount;
         }
         std::printf("lights %s: variance %.2f\n", groups ? "in groups" : "everywhere", moments - 1.0);
         EXPECT_LT(moments - 1.0, 0.3) << (groups ? "in groups" : "everywhere");
@@ -362,8 +358,7 @@ TEST(ManyLights, CoarseNumbersChooseNoLightThatIsNearlyImpossible) {
     }
     const LoadedScene loaded = load(scene, 1);
     ASSERT_TRUE(loaded.ok());
-    const Result<std::unique_ptr<HitKernel>> kernel = kernelOf(scene, loaded, 1);
-    ASSERT_TRUE(kernel) << toString(kernel.error());
+    const std::unique_ptr<HitKernel> kernel = must(kernelOf(scene, loaded, 1));
     constexpr std::uint32_t kCount = 4096;
     std::mt19937 random(5);
     std::uniform_real_distribution<float> unit(0.0F, 1.0F);
@@ -373,12 +368,11 @@ TEST(ManyLights, CoarseNumbersChooseNoLightThatIsNearlyImpossible) {
         rays[i].target = kBothSides;
         rays[i].direction = {static_cast<float>(i) / kCount, unit(random), unit(random)};
     }
-    const Result<std::vector<std::uint32_t>> words =
-        (*kernel)->run({}, rays, kCount, std::size_t{kWordsOfChoice} * kCount);
-    ASSERT_TRUE(words) << toString(words.error());
+    const std::vector<std::uint32_t> words =
+        must(kernel->run({}, rays, kCount, std::size_t{kWordsOfChoice} * kCount));
     float least = 1.0F;
     for (std::uint32_t i = 0; i < kCount; ++i) {
-        const auto probability = std::bit_cast<float>((*words)[kWordsOfChoice * i + 1]);
+        const auto probability = std::bit_cast<float>(words[kWordsOfChoice * i + 1]);
         least = probability > 0.0F ? std::min(least, probability) : least;
     }
     std::printf("the least probability of a chosen light: %.1e\n", static_cast<double>(least));

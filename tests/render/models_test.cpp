@@ -7,6 +7,7 @@
 #include "render/light_pictures.h"
 #include "render/pixel_test.h"
 #include "render/scene_builder.h"
+#include "support/must.h"
 #include "support/printed_files.h"
 #include "support/temporary_folder.h"
 
@@ -183,10 +184,9 @@ TEST(Models, AreAsTheDocumentsPrintThem) {
     test::writePrintedFiles("material_lists.md", folder.path(), {"materials.json"});
     gltf::ImportOptions options;
     options.materialModel = &models();
-    const Result<gltf::Scene> list = importScene(folder.path() / "materials.json", options);
-    ASSERT_TRUE(list) << toString(list.error());
-    EXPECT_TRUE(list->warnings.empty()) << toString(list->warnings.front());
-    EXPECT_EQ(list->materials.size(), 4U);
+    const gltf::Scene list = must(importScene(folder.path() / "materials.json", options));
+    EXPECT_TRUE(list.warnings.empty()) << toString(list.warnings.front());
+    EXPECT_EQ(list.materials.size(), 4U);
 }
 
 // A material has one model: the first that it names. That leaves out what changes glTF's base, and keeps

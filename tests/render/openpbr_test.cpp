@@ -8,6 +8,7 @@
 #include "render/light_pictures.h"
 #include "render/pixel_test.h"
 #include "render/scene_builder.h"
+#include "support/must.h"
 
 #include <gtest/gtest.h>
 
@@ -315,16 +316,14 @@ std::vector<LobeCase> lobeCases() {
 
 TEST(OpenPbr, LobesAreThoseOfDoublePrecision) {
     const std::vector<LobeCase> cases = lobeCases();
-    Result<measure::CheckedScene> checked = measure::makeCheckedScene(openPbr(), 12);
-    ASSERT_TRUE(checked) << toString(checked.error());
-    ASSERT_GE(checked->scene.materials.size(), cases.size());
+    measure::CheckedScene checked = must(measure::makeCheckedScene(openPbr(), 12));
+    ASSERT_GE(checked.scene.materials.size(), cases.size());
     for (std::size_t i = 0; i < cases.size(); ++i) {
-        checked->scene.materials[i] = cases[i].material;
+        checked.scene.materials[i] = cases[i].material;
     }
     measure::CheckMaterialsOptions options;
     options.packs = {kOpenPbr};
-    const auto evaluator = measure::FeatureEvaluator::create(checked->scene, options, QuietObserver());
-    ASSERT_TRUE(evaluator) << toString(evaluator.error());
+    const auto evaluator = must(measure::FeatureEvaluator::create(checked.scene, options, QuietObserver()));
     constexpr std::size_t kDraws = 4000;
     std::vector<compiler::FeatureKernelInput> inputs;
     std::vector<std::pair<Vector, Vector>> directions;
@@ -356,8 +355,7 @@ TEST(OpenPbr, LobesAreThoseOfDoublePrecision) {
             input.light[k] = static_cast<float>(both[1][k]);
         }
     }
-    const auto outputs = (*evaluator)->run(inputs);
-    ASSERT_TRUE(outputs) << toString(outputs.error());
+    const auto outputs = must(evaluator->run(inputs));
     for (std::size_t c = 0; c < cases.size(); ++c) {
         double worst = 0.0;
         double brightest = 0.0;
@@ -370,7 +368,7 @@ TEST(OpenPbr, LobesAreThoseOfDoublePrecision) {
             const Light expected = cases[c].expected(view, light);
             for (std::size_t k = 0; k < 3; ++k) {
                 const double scale = std::max(expected[k], cases[c].least);
-                worst = std::max(worst, std::abs(outputs->at(i).whole[k] - expected[k]) / scale);
+                worst = std::max(worst, std::abs(outputs.at(i).whole[k] - expected[k]) / scale);
                 brightest = std::max(brightest, expected[k]);
             }
         }
@@ -455,11 +453,10 @@ TEST(OpenPbr, PrimarySurfacesFollowTheirOwnSamples) {
 TEST(OpenPbr, EmissionIsALight) {
     gltf::ImportOptions import;
     import.materialModel = &openPbr();
-    const Result<gltf::Scene> scene = importScene(kOpenPbr + "/scene.gltf", import);
-    ASSERT_TRUE(scene) << toString(scene.error());
-    EXPECT_TRUE(scene->warnings.empty()) << toString(scene->warnings.front());
+    const gltf::Scene scene = must(importScene(kOpenPbr + "/scene.gltf", import));
+    EXPECT_TRUE(scene.warnings.empty()) << toString(scene.warnings.front());
     int lamps = 0;
-    for (const materials::Material& material : scene->materials) {
+    for (const materials::Material& material : scene.materials) {
         const bool isEmitter = compiler::isEmitter(material, {});
         EXPECT_EQ(isEmitter, material.name == "Lamp") << material.name;
         lamps += isEmitter ? 1 : 0;

@@ -2,6 +2,7 @@
 // is not so.
 #include "render/harness.h"
 #include "render/order_problems.h"
+#include "support/must.h"
 #include "support/nightly.h"
 
 #include <algorithm>
@@ -78,14 +79,12 @@ void expectOrdered(const OrderProblem& problem, std::uint32_t bucketCount, const
 }
 
 void expectAllOrder(OrderKernel& kernel, std::uint32_t bucketCount, const OrderProblem& problem) {
-    const Status loaded = kernel.load(problem);
-    ASSERT_TRUE(loaded) << toString(loaded.error());
+    must(kernel.load(problem));
     for (const Ordering ordering : kOrderings) {
         if (holds(ordering, bucketCount)) {
             SCOPED_TRACE(std::string(nameOf(ordering)));
-            const Result<OrderResult> result = kernel.run(ordering);
-            ASSERT_TRUE(result) << toString(result.error());
-            expectOrdered(problem, bucketCount, *result);
+            const OrderResult result = must(kernel.run(ordering));
+            expectOrdered(problem, bucketCount, result);
         }
     }
 }
@@ -180,16 +179,14 @@ TEST(OrderCheck, FindsEveryFault) {
     ASSERT_NE(kernel, nullptr);
     OrderProblem problem = makeProblem(Spread::InTurn, kFaultBuckets, kFaultRays);
     problem.alignment = gpu::kRayGroupSize;
-    const Status loaded = kernel->load(problem);
-    ASSERT_TRUE(loaded) << toString(loaded.error());
+    must(kernel->load(problem));
     for (std::uint32_t hit : {2U, 3U}) {
         ASSERT_EQ(bucketOf(problem, hit, kFaultBuckets), 4 - hit);
     }
     for (const Ordering ordering : kOrderings) {
         for (const FaultCase& fault : faultCases()) {
-            const Result<OrderResult> result = kernel->run(ordering, fault.faults);
-            ASSERT_TRUE(result) << toString(result.error());
-            EXPECT_GE(result->errors, fault.errors) << nameOf(ordering) << ": " << fault.name;
+            const OrderResult result = must(kernel->run(ordering, fault.faults));
+            EXPECT_GE(result.errors, fault.errors) << nameOf(ordering) << ": " << fault.name;
         }
     }
     expectNoValidationMessages();

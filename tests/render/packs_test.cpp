@@ -3,6 +3,7 @@
 #include "gltf/import.h"
 #include "materials/declarations.h"
 #include "render/pixel_test.h"
+#include "support/must.h"
 #include "support/printed_files.h"
 #include "support/temporary_folder.h"
 
@@ -50,10 +51,9 @@ TEST_P(ExamplePacks, StrategiesAndMergePoliciesGiveOneImage) {
     gltf::ImportOptions import;
     import.decodeImages = true;
     import.materialModel = &modelOf(folder);
-    const Result<gltf::Scene> scene = importScene(folder + "/scene.gltf", import);
-    ASSERT_TRUE(scene) << toString(scene.error());
-    EXPECT_TRUE(scene->warnings.empty()) << toString(scene->warnings.front());
-    RenderSetup setup = defaultSetup(*scene, 75, 30);
+    const gltf::Scene scene = must(importScene(folder + "/scene.gltf", import));
+    EXPECT_TRUE(scene.warnings.empty()) << toString(scene.warnings.front());
+    RenderSetup setup = defaultSetup(scene, 75, 30);
     setup.frame.maxReflectionRoughness = 1.0F;
     LinearImage reference;
     // PackStages has all strategies; here they are few, because the scene has many cases.
@@ -65,7 +65,7 @@ TEST_P(ExamplePacks, StrategiesAndMergePoliciesGiveOneImage) {
         settings.plan.merge = merge;
         settings.plan.keys.alpha = package::AlphaPolicy::Tested;
         settings.strategies = strategy;
-        const LoadedScene loaded(*scene, settings);
+        const LoadedScene loaded(scene, settings);
         ASSERT_TRUE(loaded.ok());
         const LinearImage image = loaded.render(strategy, setup);
         ASSERT_FALSE(image.pixels.empty());
@@ -203,10 +203,9 @@ TEST(Packs, ThePageAddsALobe) {
     const test::TemporaryFolder folder;
     test::writePrintedFiles("material_features.md", folder.path(),
                             {"wax/wax.json", "wax/wax.glsl", "wax/wax_bsdf.glsl"});
-    const Result<const materials::MaterialModel*> model =
-        materials::loadMaterialModel(std::vector{folder.path().string()});
-    ASSERT_TRUE(model) << toString(model.error());
-    materials::Material material = blackMaterial(**model);
+    const const materials::MaterialModel* model =
+        must(materials::loadMaterialModel(std::vector{folder.path().string()}));
+    materials::Material material = blackMaterial(*model);
     material.give("EXAMPLE_materials_wax");
     material["waxFactor"] = 0.5F;
     const Pixel pixel = litWall(material, kTilt, kLight);
@@ -227,10 +226,9 @@ TEST(Packs, ErrorsOfGlslNameTheFileTheLineAndTheFeature) {
                         "                         inout Surface surface) {\n"
                         "    nonsense = 1.0;\n"
                         "}\n"));
-    const Result<const materials::MaterialModel*> model =
-        materials::loadMaterialModel(std::vector{folder.path().string()});
-    ASSERT_TRUE(model) << toString(model.error());
-    materials::Material material = blackMaterial(**model);
+    const const materials::MaterialModel* model =
+        must(materials::loadMaterialModel(std::vector{folder.path().string()}));
+    materials::Material material = blackMaterial(*model);
     material.give("EXAMPLE_materials_retroreflection");
     material["retroreflectionFactor"] = 0.75F;
     gltf::Scene scene = emptyScene();
@@ -270,9 +268,8 @@ TEST(Packs, AChangeOfGlslChangesItsCaseAlone) {
     fs::copy(kPacks, folder.path(), fs::copy_options::recursive);
     const std::map<std::string, std::string> before = moduleTexts(folder.path().string());
     const fs::path file = folder.path() / "fibre" / "fibre.glsl";
-    const Result<base::Bytes> bytes = base::readFile(file);
-    ASSERT_TRUE(bytes);
-    std::string text(bytes->begin(), bytes->end());
+    const base::Bytes bytes = must(base::readFile(file));
+    std::string text(bytes.begin(), bytes.end());
     const std::size_t place = text.find("return kInversePi /");
     ASSERT_NE(place, std::string::npos);
     text.insert(place + 7, "0.5 * ");

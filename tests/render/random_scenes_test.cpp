@@ -5,6 +5,7 @@
 #include "gltf/import.h"
 #include "render/edited_scene.h"
 #include "render/random_scene.h"
+#include "support/must.h"
 #include "support/nightly.h"
 #include "unit/gltf/gltf_builder.h"
 
@@ -200,25 +201,22 @@ private:
                 primitives.push_back(
                     {data.primitives[i], materials[static_cast<std::size_t>(primitive.material)]});
             }
-            const Result<AddedMesh> added = editor().addMesh(primitives);
-            ASSERT_TRUE(added) << toString(added.error());
-            byNumber[mesh] = added->mesh;
-            meshes_.push_back(added->mesh);
+            const AddedMesh added = must(editor().addMesh(primitives));
+            byNumber[mesh] = added.mesh;
+            meshes_.push_back(added.mesh);
         }
         for (const InstanceView& view : data.instances) {
-            const Result<AddedInstance> added =
-                editor().addInstance({byNumber[view.mesh], view.objectToWorld, view.visible});
-            ASSERT_TRUE(added) << toString(added.error());
-            instances_.push_back(added->instance);
+            const AddedInstance added =
+                must(editor().addInstance({byNumber[view.mesh], view.objectToWorld, view.visible}));
+            instances_.push_back(added.instance);
         }
         std::vector<LightView> lights = data.lights;
         if (lights.empty()) {
             lights.push_back(session::sunLight());
         }
         for (const LightView& light : lights) {
-            const Result<LightHandle> added = editor().addLight(light);
-            ASSERT_TRUE(added) << toString(added.error());
-            lights_.push_back(*added);
+            const LightHandle added = must(editor().addLight(light));
+            lights_.push_back(added);
         }
     }
 

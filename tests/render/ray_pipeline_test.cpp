@@ -5,6 +5,7 @@
 #include "render/pixel_test.h"
 #include "render/ways.h"
 #include "scene/gpu_scene_state.h"
+#include "support/must.h"
 
 #include <glint/internal/package_modules.h>
 #include <glint/session/scene_view.h>
@@ -155,12 +156,10 @@ TEST_F(DeviceWithPipelines, ShowsUnknownShadersInMagenta) {
     options.height = setup.height;
     const auto renderer = loaded.makeRenderer(options);
     ASSERT_NE(renderer, nullptr);
-    const Result<LinearImage> image = renderer->render(setup.frame);
-    ASSERT_TRUE(image) << toString(image.error());
-    expectColor(at(*image, 16, 16), {1.0F, 0.0F, 1.0F}, 1e-4F, "unknown");
-    const Result<FrameCounters> counters = renderer->counters();
-    ASSERT_TRUE(counters) << toString(counters.error());
-    EXPECT_EQ(counters->unknownShader, 32U * 32U);
+    const LinearImage image = must(renderer->render(setup.frame));
+    expectColor(at(image, 16, 16), {1.0F, 0.0F, 1.0F}, 1e-4F, "unknown");
+    const FrameCounters counters = must(renderer->counters());
+    EXPECT_EQ(counters.unknownShader, 32U * 32U);
     expectNoValidationMessages();
 }
 
@@ -200,9 +199,8 @@ TEST_P(OneTracer, IsEnoughForEveryStrategyThatItHas) {
     HeadlessOptions headless;
     headless.validation = Validation::Synchronization;
     headless.tracers = GetParam();
-    const auto context = Context::createHeadless(headless);
-    ASSERT_TRUE(context) << toString(context.error());
-    EXPECT_EQ((*context)->handles().tracers, GetParam());
+    const auto context = must(Context::createHeadless(headless));
+    EXPECT_EQ(context->handles().tracers, GetParam());
 
     const gltf::Scene scene = hallScene();
     const LoadedScene loaded(scene, settingsFor(ShadowPlacement::Inline, compiler::MergePolicy::All));
@@ -210,25 +208,23 @@ TEST_P(OneTracer, IsEnoughForEveryStrategyThatItHas) {
     const RenderSetup setup = hallSetup(scene);
     const LinearImage reference = loaded.render(package::kStrategyVisibility, setup);
     const session::SceneViewData view = session::makeSceneView(scene);
-    auto uploaded = GpuScene::upload(**context, loaded.package(), view.view());
-    ASSERT_TRUE(uploaded) << toString(uploaded.error());
+    auto uploaded = must(GpuScene::upload(*context, loaded.package(), view.view()));
     for (const Way& way : waysOf(package::allStrategies(), package::kAllTracers)) {
         SCOPED_TRACE(nameOf(way));
         RendererOptions options = optionsOf(way);
         options.width = setup.width;
         options.height = setup.height;
-        auto renderer = Renderer::create(**context, loaded.package(), **uploaded, options);
+        auto renderer = Renderer::create(*context, loaded.package(), *uploaded, options);
         if (way.tracer != GetParam()) {
             ASSERT_FALSE(renderer);
             EXPECT_EQ(renderer.error().id, "device-tracer");
             continue;
         }
         ASSERT_TRUE(renderer) << toString(renderer.error());
-        const Result<LinearImage> image = (*renderer)->render(setup.frame, setup.samples);
-        ASSERT_TRUE(image) << toString(image.error());
-        expectSameImage(*image, reference, nameOf(way));
+        const LinearImage image = must((*renderer)->render(setup.frame, setup.samples));
+        expectSameImage(image, reference, nameOf(way));
     }
-    for (const std::string& message : (*context)->validationMessages()) {
+    for (const std::string& message : context->validationMessages()) {
         ADD_FAILURE() << message;
     }
 }

@@ -8,6 +8,7 @@
 #include "renderer/hit_passes.h"
 #include "renderer/renderer.h"
 #include "resolve/host.h"
+#include "support/must.h"
 #include "support/temporary_folder.h"
 
 #include <glint/steps.h>
@@ -430,11 +431,10 @@ TEST(RaySteps, TakeAStructureByItsAddress) {
     options.maxRays = 1;
     options.layout = without.layout();
     options.pushStages = Host::kStages;
-    const auto steps = RaySteps::create(sharedContext(), addressed.package(), **shared, options);
-    ASSERT_TRUE(steps) << toString(steps.error());
+    const auto steps = must(RaySteps::create(sharedContext(), addressed.package(), **shared, options));
     RayBatch batch;
     batch.rays = batch.answers = 64;
-    const Status refused = (*steps)->begin(VK_NULL_HANDLE, batch);
+    const Status refused = steps->begin(VK_NULL_HANDLE, batch);
     ASSERT_FALSE(refused);
     EXPECT_NE(toString(refused.error()).find("RayBatch::tlas is 0"), std::string::npos);
     expectNoValidationMessages();

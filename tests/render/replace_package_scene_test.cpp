@@ -1,6 +1,7 @@
 // Which packages a renderer takes over, and what its scene keeps of the values before.
 #include "render/pixel_test.h"
 #include "render/replacement.h"
+#include "support/must.h"
 
 #include <glint/session/material_source.h>
 #include <glint/session/scene_view.h>
@@ -179,8 +180,7 @@ TEST_F(ReplacePackageScene, AnEditableSceneTakesThePackagesMaterials) {
     const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
     ASSERT_NE(renderer, nullptr);
     draw(*renderer);
-    const Result<Renderer::Replacement> replaced = renderer->replacePackage(extended);
-    ASSERT_TRUE(replaced) << toString(replaced.error());
+    const Renderer::Replacement replaced = must(renderer->replacePackage(extended));
     expectEqualImage(draw(*renderer), fresh(changed, *extended, options), "the package's materials");
     ASSERT_TRUE(renderer->replacePackage(original));
     expectEqualImage(draw(*renderer), fresh(before_, *original, options), "the first package again");
@@ -221,10 +221,9 @@ TEST_F(ReplacePackageScene, AnEditedMaterialNeedsAShader) {
     }
     const std::shared_ptr<const Package> fallback =
         packageOf(both, roomSettings(package::kStrategyUber, true));
-    const Result<Renderer::Replacement> replaced = renderer->replacePackage(fallback);
-    ASSERT_TRUE(replaced) << toString(replaced.error());
-    ASSERT_EQ(replaced->missing.size(), 1U);
-    EXPECT_EQ(replaced->missing.front().material, editor.material(kGlossy));
+    const Renderer::Replacement replaced = must(renderer->replacePackage(fallback));
+    ASSERT_EQ(replaced.missing.size(), 1U);
+    EXPECT_EQ(replaced.missing.front().material, editor.material(kGlossy));
     EXPECT_TRUE(differ(draw(*renderer), before)) << "the other wall has a sheen";
     expectNoValidationMessages();
 }

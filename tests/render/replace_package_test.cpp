@@ -3,6 +3,7 @@
 #include "render/replacement.h"
 #include "render/ways.h"
 #include "renderer/renderer.h"
+#include "support/must.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -100,9 +101,8 @@ TEST_F(ReplacePackage, ThePictureIsThatOfTheOldPackageAndThenOfTheNewOne) {
         expectEqualImage(draw(*renderer), wanted, name + ", after");
         EXPECT_FALSE(renderer->replacementProgress().pending) << name;
         EXPECT_EQ(renderer->replacementProgress().inUse, 1U) << name;
-        const Result<FrameCounters> counters = renderer->counters();
-        ASSERT_TRUE(counters);
-        EXPECT_EQ(counters->unknownShader, 0U) << name;
+        const FrameCounters counters = must(renderer->counters());
+        EXPECT_EQ(counters.unknownShader, 0U) << name;
         expectNoValidationMessages();
     });
 }
@@ -234,16 +234,14 @@ TEST_F(ReplacePackage, OnlyPipelinesThatChangedAreMade) {
     ASSERT_NE(renderer, nullptr);
     const std::uint32_t pipelines = renderer->footprint().pipelines;
 
-    const Result<Renderer::Replacement> values = renderer->replacePackage(repainted);
-    ASSERT_TRUE(values) << toString(values.error());
-    EXPECT_EQ(values->pipelinesMade, 0U) << "values of materials are in no shader";
-    EXPECT_EQ(values->pipelinesKept, pipelines);
-    EXPECT_TRUE(values->casesMade.empty());
-    EXPECT_EQ(values->buffersMade, 0U);
+    const Renderer::Replacement values = must(renderer->replacePackage(repainted));
+    EXPECT_EQ(values.pipelinesMade, 0U) << "values of materials are in no shader";
+    EXPECT_EQ(values.pipelinesKept, pipelines);
+    EXPECT_TRUE(values.casesMade.empty());
+    EXPECT_EQ(values.buffersMade, 0U);
     expectEqualImage(draw(*renderer), fresh(repaintedRoom(), *repainted, options), "another colour");
 
-    const Result<Renderer::Replacement> key = renderer->replacePackage(edited);
-    ASSERT_TRUE(key) << toString(key.error());
+    const Renderer::Replacement key = must(renderer->replacePackage(edited));
     // The case of the material with sheen is the only one whose SPIR-V is new.
     std::vector<std::uint32_t> fresh;
     for (std::uint32_t id = 0; id < edited->caseCount(); ++id) {
@@ -256,11 +254,11 @@ TEST_F(ReplacePackage, OnlyPipelinesThatChangedAreMade) {
         }
     }
     ASSERT_FALSE(caseWords(*edited, 0).empty());
-    EXPECT_EQ(key->casesMade, fresh);
-    EXPECT_EQ(key->casesMade.size(), 1U);
-    EXPECT_GT(key->pipelinesKept, 0U);
+    EXPECT_EQ(key.casesMade, fresh);
+    EXPECT_EQ(key.casesMade.size(), 1U);
+    EXPECT_GT(key.pipelinesKept, 0U);
     draw(*renderer);
-    EXPECT_EQ(renderer->footprint().pipelines, key->pipelinesKept + key->pipelinesMade);
+    EXPECT_EQ(renderer->footprint().pipelines, key.pipelinesKept + key.pipelinesMade);
     expectNoValidationMessages();
 }
 
@@ -276,13 +274,11 @@ TEST_F(ReplacePackage, ALaterPackageTakesThePlaceOfOneThatWaits) {
     ASSERT_NE(renderer, nullptr);
     renderer->waitForPipelines();
     const LinearImage old = draw(*renderer);
-    const Result<Renderer::Replacement> first = renderer->replacePackage(*edited_);
-    ASSERT_TRUE(first);
+    const Renderer::Replacement first = must(renderer->replacePackage(*edited_));
     renderer->waitForPipelines();
-    const Result<Renderer::Replacement> again = renderer->replacePackage(*edited_);
-    ASSERT_TRUE(again);
-    EXPECT_EQ(again->pipelinesMade, 0U);
-    EXPECT_EQ(again->pipelinesKept, first->pipelinesKept + first->pipelinesMade);
+    const Renderer::Replacement again = must(renderer->replacePackage(*edited_));
+    EXPECT_EQ(again.pipelinesMade, 0U);
+    EXPECT_EQ(again.pipelinesKept, first.pipelinesKept + first.pipelinesMade);
     ASSERT_TRUE(renderer->replacePackage(*original_));
     renderer->waitForPipelines();
     expectEqualImage(draw(*renderer), old, "the first package again");

@@ -309,6 +309,7 @@ TEST(SkyLight, AHostsOwnSkyIsNoLight) {
     const test::TemporaryFolder folder;
     constexpr const char* kText = R"(// A sky of one half.
 #include "host/resources.glsl"
+#include "support/must.h"
 vec3 hostSky(vec3 direction) { return vec3(0.5); }
 vec3 hostSkyAround(vec3 direction, float roughness) { return vec3(0.5); }
 vec3 hostSkyIrradianceOverPi(vec3 normal) { return vec3(0.5); }
@@ -333,15 +334,14 @@ TEST(SkyLight, AMapHasToBeSampled) {
     const LoadedScene loaded = load(scene, settingsOf({SkyLight::On, 1, true}));
     ASSERT_TRUE(loaded.ok());
     const LinearImage image{1, 1, {{1.0F, 1.0F, 1.0F, 1.0F}}};
-    const Result<std::unique_ptr<Environment>> map = Environment::create(sharedContext(), image);
-    ASSERT_TRUE(map.ok());
-    EXPECT_FALSE((*map)->statistics().sampled);
+    const std::unique_ptr<Environment> map = must(Environment::create(sharedContext(), image));
+    EXPECT_FALSE(map->statistics().sampled);
     RendererOptions options;
     options.strategy = package::kStrategyUber;
     options.width = options.height = 8;
     const auto renderer = loaded.makeRenderer(options);
     ASSERT_NE(renderer, nullptr);
-    FrameOptions frame = setupOf(scene, map->get(), 1, 1).frame;
+    FrameOptions frame = setupOf(scene, map.get(), 1, 1).frame;
     const Status refused = renderer->record(VK_NULL_HANDLE, frame);
     ASSERT_FALSE(refused);
     EXPECT_EQ(refused.error().id, "environment-unsampled");

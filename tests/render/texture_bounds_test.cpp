@@ -3,6 +3,7 @@
 #include "render/harness.h"
 #include "render/hit_kernel.h"
 #include "render/scene_builder.h"
+#include "support/must.h"
 
 #include <gtest/gtest.h>
 
@@ -93,9 +94,7 @@ TEST(TexelBoundsOfDevice, EncloseEveryLookup) {
         }
     });
     ASSERT_TRUE(loaded.ok());
-    const Result<std::unique_ptr<HitKernel>> kernel =
-        HitKernel::create(scene, loaded, "texture_lookups.comp");
-    ASSERT_TRUE(kernel) << toString(kernel.error());
+    const std::unique_ptr<HitKernel> kernel = must(HitKernel::create(scene, loaded, "texture_lookups.comp"));
     std::vector<gpu::RayRecord> rays;
     for (std::uint32_t material = 0; material < scene.materials.size(); ++material) {
         for (std::size_t k = 0; k < kLookups; ++k) {
@@ -103,8 +102,7 @@ TEST(TexelBoundsOfDevice, EncloseEveryLookup) {
         }
     }
     const auto count = static_cast<std::uint32_t>(rays.size());
-    const Result<std::vector<std::uint32_t>> words = (*kernel)->run({}, rays, count, 4 * rays.size());
-    ASSERT_TRUE(words) << toString(words.error());
+    const std::vector<std::uint32_t> words = must(kernel->run({}, rays, count, 4 * rays.size()));
     expectNoValidationMessages();
 
     std::size_t tight = 0;
@@ -120,7 +118,7 @@ TEST(TexelBoundsOfDevice, EncloseEveryLookup) {
             const gltf::TexelRange range = bounds.over(box, kind);
             tight += range.encloses(bounds.whole()) ? 0 : 1;
             for (std::size_t channel = 0; channel < 4; ++channel) {
-                const auto value = static_cast<double>(std::bit_cast<float>((*words)[4 * k + channel]));
+                const auto value = static_cast<double>(std::bit_cast<float>(words[4 * k + channel]));
                 const double code = 255.0 * (channel < 3 ? srgbOf(value) : value);
                 // Devices decode sRGB within half a code, and filter with 8 bits.
                 EXPECT_GE(code, range.least[channel] - 0.6) << "lookup " << k << ", channel " << channel;

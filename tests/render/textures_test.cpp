@@ -7,6 +7,7 @@
 #include "render/edited_scene.h"
 #include "render/pixel_test.h"
 #include "scene/texture_stream.h"
+#include "support/must.h"
 #include "unit/gltf/block_files.h"
 
 #include <glint/scene.h>
@@ -550,11 +551,10 @@ TEST(TextureStreamingEdits, ReplacedTexturesStreamAnew) {
     view.levels = static_cast<std::uint32_t>(other.levels);
     ASSERT_TRUE(editor.replaceTexture(editor.texture(0), view));
     EXPECT_EQ(streaming.stream().finest(0), 3U);
-    const Result<TextureHandle> added = editor.addTexture(view, true);
-    ASSERT_TRUE(added.ok());
-    EXPECT_EQ(streaming.stream().finest(added->index), 3U);
+    const TextureHandle added = must(editor.addTexture(view, true));
+    EXPECT_EQ(streaming.stream().finest(added.index), 3U);
     streaming.frame(3000);
-    ASSERT_TRUE(editor.removeTexture(*added));
+    ASSERT_TRUE(editor.removeTexture(added));
     // One without levels does not stream.
     const std::vector<std::uint8_t> gray(std::size_t{4} * 32 * 32, 128);
     ASSERT_TRUE(editor.replaceTexture(editor.texture(1), {32, 32, gray}));

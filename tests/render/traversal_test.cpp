@@ -5,6 +5,7 @@
 #include "render/hit_kernel.h"
 #include "render/scene_builder.h"
 #include "support/halved_tree.h"
+#include "support/must.h"
 
 #include <algorithm>
 #include <array>
@@ -126,8 +127,7 @@ TEST(Traversal, TheDeviceHasTheTrianglesInOrder) {
     const LoadedScene loaded(
         scene, settings, [](session::SceneViewData& data) { data.traversalOrder = TraversalOrder::Halving; });
     ASSERT_TRUE(loaded.ok());
-    const Result<std::unique_ptr<HitKernel>> kernel = HitKernel::create(scene, loaded, "hit_numbers.comp");
-    ASSERT_TRUE(kernel.ok()) << toString(kernel.error());
+    const std::unique_ptr<HitKernel> kernel = must(HitKernel::create(scene, loaded, "hit_numbers.comp"));
     const std::size_t count = own.indices.size() / 3;
     std::vector<LeafBox> leaves(count);
     std::vector<gpu::RayRecord> rays(count);
@@ -139,14 +139,13 @@ TEST(Traversal, TheDeviceHasTheTrianglesInOrder) {
         rays[i / 3].origin.z += corner[2] / 3.0F;
         rays[i / 3].direction = {0.0F, -1.0F, 0.0F};
     }
-    const Result<std::vector<std::uint32_t>> numbers =
-        (*kernel)->run({}, rays, static_cast<std::uint32_t>(count), 2 * count);
-    ASSERT_TRUE(numbers.ok()) << toString(numbers.error());
+    const std::vector<std::uint32_t> numbers =
+        must(kernel->run({}, rays, static_cast<std::uint32_t>(count), 2 * count));
     std::vector<std::uint32_t> order(count, static_cast<std::uint32_t>(count));
     for (std::uint32_t i = 0; i < count; ++i) {
-        EXPECT_EQ((*numbers)[2 * i], 0U);
-        ASSERT_LT((*numbers)[2 * i + 1], count);
-        order[(*numbers)[2 * i + 1]] = i;
+        EXPECT_EQ(numbers[2 * i], 0U);
+        ASSERT_LT(numbers[2 * i + 1], count);
+        order[numbers[2 * i + 1]] = i;
     }
     ASSERT_EQ(std::ranges::count(order, count), 0) << "two triangles have one number";
     std::vector<std::uint32_t> given(count);

@@ -6,6 +6,7 @@
 #include "render/moving_scenes.h"
 #include "render/scene_builder.h"
 #include "steps/engine_scene.h"
+#include "support/must.h"
 
 #include <glint/environment.h>
 #include <glint/scene.h>
@@ -197,9 +198,8 @@ TEST_P(RecordedUpload, FramesShowWhatABlockingUploadShows) {
     if (GetParam() == Kind::Moving) {
         EXPECT_TRUE(scene->update(commands, source_->data.motion(), frames.frame()));
     }
-    const Result<bool> early = scene->recordCompaction(commands, frames.frame());
-    ASSERT_TRUE(early.ok());
-    EXPECT_FALSE(*early);
+    const bool early = must(scene->recordCompaction(commands, frames.frame()));
+    EXPECT_FALSE(early);
     EXPECT_TRUE(renderer->record(commands, frame_));
     frames.submit();
     frames.drain();
@@ -329,14 +329,13 @@ TEST(RecordedEngineScene, NothingWaitsAndStagingMemoryReturns) {
         const std::array<std::array<float, 12>, 1> instances{{{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}}};
         EngineSceneView view;
         view.instances = instances;
-        auto scene = EngineScene::record(sharedContext(), source.loaded->package(), view, frames.begin(),
-                                         frames.frame());
-        ASSERT_TRUE(scene.ok()) << toString(scene.error());
+        auto scene = must(EngineScene::record(sharedContext(), source.loaded->package(), view, frames.begin(),
+                                              frames.frame()));
         EXPECT_EQ(watch.waits + watch.submissions, 0);
         frames.submit();
         const std::uint64_t most = watch.bytes;
         frames.drain();
-        (*scene)->complete(frames.completed());
+        scene->complete(frames.completed());
         EXPECT_LT(watch.bytes, most);
     }
     EXPECT_EQ(watch.bytes, 0U);
@@ -352,18 +351,17 @@ TEST(RecordedEngineScene, PreviousTransformsFollowTheOrigin) {
     const std::array<std::array<float, 12>, 1> there{{{1, 0, 0, 4, 0, 1, 0, 0, 0, 0, 1, 0}}};
     EngineSceneView view;
     view.instances = here;
-    auto scene =
-        EngineScene::record(sharedContext(), source.loaded->package(), view, frames.begin(), frames.frame());
-    ASSERT_TRUE(scene.ok()) << toString(scene.error());
+    auto scene = must(
+        EngineScene::record(sharedContext(), source.loaded->package(), view, frames.begin(), frames.frame()));
     frames.submit();
     using State = EngineScene::State;
     const auto previous = [&] {
-        return (*scene)->state().arrays[State::PreviousInstances].store.read<gpu::InstanceRecord>(0);
+        return scene->state().arrays[State::PreviousInstances].store.read<gpu::InstanceRecord>(0);
     };
-    EXPECT_TRUE((*scene)->update(frames.begin(), there, {}, frames.frame()));
+    EXPECT_TRUE(scene->update(frames.begin(), there, {}, frames.frame()));
     frames.submit();
     EXPECT_EQ(previous().objectToWorld[0].w, 3.0F);
-    EXPECT_TRUE((*scene)->update(frames.begin(), here, {}, frames.frame(), {1e6, 0.0, -4.0}));
+    EXPECT_TRUE(scene->update(frames.begin(), here, {}, frames.frame(), {1e6, 0.0, -4.0}));
     frames.submit();
     frames.drain();
     EXPECT_EQ(previous().objectToWorld[0].w, 4.0F - 1e6F);

@@ -6,6 +6,7 @@
 #include "render/scene_builder.h"
 #include "render/ways.h"
 #include "scene/gpu_scene_state.h"
+#include "support/must.h"
 
 #include <glint/measure/views.h>
 
@@ -152,13 +153,12 @@ TEST(Views, FindWhatIsNotANumber) {
     shown.render();
     measure::ViewInput input;
     input.package = &shown.package();
-    const Result<measure::View> view =
-        measure::makeView(*measure::parseView("non-finite"), shown.renderer(), input);
-    ASSERT_TRUE(view.ok()) << toString(view.error());
-    EXPECT_EQ(pixelsOf(*view, "not a number"), 128U);
-    EXPECT_EQ(pixelsOf(*view, "finite"), 128U);
+    const measure::View view =
+        must(measure::makeView(*measure::parseView("non-finite"), shown.renderer(), input));
+    EXPECT_EQ(pixelsOf(view, "not a number"), 128U);
+    EXPECT_EQ(pixelsOf(view, "finite"), 128U);
     for (std::size_t i = 0; i < 16 * 16; ++i) {
-        EXPECT_EQ(view->picture.pixels[i] == view->picture.pixels[15], i % 16 >= 8) << i;
+        EXPECT_EQ(view.picture.pixels[i] == view.picture.pixels[15], i % 16 >= 8) << i;
     }
 }
 
@@ -192,12 +192,11 @@ void expectRightHalf(const gltf::Scene& scene, const LoadedScene& loaded, GpuSce
     ASSERT_TRUE(renderer->render(defaultSetup(scene, 16, 16).frame, 1).ok());
     measure::ViewInput input;
     input.package = &loaded.package();
-    const Result<measure::View> view = measure::makeView(*measure::parseView("fallback"), *renderer, input);
-    ASSERT_TRUE(view.ok()) << toString(view.error());
-    EXPECT_EQ(pixelsOf(*view, category), 128U);
-    EXPECT_EQ(pixelsOf(*view, "has a case"), 128U);
+    const measure::View view = must(measure::makeView(*measure::parseView("fallback"), *renderer, input));
+    EXPECT_EQ(pixelsOf(view, category), 128U);
+    EXPECT_EQ(pixelsOf(view, "has a case"), 128U);
     for (std::size_t i = 0; i < 16 * 16; ++i) {
-        EXPECT_EQ(view->picture.pixels[i] == view->picture.pixels[15], i % 16 >= 8) << i;
+        EXPECT_EQ(view.picture.pixels[i] == view.picture.pixels[15], i % 16 >= 8) << i;
     }
     expectNoValidationMessages();
 }
@@ -222,11 +221,9 @@ TEST(Views, FindHitsOfTheFallback) {
     const session::MaterialSourceData source = session::makeMaterialSource(
         loaded.package(), session::recordLayoutOf(loaded.package(), both.model()), scene, both,
         session::uploadedTextures(editor, loaded.package().scene(0), scene));
-    const Result<MaterialHandle> added = editor.addMaterial(source.view());
-    ASSERT_TRUE(added.ok()) << toString(added.error());
-    const Result<EditReport> set = editor.setInstanceMaterial(editor.instance(1), 0, *added);
-    ASSERT_TRUE(set.ok()) << toString(set.error());
-    EXPECT_EQ(set->missing.size(), 1U);
+    const MaterialHandle added = must(editor.addMaterial(source.view()));
+    const EditReport set = must(editor.setInstanceMaterial(editor.instance(1), 0, added));
+    EXPECT_EQ(set.missing.size(), 1U);
     TwoFrames frames(sharedContext());
     ASSERT_TRUE(editor.record(frames.begin(), frames.frame()).ok());
     frames.submit();
@@ -266,11 +263,10 @@ TEST(Views, CostNeedsNoRays) {
     shown.render();
     measure::ViewInput input;
     input.package = &shown.package();
-    const Result<measure::View> view = measure::makeView(cost, shown.renderer(), input);
-    ASSERT_TRUE(view.ok()) << toString(view.error());
-    EXPECT_EQ(view->statistics.numbers, 256U);
-    EXPECT_LT(view->statistics.least, view->statistics.greatest) << "the coat costs more";
-    EXPECT_NEAR(view->statistics.mean, (view->statistics.least + view->statistics.greatest) / 2.0, 1e-6);
+    const measure::View view = must(measure::makeView(cost, shown.renderer(), input));
+    EXPECT_EQ(view.statistics.numbers, 256U);
+    EXPECT_LT(view.statistics.least, view.statistics.greatest) << "the coat costs more";
+    EXPECT_NEAR(view.statistics.mean, (view.statistics.least + view.statistics.greatest) / 2.0, 1e-6);
 }
 
 TEST(Views, EveryStrategyGivesTheSame) {
@@ -327,14 +323,13 @@ TEST(Views, AreMadeOfARenderersLayers) {
     shown.render();
     measure::ViewInput input;
     input.package = &shown.package();
-    const Result<measure::View> view = measure::makeView(choice, shown.renderer(), input);
-    ASSERT_TRUE(view.ok()) << toString(view.error());
+    const measure::View view = must(measure::makeView(choice, shown.renderer(), input));
     std::uint64_t pixels = 0;
-    for (const measure::ViewStatistics::Category& one : view->statistics.categories) {
+    for (const measure::ViewStatistics::Category& one : view.statistics.categories) {
         pixels += one.pixels;
     }
     EXPECT_EQ(pixels, 32U * 18U);
-    EXPECT_EQ(view->picture.pixels.size(), 32U * 18U);
+    EXPECT_EQ(view.picture.pixels.size(), 32U * 18U);
 
     const auto missing = measure::makeView(*measure::parseView("rays"), shown.renderer(), input);
     ASSERT_FALSE(missing.ok());

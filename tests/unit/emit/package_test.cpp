@@ -2,6 +2,7 @@
 #include "emit/modules.h"
 #include "spirv/reader.h"
 #include "support/features.h"
+#include "support/must.h"
 #include "unit/emit/sample_scene.h"
 
 #include <gtest/gtest.h>
@@ -332,11 +333,10 @@ TEST(CompilePackage, EmitsTheGlslThatItCompiled) {
                 source.functionsApart.push_back("shade" + shaderCase.name);
             }
         }
-        const auto again = compileShader(source, {});
-        ASSERT_TRUE(again) << toString(again.error());
+        const auto again = must(compileShader(source, {}));
         if (hasSwitch) {
             // Parts know more about themselves than the whole, so the words differ, but not what they do.
-            const auto counts = compiler::measureSpirv(*again);
+            const auto counts = compiler::measureSpirv(again);
             ASSERT_TRUE(counts);
             EXPECT_EQ(counts->textureFetches, module.statistics.textureFetches);
             EXPECT_EQ(counts->rayQueries, module.statistics.rayQueries);
@@ -345,7 +345,7 @@ TEST(CompilePackage, EmitsTheGlslThatItCompiled) {
             EXPECT_LE(module.statistics.bytes, counts->bytes + counts->bytes / 8);
             continue;
         }
-        EXPECT_EQ(*again, module.spirv) << module.name;
+        EXPECT_EQ(again, module.spirv) << module.name;
     }
 }
 
@@ -423,9 +423,8 @@ TEST(Manifest, HoldsTheSettingsAndTheVariant) {
     settings.energyCompensation = false;
     settings.textureLod = compiler::TextureLod::Mip0;
     settings.precision = package::ShadingPrecision::Half;
-    const auto package = compilePackage(scene, settings, &sharedModules());
-    ASSERT_TRUE(package) << toString(package.error());
-    const nlohmann::json other = manifestOf(*package);
+    const auto package = must(compilePackage(scene, settings, &sharedModules()));
+    const nlohmann::json other = manifestOf(package);
     EXPECT_EQ(other["settings"]["hitLobes"], (nlohmann::json{"unlit", "ior"}));
     EXPECT_EQ(other["settings"]["lights"], 4);
     EXPECT_EQ(other["settings"]["energyCompensation"], false);
@@ -440,9 +439,8 @@ TEST(Manifest, HoldsTheSettingsAndTheVariant) {
 TEST(Manifest, TakesNamesThatAreNotUtf8) {
     gltf::Scene scene = makeSampleScene();
     scene.materials[0].name = "\xFF\xC0";
-    const auto package = compiler::compilePackage(scene, {}, &sharedModules());
-    ASSERT_TRUE(package) << toString(package.error());
-    EXPECT_FALSE(manifestOf(*package).empty());
+    const auto package = must(compiler::compilePackage(scene, {}, &sharedModules()));
+    EXPECT_FALSE(manifestOf(package).empty());
 }
 
 }  // namespace

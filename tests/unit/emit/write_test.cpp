@@ -1,5 +1,6 @@
 #include "emit/package/compiled_package.h"
 #include "emit/package/manifest.h"
+#include "support/must.h"
 #include "unit/emit/sample_scene.h"
 #include "unit/emit/text_package.h"
 
@@ -70,8 +71,7 @@ TEST_F(WritePackage, KeepsWhatUsersPutBesideIt) {
     std::ofstream(folder_ / "notes/mine.txt") << "mine";
     std::ofstream(folder_ / "build.d") << "depends";
     fs::create_symlink("build.d", folder_ / "link.d");
-    const Status status = writePackage(second_, folder_);
-    ASSERT_TRUE(status) << toString(status.error());
+    must(writePackage(second_, folder_));
     const auto contents = readFolder(folder_);
     EXPECT_EQ(contents.at("notes/mine.txt"), "mine");
     EXPECT_EQ(contents.at("build.d"), "depends");
@@ -98,8 +98,7 @@ TEST_F(WritePackage, ReplacesAPackageWhoseManifestIsLost) {
     fs::create_directories(damaged);
     std::ofstream(damaged / "tables.bin") << "GLINTPKG and more";
     std::ofstream(damaged / "manifest.json") << "{ cut";
-    const Status status = writePackage(second_, damaged);
-    ASSERT_TRUE(status) << toString(status.error());
+    must(writePackage(second_, damaged));
     EXPECT_EQ(readFolder(damaged).at("tables.bin"), "two");
 }
 
@@ -196,8 +195,7 @@ TEST(WriteCompiled, WritesWhatWasCompiled) {
     compiler::CompileSettings settings;
     settings.emitGlsl = true;
     const compiler::CompiledPackage package = compileSample(settings);
-    const Status status = writePackage(package, temporary.path() / "out");
-    ASSERT_TRUE(status) << toString(status.error());
+    must(writePackage(package, temporary.path() / "out"));
     const auto contents = readFolder(temporary.path() / "out");
     EXPECT_EQ(contents.size(), package.files.size());
     for (const compiler::PackageFile& file : package.files) {

@@ -1,6 +1,7 @@
 // Attributes of vertices that packs declare.
 #include "materials/declarations.h"
 #include "plan/plan.h"
+#include "support/must.h"
 #include "unit/gltf/only_primitive.h"
 
 #include <gtest/gtest.h>
@@ -96,15 +97,14 @@ TEST(DeclaredAttributes, DecideAboutKeys) {
     builder.root["materials"] = {{{"extensions", {{"TEST_wear", Json::object()}}}}};
     builder.root["extensionsUsed"] = {"TEST_wear"};
     triangle["material"] = 0;
-    const Result<gltf::Scene> scene = import(builder, withWear());
-    ASSERT_TRUE(scene) << toString(scene.error());
+    const gltf::Scene scene = must(import(builder, withWear()));
     const materials::FeatureMask wear = modelWithWear().mask("wear");
     const auto key = [&](std::uint64_t attributes,
                          std::vector<std::pair<std::string, std::string>>* dropped) {
-        materials::PrimitiveInputs inputs = planningInputs(*scene).front();
+        materials::PrimitiveInputs inputs = planningInputs(scene).front();
         EXPECT_EQ(inputs.attributes, 1U);
         inputs.attributes = attributes;
-        return compiler::makeKey(scene->materials[0], inputs, {}, dropped) & wear;
+        return compiler::makeKey(scene.materials[0], inputs, {}, dropped) & wear;
     };
     EXPECT_NE(key(3, nullptr), 0U);
     std::vector<std::pair<std::string, std::string>> dropped;

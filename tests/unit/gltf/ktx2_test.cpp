@@ -3,6 +3,7 @@
 #include "gltf/codecs/basisu.h"
 #include "gltf/codecs/block_file.h"
 #include "gltf/codecs/codecs.h"
+#include "support/must.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -130,9 +131,8 @@ TEST_F(GltfKtx2, MayLieAnywhereInABuffer) {
         GltfBuilder builder = basisuScene(bytes);
         builder.root["bufferViews"][0]["byteOffset"] = padding;
         builder.buffer.insert(builder.buffer.begin(), padding, std::uint8_t{0});
-        const Result<gltf::Scene> scene = import(builder, kDecodeKtx2);
-        ASSERT_TRUE(scene.ok()) << toString(scene.error());
-        EXPECT_TRUE(isNear(pixelAt(scene->images[0], 0, 1, 1), {200, 24, 24, 255}, 3));
+        const gltf::Scene scene = must(import(builder, kDecodeKtx2));
+        EXPECT_TRUE(isNear(pixelAt(scene.images[0], 0, 1, 1), {200, 24, 24, 255}, 3));
     }
 }
 
@@ -158,11 +158,10 @@ TEST_F(GltfKtx2, IsPreferredToItsFallback) {
     GltfBuilder builder = basisuScene(readKtx2File("etc1s"));
     builder.append("images", {{"uri", std::string("data:image/png;base64,") + kPng8}});
     builder.root["textures"][0]["source"] = 1;
-    const Result<gltf::Scene> scene = import(builder, kDecodeKtx2);
-    ASSERT_TRUE(scene.ok()) << toString(scene.error());
-    ASSERT_EQ(scene->images.size(), 1U);
-    EXPECT_EQ(scene->images[0].pointer, "/images/0");
-    EXPECT_TRUE(readingWarnings(*scene).empty());
+    const gltf::Scene scene = must(import(builder, kDecodeKtx2));
+    ASSERT_EQ(scene.images.size(), 1U);
+    EXPECT_EQ(scene.images[0].pointer, "/images/0");
+    EXPECT_TRUE(readingWarnings(scene).empty());
 }
 
 // Damaged pixels behind a valid header are decoded or refused. The memory stays intact, which builds with
@@ -351,12 +350,11 @@ TEST(GltfBasisu, WithoutTranscoderFallsBackOrIsAnError) {
     expectError();
 
     builder.root.erase("extensionsRequired");
-    const Result<gltf::Scene> fallback = import(builder, kDecodeKtx2);
-    ASSERT_TRUE(fallback.ok()) << toString(fallback.error());
-    ASSERT_EQ(fallback->images.size(), 1U);
-    EXPECT_EQ(fallback->images[0].pointer, "/images/1");
-    ASSERT_EQ(countWarnings(*fallback, "texture-basisu"), 1U);
-    EXPECT_EQ(findWarning(*fallback, "texture-basisu").severity, Severity::Note);
+    const gltf::Scene fallback = must(import(builder, kDecodeKtx2));
+    ASSERT_EQ(fallback.images.size(), 1U);
+    EXPECT_EQ(fallback.images[0].pointer, "/images/1");
+    ASSERT_EQ(countWarnings(fallback, "texture-basisu"), 1U);
+    EXPECT_EQ(findWarning(fallback, "texture-basisu").severity, Severity::Note);
 }
 
 TEST(GltfBasisu, ExplainsKtxInTheGuiseOfPng) {

@@ -1,5 +1,6 @@
 // Tests KHR_materials_*: factors with their ranges, textures slot by slot, and which extension takes
 // precedence.
+#include "support/must.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -336,9 +337,8 @@ TEST(GltfMaterialExtensions, MayBeRequired) {
         GltfBuilder builder = withMaterial(Json::object());
         builder.root["extensionsRequired"] = {std::string("KHR_materials_") + name};
         builder.root["extensionsUsed"] = builder.root["extensionsRequired"];
-        const Result<gltf::Scene> scene = import(builder);
-        ASSERT_TRUE(scene.ok()) << toString(scene.error());
-        EXPECT_TRUE(readingWarnings(*scene).empty()) << name;
+        const gltf::Scene scene = must(import(builder));
+        EXPECT_TRUE(readingWarnings(scene).empty()) << name;
     }
 }
 

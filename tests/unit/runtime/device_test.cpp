@@ -5,6 +5,7 @@
 #include "host_device.h"
 #include "interop/scene.h"
 #include "scene/scene_store.h"
+#include "support/must.h"
 
 #include <functional>
 #include <limits>
@@ -40,12 +41,10 @@ TEST_F(ContextTest, MemoryThatTheHostReachesIsMapped) {
     Context::State& state = context().state();
     MemoryPool pool(state);
     const VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-    const auto device = createBuffer(state, pool, 256, usage);
-    ASSERT_TRUE(device) << toString(device.error());
+    const auto device = must(createBuffer(state, pool, 256, usage));
     for (const MemoryUse use : {MemoryUse::Upload, MemoryUse::Readback}) {
-        const auto buffer = createBuffer(state, pool, 256, usage, use);
-        ASSERT_TRUE(buffer) << toString(buffer.error());
-        EXPECT_NE(buffer->mapped, nullptr);
+        const auto buffer = must(createBuffer(state, pool, 256, usage, use));
+        EXPECT_NE(buffer.mapped, nullptr);
     }
 }
 
@@ -141,20 +140,16 @@ TEST_P(AdoptedContextTest, RendersAndTheDeviceOutlivesIt) {
     for (const bool debugUtils : {false, true}) {
         DeviceHandles handles = host.handles();
         handles.debugUtils = debugUtils && host.handles().debugUtils;
-        auto adopted = Context::adopt(handles);
-        ASSERT_TRUE(adopted) << toString(adopted.error());
-        EXPECT_EQ((*adopted)->handles().device, host.handles().device);
-        EXPECT_TRUE((*adopted)->validationMessages().empty());
-        auto uploaded = GpuScene::upload(**adopted, package, scene.view());
-        ASSERT_TRUE(uploaded) << toString(uploaded.error());
+        auto adopted = must(Context::adopt(handles));
+        EXPECT_EQ(adopted->handles().device, host.handles().device);
+        EXPECT_TRUE(adopted->validationMessages().empty());
+        auto uploaded = must(GpuScene::upload(*adopted, package, scene.view()));
         auto renderer =
-            Renderer::create(**adopted, package, **uploaded, {package::kStrategyVisibility, 16, 16});
-        ASSERT_TRUE(renderer) << toString(renderer.error());
+            must(Renderer::create(*adopted, package, *uploaded, {package::kStrategyVisibility, 16, 16}));
         FrameOptions frame;
         frame.camera = test::makeCamera(1.0F);
-        const auto image = (*renderer)->render(frame);
-        ASSERT_TRUE(image) << toString(image.error());
-        EXPECT_EQ(image->pixels[8 * 16 + 8][0], 1.0F);
+        const auto image = must(renderer->render(frame));
+        EXPECT_EQ(image.pixels[8 * 16 + 8][0], 1.0F);
     }
     EXPECT_NE(upload(package, scene), nullptr);
     // The layers also report objects of a context that still exist when the device is destroyed.

@@ -2,6 +2,7 @@
 #include "sample_maps.h"
 #include "sky/map_filter.h"
 #include "sky/radiance_map.h"
+#include "support/must.h"
 
 #include <gtest/gtest.h>
 
@@ -38,10 +39,9 @@ TEST(MapCheck, TakesNegativeRadianceAsNone) {
     LinearImage image = imageOf(4, 2);
     image.pixels[3] = {-1.0F, 2.0F, -3.0F, 1.0F};
     image.pixels[6][2] = -0.5F;
-    const Result<CheckedMap> checked = checkMap(image);
-    ASSERT_TRUE(checked);
-    EXPECT_EQ(checked->negativePixels, 2U);
-    EXPECT_EQ(checked->map.texels[3], (Radiance{0.0F, 2.0F, 0.0F}));
+    const CheckedMap checked = must(checkMap(image));
+    EXPECT_EQ(checked.negativePixels, 2U);
+    EXPECT_EQ(checked.map.texels[3], (Radiance{0.0F, 2.0F, 0.0F}));
 }
 
 TEST(MapCheck, WantsEveryPixel) {

@@ -2,6 +2,7 @@
 #include "device_fixture.h"
 #include "frame/motion_history.h"
 #include "renderer/renderer.h"
+#include "support/must.h"
 #include "vulkan_hooks.h"
 
 #include <glint/environment.h>
@@ -76,9 +77,8 @@ TEST_F(InFlight, OutgrownHistoryIsFreed) {
     TestScene scene = test::squareScene();
     SceneView view = scene.view();
     view.moves = true;
-    const auto uploaded = GpuScene::upload(context(), package, view);
-    ASSERT_TRUE(uploaded) << toString(uploaded.error());
-    GpuScene::State& state = (*uploaded)->state();
+    const auto uploaded = must(GpuScene::upload(context(), package, view));
+    GpuScene::State& state = uploaded->state();
     const auto history = MotionHistory::create(state);
     ASSERT_TRUE(history);
     Buffer few;

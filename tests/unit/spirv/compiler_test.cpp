@@ -3,6 +3,7 @@
 #include "spirv/optimize.h"
 #include "spirv/reader.h"
 #include "spirv/statistics.h"
+#include "support/must.h"
 
 #include <glint/internal/package_modules.h>
 
@@ -56,9 +57,8 @@ std::string computeShader(const std::string& body) {
 
 TEST(CompileShader, FoldsDecidedFeaturesAway) {
     const auto words =
-        compiler::compileShader({"three.comp", compiler::ShaderStage::Compute, kThreeCases}, {});
-    ASSERT_TRUE(words) << toString(words.error());
-    const auto statistics = compiler::measureSpirv(*words);
+        must(compiler::compileShader({"three.comp", compiler::ShaderStage::Compute, kThreeCases}, {}));
+    const auto statistics = compiler::measureSpirv(words);
     ASSERT_TRUE(statistics);
     EXPECT_EQ(statistics->textureFetches, 4U);
     // There is one branch on the mask, for the feature that some keys have.
@@ -193,9 +193,8 @@ TEST(CompileShader, LeavesPayloadsWhole) {
 
 TEST(CompileShader, MakesSpirv15) {
     const auto words =
-        compiler::compileShader({"a.comp", compiler::ShaderStage::Compute, computeShader("")}, {});
-    ASSERT_TRUE(words) << toString(words.error());
-    EXPECT_EQ(words->at(1), 0x00010500U);
+        must(compiler::compileShader({"a.comp", compiler::ShaderStage::Compute, computeShader("")}, {}));
+    EXPECT_EQ(words.at(1), 0x00010500U);
 }
 
 TEST(CompileShader, NamesFileAndLineOfAnError) {
@@ -220,10 +219,9 @@ TEST(CompileShader, ReportsLinkErrors) {
 
 TEST(CompileShader, KeepsNamesForDebugInfoOnly) {
     for (const bool debugInfo : {false, true}) {
-        const auto words = compiler::compileShader(
-            {"three.comp", compiler::ShaderStage::Compute, kThreeCases}, {.debugInfo = debugInfo});
-        ASSERT_TRUE(words) << toString(words.error());
-        const auto text = compiler::disassemble(*words);
+        const auto words = must(compiler::compileShader(
+            {"three.comp", compiler::ShaderStage::Compute, kThreeCases}, {.debugInfo = debugInfo}));
+        const auto text = compiler::disassemble(words);
         ASSERT_TRUE(text);
         EXPECT_EQ(text->find("OpMemberName") != std::string::npos, debugInfo);
     }
@@ -313,14 +311,13 @@ TEST(WideLoads, LeaveWhatIsApartOrMayHaveChanged) {
 
 // glslang takes the alignment of the words that the address points to.
 TEST(CompileShader, LoadsAddressesWithTheirAlignment) {
-    const auto words = compiler::compileShader(
+    const auto words = must(compiler::compileShader(
         {"records.comp", compiler::ShaderStage::Compute,
          kRecords + std::string("pushed.results.data[i] = pushed.records.data[i].words.data[0]; }\n")},
-        {});
-    ASSERT_TRUE(words) << toString(words.error());
+        {}));
     std::set<std::uint32_t> pointers;
     std::vector<std::uint32_t> alignments;
-    ASSERT_TRUE(compiler::visitSpirv(*words, [&](const compiler::SpirvInstruction& it) {
+    ASSERT_TRUE(compiler::visitSpirv(words, [&](const compiler::SpirvInstruction& it) {
         if (it.opcode == spv::OpTypePointer) {
             pointers.insert(it.operands[0]);
         } else if (it.opcode == spv::OpLoad && it.operands.size() == 5 && pointers.contains(it.operands[0])) {
@@ -359,9 +356,8 @@ TEST(WideLoads, JoinInTheLastBlock) {
             Record r = pushed.from.data[gl_GlobalInvocationID.x];
             results.sums[gl_GlobalInvocationID.x] = r.place.x + r.size;
         })";
-    const auto words = compiler::compileShader({"last.comp", compiler::ShaderStage::Compute, glsl}, {});
-    ASSERT_TRUE(words) << toString(words.error());
-    const Status valid = compiler::validateSpirv(*words, "last.comp");
+    const auto words = must(compiler::compileShader({"last.comp", compiler::ShaderStage::Compute, glsl}, {}));
+    const Status valid = compiler::validateSpirv(words, "last.comp");
     EXPECT_TRUE(valid) << toString(valid.error());
 }
 

@@ -1,5 +1,6 @@
 #include "spirv/lint.h"
 
+#include "support/must.h"
 #include "unit/spirv/lint_shaders.h"
 
 #include <gtest/gtest.h>
@@ -58,20 +59,18 @@ TEST(LintPipelines, MeasuresPayloads) {
 }
 
 TEST(Lint, CountsAndNamesStages) {
-    const Result<compiler::SpirvLint> lint =
-        compiler::lintSpirv(compileQuery(functionsWith("t"), {"isVisible"}));
-    ASSERT_TRUE(lint);
-    EXPECT_EQ(lint->stages, std::vector<std::string>{"GLCompute"});
-    EXPECT_EQ(lint->statistics.functions, 2U);
-    EXPECT_EQ(lint->statistics.rayQueries, 2U);
-    EXPECT_EQ(lint->statistics.traces, 0U);
-    const Result<compiler::SpirvLint> traces = compiler::lintSpirv(compile(
+    const compiler::SpirvLint lint =
+        must(compiler::lintSpirv(compileQuery(functionsWith("t"), {"isVisible"})));
+    EXPECT_EQ(lint.stages, std::vector<std::string>{"GLCompute"});
+    EXPECT_EQ(lint.statistics.functions, 2U);
+    EXPECT_EQ(lint.statistics.rayQueries, 2U);
+    EXPECT_EQ(lint.statistics.traces, 0U);
+    const compiler::SpirvLint traces = must(compiler::lintSpirv(compile(
         compiler::ShaderStage::RayGeneration, std::string(kTraceHead) +
                                                   "layout(location = 0) rayPayloadEXT vec4 payload;\n"
-                                                  "void main() { payload = vec4(0); TRACE(0); TRACE(0); }"));
-    ASSERT_TRUE(traces);
-    EXPECT_EQ(traces->stages, std::vector<std::string>{"RayGenerationKHR"});
-    EXPECT_EQ(traces->statistics.traces, 2U);
+                                                  "void main() { payload = vec4(0); TRACE(0); TRACE(0); }")));
+    EXPECT_EQ(traces.stages, std::vector<std::string>{"RayGenerationKHR"});
+    EXPECT_EQ(traces.statistics.traces, 2U);
 }
 
 TEST(Lint, ReportsWhatIsNotValid) {
