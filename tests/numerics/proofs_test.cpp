@@ -24,11 +24,7 @@ namespace {
 using verify::Interval;
 
 const std::vector<verify::Program>& programs() {
-    static const std::vector<verify::Program> kPrograms = [] {
-        Result<std::vector<verify::Program>> made = compileProofs(allProofs());
-        EXPECT_TRUE(made) << (made ? "" : toString(made.error()));
-        return made ? std::move(*made) : std::vector<verify::Program>{};
-    }();
+    static const std::vector<verify::Program> kPrograms = [] { return must(compileProofs(allProofs())); }();
     return kPrograms;
 }
 

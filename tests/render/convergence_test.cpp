@@ -74,7 +74,6 @@ protected:
 // The slope of error over samples, log over log, is -0.5 for independent samples. The scrambled sequence is
 // steeper where the function that it samples is smooth.
 TEST_F(Convergence, ErrorFallsWithTheRootOfTheSamples) {
-    ASSERT_TRUE(loaded_->ok());
     const LinearImage reference = render(package::kStrategyUber, 4096, 1);
     ASSERT_FALSE(reference.pixels.empty());
     double sumX = 0.0;
@@ -110,7 +109,6 @@ TEST_F(Convergence, StrategiesHaveTheSameMean) {
     if (!test::nightly()) {
         GTEST_SKIP() << "GLINT_NIGHTLY is not set";
     }
-    ASSERT_TRUE(loaded_->ok());
     constexpr int kSeeds = 12;
     struct Estimate {
         double mean = 0.0;

@@ -76,9 +76,8 @@ compiler::CompileSettings librarySettings() {
 }
 
 std::string textAt(const std::string& path) {
-    const Result<base::Bytes> bytes = base::readFile(path);
-    EXPECT_TRUE(bytes) << toString(bytes.error());
-    return bytes ? std::string(bytes->begin(), bytes->end()) : std::string();
+    const base::Bytes bytes = must(base::readFile(path));
+    return std::string(bytes.begin(), bytes.end());
 }
 
 // The functions of each case. If they are inlined, compiling takes several times as long.
@@ -98,7 +97,6 @@ std::vector<std::string> functionsOfCases(const compiler::Plan& plan) {
 class Library : public ::testing::Test {
 protected:
     void SetUp() override {
-        ASSERT_TRUE(loaded_.ok());
         compiler::CompileSettings settings = librarySettings();
         settings.emitLibrary = true;
         settings.emitLinkable = true;
@@ -152,24 +150,18 @@ protected:
             ADD_FAILURE() << toString(words.error());
             return {};
         }
-        Result<std::unique_ptr<HitKernel>> kernel = HitKernel::create(loaded_, *words);
-        if (!kernel) {
-            ADD_FAILURE() << toString(kernel.error());
-            return {};
-        }
+        std::unique_ptr<HitKernel> kernel = must(HitKernel::create(loaded_, *words));
         gpu::FrameConstants constants{};
         constants.seed = 7;
         constants.skyZenith = sky_[0];
         constants.skyHorizon = sky_[1];
         constants.skyGround = sky_[2];
-        const Result<std::vector<std::uint32_t>> output =
-            (*kernel)->run(constants, {}, hits(), hits() * perHit);
+        const Result<std::vector<std::uint32_t>> output = kernel->run(constants, {}, hits(), hits() * perHit);
         EXPECT_TRUE(output) << toString(output.error());
         std::vector<float> values(output ? output->size() : 0);
         if (output) {
             std::memcpy(values.data(), output->data(), values.size() * sizeof(float));
         }
-        expectNoValidationMessages();
         return values;
     }
 
@@ -361,11 +353,8 @@ TEST(Host, OfAnotherVertexLayoutGivesTheSamePicture) {
     const LoadedScene own(packsScene(), settings);
     settings.host = GLINT_SOURCE_DIR "/tests/render/host";
     const LoadedScene other(packsScene(), settings);
-    ASSERT_TRUE(own.ok());
-    ASSERT_TRUE(other.ok());
     const LinearImage reference = own.render(package::kStrategyUber, setup);
     expectSameImage(other.render(package::kStrategyUber, setup), reference, "host");
-    expectNoValidationMessages();
     // It is not the same shader.
     for (std::size_t i = 0; i < own.compiled().modules.size(); ++i) {
         const compiler::CompiledModule& module = own.compiled().modules[i];

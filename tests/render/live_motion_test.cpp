@@ -181,7 +181,6 @@ public:
         const auto renderer = makeRenderer(package(), *fresh, options());
         ASSERT_NE(renderer, nullptr);
         EXPECT_EQ(image.pixels, drawn(*renderer, frame_).pixels) << what;
-        expectNoValidationMessages();
     }
     // Removes what was added.
     void clear() {
@@ -192,9 +191,7 @@ public:
         }
     }
     std::optional<SurfacePlace> placeAt(std::uint32_t x, std::uint32_t y) {
-        const auto place = renderer_->readPlace(x, y);
-        EXPECT_TRUE(place);
-        return place ? *place : std::nullopt;
+        return must(renderer_->readPlace(x, y));
     }
     InstanceHandle handleOf(std::size_t uploaded) const {
         return instances_[uploaded].handle;

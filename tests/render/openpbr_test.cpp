@@ -422,7 +422,6 @@ TEST(OpenPbr, AMediumAbsorbsOverTheWay) {
     for (std::size_t k = 0; k < 3; ++k) {
         EXPECT_NEAR(middle[k], std::pow(colors[k], 1.5), 2e-3);  // three metres of a depth of two
     }
-    expectNoValidationMessages();
 }
 
 // Rays of primary surfaces follow the samples of a model that has any: a mirror shows what is above it.
@@ -446,7 +445,6 @@ TEST(OpenPbr, PrimarySurfacesFollowTheirOwnSamples) {
     for (const compiler::SkyLight skyLight : {compiler::SkyLight::Off, compiler::SkyLight::On}) {
         EXPECT_NEAR(meanOf(underSky(rough, {kWhiteSky, skyLight})), 1.0, 0.02) << static_cast<int>(skyLight);
     }
-    expectNoValidationMessages();
 }
 
 // A lamp's triangles are lights, and what has no luminance is none.

@@ -193,7 +193,6 @@ public:
         const Status updated = loaded_->gpuScene().updateAndWait(data_.motion());
         EXPECT_TRUE(updated.ok()) << toString(updated.error());
         LinearImage image = drawn(*renderer_, frameOf(moved), kSamples);
-        expectNoValidationMessages();
         return image;
     }
 

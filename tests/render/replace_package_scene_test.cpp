@@ -64,7 +64,6 @@ TEST_F(ReplacePackageScene, ErrorsKeepThePackageBefore) {
     expectError(packageOf(before_, map), "package-frame");
     expectEqualImage(draw(*renderer), old, "after errors");
     EXPECT_EQ(renderer->replacementProgress().inUse, 0U);
-    expectNoValidationMessages();
 }
 
 // A package with a fallback knows other features of what emits light, because lamps may be added. The scene's
@@ -88,7 +87,6 @@ TEST_F(ReplacePackageScene, AFallbackLeavesEmissiveTrianglesAsTheyAre) {
     ASSERT_NE(renderer, nullptr);
     const Result<Renderer::Replacement> replaced = renderer->replacePackage(extended);
     EXPECT_TRUE(replaced) << toString(replaced.error());
-    expectNoValidationMessages();
 }
 
 // A masked leaf whose left half is opaque, above a mirror: without rays nothing is tested. UVs keep clear of
@@ -160,7 +158,6 @@ TEST_F(ReplacePackageScene, TheAlphaOfDecidedTrianglesStays) {
                 << edit.what << ": " << toString(replaced.error());
         }
     }
-    expectNoValidationMessages();
 }
 
 // Materials that no edit has touched are those of the new package, also where they need an alpha test or are
@@ -184,7 +181,6 @@ TEST_F(ReplacePackageScene, AnEditableSceneTakesThePackagesMaterials) {
     expectEqualImage(draw(*renderer), fresh(changed, *extended, options), "the package's materials");
     ASSERT_TRUE(renderer->replacePackage(original));
     expectEqualImage(draw(*renderer), fresh(before_, *original, options), "the first package again");
-    expectNoValidationMessages();
 }
 
 // A material that an edit has replaced stays, if the package has a shader for it. Otherwise everything stays.
@@ -225,7 +221,6 @@ TEST_F(ReplacePackageScene, AnEditedMaterialNeedsAShader) {
     ASSERT_EQ(replaced.missing.size(), 1U);
     EXPECT_EQ(replaced.missing.front().material, editor.material(kGlossy));
     EXPECT_TRUE(differ(draw(*renderer), before)) << "the other wall has a sheen";
-    expectNoValidationMessages();
 }
 
 TEST_F(ReplacePackageScene, AllRenderersOfTheSceneSwitch) {
@@ -249,7 +244,6 @@ TEST_F(ReplacePackageScene, AllRenderersOfTheSceneSwitch) {
     const std::unique_ptr<Renderer> anew = makeRenderer(*extended, *scene, options);
     ASSERT_NE(anew, nullptr);
     expectEqualImage(draw(*anew), image, "made anew");
-    expectNoValidationMessages();
 }
 
 // Values that the host has given stay, also in longer records, and the material's other values are the new
@@ -276,7 +270,6 @@ TEST_F(ReplacePackageScene, ValuesOfTheHostStay) {
         ASSERT_TRUE(renderer->replacePackage(repainted));
         expectEqualImage(draw(*renderer), fresh(extendedRoom(), *wanted, options), "the host's colour");
     }
-    expectNoValidationMessages();
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "render/pixel_test.h"
 #include "render/scene_builder.h"
 #include "resolve/resolve.h"
+#include "support/must.h"
 #include "support/shared_modules.h"
 
 #include <glint/session/scene_view.h>
@@ -82,13 +83,8 @@ void expectEqualImage(const LinearImage& image, const LinearImage& reference, co
 
 std::shared_ptr<const Package> packageOf(const gltf::Scene& scene,
                                          const compiler::CompileSettings& settings) {
-    auto package =
-        session::compileAndLoad(*compiler::resolve(std::span(&scene, 1), settings), &sharedModules());
-    if (!package) {
-        ADD_FAILURE() << toString(package.error());
-        return nullptr;
-    }
-    return *package;
+    return must(
+        session::compileAndLoad(*compiler::resolve(std::span(&scene, 1), settings), &sharedModules()));
 }
 
 RendererOptions ReplacementTest::optionsOf(package::Strategy strategy,

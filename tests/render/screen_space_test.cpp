@@ -99,7 +99,6 @@ INSTANTIATE_TEST_SUITE_P(Steps, ScreenSpace, ::testing::Values(8U, 24U, kEveryPi
 TEST_P(ScreenSpace, TheFloorShowsBoxAndWall) {
     const gltf::Scene scene = roomWithBox();
     const LoadedScene loaded(scene, compiler::PlanOptions{});
-    ASSERT_TRUE(loaded.ok());
     const TracedFrame frame = traceFrame(loaded, package::kStrategyUber, withSteps(scene, GetParam()));
     ASSERT_FALSE(frame.image.pixels.empty());
     const struct {
@@ -121,7 +120,6 @@ TEST_P(ScreenSpace, TheFloorShowsBoxAndWall) {
 TEST_P(ScreenSpace, AgreesWithRays) {
     const gltf::Scene scene = roomWithBox();
     const LoadedScene loaded(scene, compiler::PlanOptions{});
-    ASSERT_TRUE(loaded.ok());
     RenderSetup setups[] = {withSteps(scene, GetParam()), withSteps(scene, GetParam())};
     // The view is from above with parallel rays; the floor fills the lower half.
     CameraView& camera = setups[1].frame.camera;
@@ -160,7 +158,6 @@ TEST_P(ScreenSpace, WhatIsHiddenIsLeftToRays) {
     addBox(scene, slab, {-0.8F, 0.45F, -3.2F}, {1.6F, 0.75F, 0.2F});
     addInstance(scene, addMesh(scene, makeQuad(panel, {-1, 1, -6}, {2, 0, 0}, {0, 1.2F, 0})));
     const LoadedScene loaded(scene, compiler::PlanOptions{});
-    ASSERT_TRUE(loaded.ok());
     for (const float thickness : {0.02F, 10.0F}) {
         RenderSetup setup = withSteps(scene, GetParam());
         setup.frame.screenThickness = thickness;
@@ -183,7 +180,6 @@ TEST_P(ScreenSpace, ASphereDoesNotReflectItself) {
         addInstance(scene, addMesh(scene, makeSphere(addMaterial(scene, mirrorMaterial()),
                                                      {0.1F, -0.2F, -2.0F}, 1.3F, rows)));
         const LoadedScene loaded(scene, compiler::PlanOptions{});
-        ASSERT_TRUE(loaded.ok());
         RenderSetup setup = withSteps(scene, GetParam());
         setup.frame.screenThickness = 1.0F;
         setup.samples = 3;
@@ -206,7 +202,6 @@ TEST_P(ScreenSpace, RaysStartWhereTheMarchEnds) {
     settings.hitRecord = package::HitRecordFormat::Packed;
     settings.maxBounces = 2;  // rays then keep their origins, as frames have one bounce
     const LoadedScene loaded(scene, settings);
-    ASSERT_TRUE(loaded.ok());
     RenderSetup setup = withSteps(scene, GetParam());
     const TracedFrame hybrid = traceFrame(loaded, package::kStrategyVisibility, setup);
     setup.frame.screenSteps = 0;
@@ -242,7 +237,6 @@ TEST_P(ScreenSpace, RaysStartWhereTheMarchEnds) {
 TEST(ScreenSpaceSamples, ConvergeToTheImageOfRays) {
     const gltf::Scene scene = roomWithBox();
     const LoadedScene loaded(scene, compiler::PlanOptions{});
-    ASSERT_TRUE(loaded.ok());
     RenderSetup setup = withSteps(scene, kEveryPixel);
     setup.samples = 16;
     const TracedFrame hybrid = traceFrame(loaded, package::kStrategyUber, setup);
@@ -261,7 +255,6 @@ TEST(ScreenSpaceSamples, ConvergeToTheImageOfRays) {
 TEST(ScreenSpaceSamples, NoThicknessMeansRays) {
     const gltf::Scene scene = roomWithBox();
     const LoadedScene loaded(scene, compiler::PlanOptions{});
-    ASSERT_TRUE(loaded.ok());
     RenderSetup setup = withSteps(scene, kEveryPixel);
     setup.frame.screenThickness = 0.0F;
     const TracedFrame hybrid = traceFrame(loaded, package::kStrategyUber, setup);

@@ -84,17 +84,8 @@ SrgbTable deviceTexels() {
         ADD_FAILURE() << "can't write the scene of texels";
         return exactSrgb();
     }
-    const Result<OracleInput> input = readOracleInput({folder.path() / "texels.gltf", "", ""}, 16, 16);
-    if (!input) {
-        ADD_FAILURE() << toString(input.error());
-        return exactSrgb();
-    }
-    const Result<SrgbTable> table = texelsOf(Device(*input, 16, 16).render(1), "the device's picture");
-    if (!table) {
-        ADD_FAILURE() << toString(table.error());
-        return exactSrgb();
-    }
-    return *table;
+    const OracleInput input = must(readOracleInput({folder.path() / "texels.gltf", "", ""}, 16, 16));
+    return must(texelsOf(Device(input, 16, 16).render(1), "the device's picture"));
 }
 
 const SrgbTable& sharedTexels() {

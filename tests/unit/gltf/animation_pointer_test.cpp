@@ -4,6 +4,7 @@
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
 #include "support/features.h"
+#include "support/must.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <glint/session/scene_view.h>
@@ -62,12 +63,7 @@ struct Pointed {
     }
 
     gltf::Scene import() {
-        Result<gltf::Scene> scene = test::import(builder);
-        if (!scene) {
-            ADD_FAILURE() << toString(scene.error());
-            return {};
-        }
-        return std::move(*scene);
+        return must(test::import(builder));
     }
 
     GltfBuilder builder;

@@ -22,12 +22,7 @@ struct Instanced {
         return builder.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
     }
     gltf::Scene import() {
-        Result<gltf::Scene> scene = test::import(builder);
-        if (!scene) {
-            ADD_FAILURE() << toString(scene.error());
-            return {};
-        }
-        return std::move(*scene);
+        return must(test::import(builder));
     }
     std::string errorId() {
         const Result<gltf::Scene> scene = test::import(builder);

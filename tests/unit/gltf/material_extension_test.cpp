@@ -22,12 +22,7 @@ GltfBuilder withMaterial(Json material) {
 }
 
 gltf::Scene mustImport(const GltfBuilder& builder) {
-    Result<gltf::Scene> scene = import(builder);
-    if (!scene) {
-        ADD_FAILURE() << toString(scene.error());
-        return {};
-    }
-    return std::move(*scene);
+    return must(import(builder));
 }
 
 gltf::Scene importMaterial(const std::string& extensions) {

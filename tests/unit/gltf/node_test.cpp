@@ -15,12 +15,7 @@ Result<gltf::Scene> importMembers(const std::string& members) {
 }
 
 gltf::Scene mustImport(const std::string& members) {
-    Result<gltf::Scene> scene = importMembers(members);
-    if (!scene) {
-        ADD_FAILURE() << toString(scene.error());
-        return {};
-    }
-    return std::move(*scene);
+    return must(importMembers(members));
 }
 
 std::string errorId(const std::string& members) {

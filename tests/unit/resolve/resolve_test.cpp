@@ -3,6 +3,7 @@
 
 #include "render/scene_builder.h"
 #include "settings/descriptor.h"
+#include "support/must.h"
 
 #include <glint/measure/settings.h>
 
@@ -79,9 +80,7 @@ gltf::Scene richScene() {
 }
 
 Build resolved(const gltf::Scene& scene, const Settings& settings, const Target& target = {}) {
-    Result<Build> build = resolve(std::span(&scene, 1), settings, target);
-    EXPECT_TRUE(build) << toString(build.error());
-    return build ? std::move(*build) : Build{};
+    return must(resolve(std::span(&scene, 1), settings, target));
 }
 
 const Target& drawing() {

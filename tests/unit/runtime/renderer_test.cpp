@@ -28,9 +28,7 @@ protected:
                        std::uint32_t sampleCount = 1) {
         gpuScene_ = upload(package, scene);
         renderer_ = makeRenderer(package, *gpuScene_, GetParam(), kWidth, kHeight);
-        Result<LinearImage> image = renderer_->render(frame, sampleCount);
-        EXPECT_TRUE(image) << toString(image.error());
-        return image ? std::move(*image) : LinearImage{};
+        return must(renderer_->render(frame, sampleCount));
     }
     void TearDown() override {
         renderer_.reset();

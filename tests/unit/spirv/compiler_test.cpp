@@ -122,9 +122,7 @@ void main() {
 
 std::string disassembled(const compiler::ShaderSource& source) {
     const auto words = compileShader(source, {});
-    const auto text = words ? compiler::disassemble(*words) : Result<std::string>(words.error());
-    EXPECT_TRUE(text) << toString(text.error());
-    return text ? *text : std::string();
+    return must(words ? compiler::disassemble(*words) : Result<std::string>(words.error()));
 }
 
 // glslang declares what the source declares, and code that is folded away needs no feature of a device.
@@ -156,9 +154,9 @@ void main() {
 )";
     };
     const auto featuresOf = [](const std::string& glsl) {
-        const auto words = compiler::compileShader({"wide.comp", compiler::ShaderStage::Compute, glsl}, {});
-        EXPECT_TRUE(words) << toString(words.error());
-        return words ? package::featuresOf(*words) : std::vector<std::string>{"none"};
+        const auto words =
+            must(compiler::compileShader({"wide.comp", compiler::ShaderStage::Compute, glsl}, {}));
+        return package::featuresOf(words);
     };
     EXPECT_EQ(featuresOf(shader("false")), std::vector<std::string>{});
     EXPECT_EQ(featuresOf(shader("true")),

@@ -32,9 +32,7 @@ void main() {
 
 std::string disassembled(const std::string& glsl, const compiler::ShaderCompileOptions& options = {}) {
     const auto words = compileShader({"half.comp", compiler::ShaderStage::Compute, glsl}, options);
-    const auto text = words ? compiler::disassemble(*words) : Result<std::string>(words.error());
-    EXPECT_TRUE(text) << toString(text.error());
-    return text ? *text : std::string();
+    return must(words ? compiler::disassemble(*words) : Result<std::string>(words.error()));
 }
 
 int count(const std::string& text, const std::string& pattern) {

@@ -39,10 +39,8 @@ constexpr const char* kShared =
 
 Words compilePart(const std::string& glsl, const compiler::LinkNames& names,
                   const compiler::ShaderCompileOptions& options = {}) {
-    auto words =
-        compiler::compilePart({"part", compiler::ShaderStage::Compute, kShared + glsl, {}}, names, options);
-    EXPECT_TRUE(words) << toString(words.error());
-    return words ? *words : Words();
+    return must(
+        compiler::compilePart({"part", compiler::ShaderStage::Compute, kShared + glsl, {}}, names, options));
 }
 
 // A part with a function that returns `value`, a float.
@@ -237,9 +235,7 @@ Words largeShader() {
         }
         parts.push_back(partOf(name, "long_" + name + "(hit.place.x)", before + "return x;\n}\n"));
     }
-    const auto joined = join(parts);
-    EXPECT_TRUE(joined) << toString(joined.error());
-    return joined ? *joined : Words();
+    return must(join(parts));
 }
 
 TEST(Join, ValidatesGroupsOfFunctions) {
