@@ -130,7 +130,6 @@ TEST_F(Background, EveryStateOnTheWayGivesTheSamePicture) {
         const LinearImage reference = loaded_->render(options, setup_);
         options.backgroundPipelines = true;
         const auto renderer = loaded_->makeRenderer(options);
-        ASSERT_NE(renderer, nullptr);
         std::size_t& adoptedAtOnce = renderer->state().pipelines.adoptedAtOnce;
         adoptedAtOnce = 0;
         const LinearImage draft = renderedBy(*renderer, setup_);
@@ -164,7 +163,6 @@ TEST_F(Background, AHostMayAskForNoDraft) {
     options.backgroundPipelines = true;
     options.draft = false;
     const auto renderer = loaded_->makeRenderer(options);
-    ASSERT_NE(renderer, nullptr);
     renderer->state().pipelines.adoptedAtOnce = 0;
     expectSameImage(renderedBy(*renderer, setup_), reference, "fallback alone");
     const PipelineProgress progress = renderer->pipelineProgress();
@@ -226,7 +224,6 @@ TEST_F(Background, PathsInBandsBeginWithADraft) {
     const LinearImage reference = loaded.render(options, setup);
     options.backgroundPipelines = true;
     const auto renderer = loaded.makeRenderer(options);
-    ASSERT_NE(renderer, nullptr);
     std::size_t& adoptedAtOnce = renderer->state().pipelines.adoptedAtOnce;
     adoptedAtOnce = 0;
     const LinearImage draft = renderedBy(*renderer, setup);
@@ -247,7 +244,6 @@ TEST_F(Background, FramesFollowEachOtherWhileThreadsWork) {
     options.backgroundPipelines = true;
     options.pipelineThreads = 2;
     const auto renderer = loaded_->makeRenderer(options);
-    ASSERT_NE(renderer, nullptr);
     PipelineProgress progress = renderer->pipelineProgress();
     for (int frame = 0; frame < 1000 && progress.adopted < progress.wanted; ++frame) {
         const LinearImage image = renderedBy(*renderer, setup_);

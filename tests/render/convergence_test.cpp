@@ -75,7 +75,6 @@ protected:
 // steeper where the function that it samples is smooth.
 TEST_F(Convergence, ErrorFallsWithTheRootOfTheSamples) {
     const LinearImage reference = render(package::kStrategyUber, 4096, 1);
-    ASSERT_FALSE(reference.pixels.empty());
     double sumX = 0.0;
     double sumY = 0.0;
     double sumXX = 0.0;
@@ -86,7 +85,6 @@ TEST_F(Convergence, ErrorFallsWithTheRootOfTheSamples) {
         constexpr int kSeeds = 4;
         for (std::uint32_t seed = 2; seed < 2 + kSeeds; ++seed) {
             const LinearImage image = render(package::kStrategyUber, samples, seed);
-            ASSERT_FALSE(image.pixels.empty());
             const double error = rootMeanSquare(image, reference);
             squares += error * error / kSeeds;
         }
@@ -120,7 +118,6 @@ TEST_F(Convergence, StrategiesHaveTheSameMean) {
         std::vector<double> means;
         for (int k = 0; k < kSeeds; ++k) {
             const LinearImage image = render(strategy, 16, seed++);
-            ASSERT_FALSE(image.pixels.empty());
             means.push_back(mean(image));
         }
         Estimate estimate;

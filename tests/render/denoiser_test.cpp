@@ -33,7 +33,6 @@ protected:
         options.height = kFilteredHeight;
         options.accumulate = true;
         renderer_ = loaded_->makeRenderer(options);
-        ASSERT_NE(renderer_, nullptr);
         frame_ = defaultSetup(hallScene(), kFilteredWidth, kFilteredHeight).frame;
     }
 
@@ -58,7 +57,6 @@ TEST_F(FilteredHall, KeepsItsEdgesAndConverges) {
     std::vector<std::string> layers = denoise::wantedLayers();
     layers.emplace_back("virtual-motion");
     load(layers);
-    ASSERT_NE(renderer_, nullptr);
     const LinearImage truth = picture(1000, 512);
     const auto errorOf = [&](const LinearImage& image) {
         return image::measureErrors(image, truth, 0.0).relMse;
@@ -84,7 +82,6 @@ TEST_F(FilteredHall, KeepsItsEdgesAndConverges) {
 
 TEST_F(FilteredHall, SaysWhichLayerIsMissing) {
     load({"depth", "normal", "motion", "emission", "demodulated", "variance"});
-    ASSERT_NE(renderer_, nullptr);
     const auto denoiser = makeDenoiser();
     ASSERT_FALSE(denoiser.ok());
     EXPECT_EQ(denoiser.error().id, "layer-missing");

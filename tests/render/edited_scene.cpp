@@ -269,9 +269,6 @@ EditedScene::EditedScene(EditedSceneOptions options)
     view.editable = true;
     view.vertices = VertexForm::Quantized;  // meshes get a buffer for their builds alone, too
     gpuScene_ = uploadScene(package(), view);
-    if (!gpuScene_) {
-        return;
-    }
     for (std::uint32_t kind = 0; kind < kKinds; ++kind) {
         materials.push_back({editor().material(kind), kind, true});
     }
@@ -306,7 +303,6 @@ void EditedScene::switchPackage() {
         compiler::CompileSettings settings = options_.settings;
         settings.plan.merge = compiler::MergePolicy::All;
         packages_.push_back(packageFor(std::array{furtherScene(), original}, settings));
-        ASSERT_NE(packages_.back(), nullptr);
         ASSERT_NE(packages_.back()->scene(0).materials.recordBytes, package().scene(0).materials.recordBytes);
     }
     current_ = 1 - current_;

@@ -67,9 +67,7 @@ std::map<package::Strategy, LinearImage> picturesOf(const gltf::Scene& scene,
     std::map<package::Strategy, LinearImage> pictures;
     const LoadedScene loaded(scene, settings);
     for (const package::Strategy strategy : package::strategies()) {
-        if (loaded.ok()) {
-            pictures[strategy] = loaded.render(strategy, setup, counters);
-        }
+        pictures[strategy] = loaded.render(strategy, setup, counters);
     }
     return pictures;
 }
@@ -96,7 +94,6 @@ TEST_F(EffectOfThePage, BringsTheLightFromBehind) {
     ASSERT_EQ(pictures.size(), package::strategies().size());
     const LinearImage& reference = pictures.begin()->second;
     for (const auto& [strategy, picture] : pictures) {
-        ASSERT_FALSE(picture.pixels.empty());
         expectSameImage(picture, reference, std::string(package::nameOf(strategy)));
     }
     // Every ray finds the panel, whatever its direction, so the picture has no noise.
@@ -145,7 +142,6 @@ TEST_F(EffectOfThePage, MayComposeItsLight) {
     setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     const LoadedScene loaded(scene, settings);
     const LinearImage picture = loaded.render(package::kStrategyUber, setup);
-    ASSERT_FALSE(picture.pixels.empty());
     EXPECT_NEAR(picture.pixels[0][0], 0.5F * kTransmitted * kSheet[0] * kPanel[0], 2e-3F);
 }
 

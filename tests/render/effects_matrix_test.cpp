@@ -152,7 +152,6 @@ TEST_P(EffectsMatrix, PresentIsWhatIsCalledFor) {
     options.height = 9;
     options.screenMarch = true;
     const auto renderer = loaded.makeRenderer(options);
-    ASSERT_NE(renderer, nullptr);
     const Renderer::Footprint footprint = renderer->footprint();
     // G-buffer, compose; of first hits: count, offset, copy, misses, cases; and of the list: dispatch, trace,
     // count, copy, misses, cases.

@@ -62,7 +62,6 @@ TEST(AllEffects, EveryWayMakesTheSamePicture) {
             const std::string what = nameOf(way) + (batch ? ", batched" : ", one by one");
             FrameCounters counters;
             const LinearImage image = loaded.render(options, setup, &counters);
-            ASSERT_FALSE(image.pixels.empty()) << what;
             if (!reference) {
                 reference = image;
                 first = counters;
@@ -134,7 +133,6 @@ TEST(AllEffects, AskForTheResourcesThatTheirFramesNeed) {
     options.accumulate = false;
     options.bands = 2;
     const auto renderer = loaded.makeRenderer(options);
-    ASSERT_NE(renderer, nullptr);
     const auto idOf = [](const auto& result) { return result ? std::string() : result.error().id; };
     EXPECT_EQ(idOf(renderer->render(setup.frame, 2)), "frame-options");
     EXPECT_TRUE(renderer->render(setup.frame, 1));
@@ -306,7 +304,7 @@ LinearImage refracted(const gltf::Scene& scene) {
     settings.effects.named = package::kEffectRefraction;
     const LoadedScene loaded(scene, settings);
     RenderSetup setup = defaultSetup(scene, 64, 64);
-    return loaded.ok() ? loaded.render(package::kStrategyUber, setup) : LinearImage{};
+    return loaded.render(package::kStrategyUber, setup);
 }
 
 // Returns the share of pixels that differ by more than the edge of a square may.

@@ -32,7 +32,7 @@ LinearImage picturedByGlint() {
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyVisibility;
     const LoadedScene loaded(*scene, settings);
-    return loaded.ok() ? loaded.render(package::kStrategyVisibility, setup) : LinearImage{};
+    return loaded.render(package::kStrategyVisibility, setup);
 }
 
 const LinearImage& reference() {

@@ -32,7 +32,7 @@ LinearImage rendered(const gltf::Scene& scene, package::Strategy strategy,
                      package::ShadingPrecision precision, const RenderSetup& setup) {
     const LoadedScene loaded(scene, settingsOf(strategy, precision));
     FrameCounters counters;
-    LinearImage image = loaded.ok() ? loaded.render(strategy, setup, &counters) : LinearImage{};
+    LinearImage image = loaded.render(strategy, setup, &counters);
     EXPECT_EQ(counters.nonFinite, 0U);
     return image;
 }
@@ -45,7 +45,6 @@ void expectAlike(const gltf::Scene& scene, package::Strategy strategy, double bo
     const LinearImage single = rendered(scene, strategy, package::ShadingPrecision::Single, setup);
     const LinearImage half = rendered(scene, strategy, package::ShadingPrecision::Half, setup);
     ASSERT_EQ(single.pixels.size(), half.pixels.size());
-    ASSERT_FALSE(half.pixels.empty());
     const image::ImageDifference difference = must(image::compareImages(half, single, "half", "single"));
     EXPECT_EQ(difference.nonFinite, 0U);
     EXPECT_EQ(difference.referenceNonFinite, 0U);

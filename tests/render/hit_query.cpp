@@ -19,9 +19,6 @@ std::vector<Values> ask(const gltf::Scene& scene, const std::vector<Query>& quer
     // Queries name triangles by the numbers that they have in the scene.
     const LoadedScene loaded(
         scene, settings, [](session::SceneViewData& data) { data.traversalOrder = TraversalOrder::Input; });
-    if (!loaded.ok()) {
-        return {};
-    }
     const std::unique_ptr<HitKernel> kernel = must(HitKernel::create(scene, loaded, "hit_values.comp"));
     std::vector<gpu::RayRecord> rays;
     for (const Query& query : queries) {

@@ -55,18 +55,13 @@ LayeredScene::LayeredScene(const gltf::Scene& posed, const compiler::CompileSett
     options.width = width;
     options.height = height;
     options.accumulate = false;
-    if (PosedScene::ok()) {
-        renderer_ = makeRenderer(options);
-    }
+    renderer_ = makeRenderer(options);
 }
 
 LinearImage LayeredScene::render() {
     update();
-    const Result<CameraView> camera = session::sceneCamera(scene, 0, aspect_);
-    EXPECT_TRUE(camera.ok());
-    frame.camera = *camera;
-    LinearImage image = drawn(*renderer_, frame);
-    return image;
+    frame.camera = must(session::sceneCamera(scene, 0, aspect_));
+    return drawn(*renderer_, frame);
 }
 
 }  // namespace glint::testing

@@ -46,7 +46,6 @@ TEST(Layers, DemodulatedLightTimesAlbedoGivesThePicture) {
         for (const std::uint32_t samples : {1U, 3U}) {
             options.accumulate = samples > 1;
             const auto renderer = loaded.makeRenderer(options);
-            ASSERT_NE(renderer, nullptr);
             FrameOptions frame = defaultSetup(hallBehindGlass(), options.width, options.height).frame;
             frame.maxReflectionRoughness = 1.0F;
             const LinearImage image = must(renderer->render(frame, samples));
@@ -89,10 +88,9 @@ TEST(Layers, BouncesAddUpToTheLightOfTheirEffect) {
         options.height = 14;
         options.bounces = 6;
         const auto renderer = loaded.makeRenderer(options);
-        ASSERT_NE(renderer, nullptr);
         FrameOptions frame = defaultSetup(scene, options.width, options.height).frame;
         frame.maxReflectionRoughness = 1.0F;
-        ASSERT_TRUE(renderer->render(frame, 2).ok());
+        must(renderer->render(frame, 2));
         const LayerSet layers(*renderer);
         for (const std::string source : {"reflection", "refraction", "indirect-diffuse"}) {
             const std::string albedo = source == "reflection"   ? "albedo-specular"
@@ -150,7 +148,6 @@ TEST(Layers, LightsThatRefractedRaysFindAreOfTheRefraction) {
     options.width = options.height = 16;
     options.bounces = 2;
     const auto renderer = loaded.makeRenderer(options);
-    ASSERT_NE(renderer, nullptr);
     FrameOptions frame = defaultSetup(scene, 16, 16).frame;
     frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     for (const bool refracts : {true, false}) {
@@ -284,7 +281,6 @@ TEST(Layers, VarianceIsThatOfTheSamples) {
     options.width = 24;
     options.height = 14;
     const auto renderer = loaded.makeRenderer(options);
-    ASSERT_NE(renderer, nullptr);
     constexpr std::uint32_t kSamples = 5;
     const auto luminance = [](const LayerSet& layers, const std::string& name, std::size_t i) {
         return 0.2126 * layers.at(name, i, 0) + 0.7152 * layers.at(name, i, 1) +
@@ -300,7 +296,7 @@ TEST(Layers, VarianceIsThatOfTheSamples) {
         return okStatus();
     };
     const FrameOptions frame = defaultSetup(scene, options.width, options.height).frame;
-    ASSERT_TRUE(renderer->render(frame, kSamples, keep).ok());
+    must(renderer->render(frame, kSamples, keep));
     const LayerSet layers(*renderer);
     std::size_t noisy = 0;
     for (std::size_t i = 0; i < 24 * 14; ++i) {

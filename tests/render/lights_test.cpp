@@ -37,7 +37,6 @@ TEST_P(Lights, DirectLightOnADiffuseWallIsAnalytic) {
     addDirectionalLight(scene, {0, 0, -1}, 2.0F);
     const RenderSetup setup = darkSetup(scene, 33);  // a pixel in the middle, whose ray is the axis
     const LinearImage image = render(scene, setup);
-    ASSERT_FALSE(image.pixels.empty());
     // For alpha = 1, D = 1/π and V = 1/4 at normal incidence.
     const float pi = std::numbers::pi_v<float>;
     const float expected = 2.0F * (0.96F * 0.5F / pi + 0.04F / pi * 0.25F);
@@ -174,7 +173,6 @@ TEST_P(Lights, TheChosenLightOfAHitIsUnbiased) {
     RenderSetup setup = darkSetup(scene);
     setup.samples = 128;
     const LinearImage image = render(scene, setup);
-    ASSERT_FALSE(image.pixels.empty());
     std::vector<double> ratios;
     for (std::uint32_t y = 8; y < 24; ++y) {
         for (std::uint32_t x = 4; x < 12; ++x) {
@@ -223,7 +221,6 @@ TEST_P(Lights, AShadowFallsOnAWall) {
     const gltf::Scene scene = shadowScene(false, 0);
     const RenderSetup setup = darkSetup(scene);
     const LinearImage image = render(scene, setup);
-    ASSERT_FALSE(image.pixels.empty());
     // The plate is at y = 3, z in [-1.5, -1]. The sun falls by 2.5 for each 1 in -z, so the shadow is on z =
     // -2 at y in [0.5, 1.75].
     expectColor(at(image, 16, 7), {0, 0, 0}, 1e-6F, "in the shadow, y = 1.06");
@@ -235,7 +232,6 @@ TEST_P(Lights, AReflectedSurfaceHasItsShadow) {
     const gltf::Scene scene = shadowScene(true, 0);
     const RenderSetup setup = darkSetup(scene);
     const LinearImage image = render(scene, setup);
-    ASSERT_FALSE(image.pixels.empty());
     // The shadow is on z = 3 at y in [3 - 2.5 * 1.5, 3 - 2.5 * 0.8] = [-0.75, 1]. The ray of row r meets z =
     // 3 after 5 units of depth in all: y = 5 p.
     expectColor(at(image, 16, 16), {0, 0, 0}, 1e-6F, "in the shadow, y = -0.16");

@@ -42,8 +42,7 @@ LinearImage pictureWithCoatedTexture(const EditedScene& edited, const EditedScen
             data.instances[i].visible = i == 0 || i == kKinds + 3;
         }
     });
-    return loaded.ok() ? loaded.render(options.renderer, defaultSetup(known, options.width, options.height))
-                       : LinearImage{};
+    return loaded.render(options.renderer, defaultSetup(known, options.width, options.height));
 }
 
 class LiveEditErrors : public ::testing::Test {
@@ -54,8 +53,7 @@ protected:
     static void TearDownTestSuite() {
         delete edited_;
     }
-    void SetUp() override {
-    }
+    void SetUp() override {}
     SceneEditor& editor() {
         return edited_->editor();
     }

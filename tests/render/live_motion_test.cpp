@@ -68,9 +68,6 @@ public:
         lights_ = data_.lights;
         renderer_ = makeRenderer(package(), *gpuScene_, options());
     }
-    bool ok() const {
-        return renderer_ != nullptr;
-    }
     GpuScene& gpuScene() {
         return *gpuScene_;
     }
@@ -137,7 +134,6 @@ public:
             compiler::CompileSettings settings = EditedSceneOptions().settings;
             settings.plan.merge = compiler::MergePolicy::All;
             packages_.push_back(packageOf(scene, settings));
-            ASSERT_NE(packages_.back(), nullptr);
         }
         current_ = 1 - current_;
         const Renderer::Replacement replaced = must(renderer_->replacePackage(packages_[current_]));
@@ -177,9 +173,7 @@ public:
         view.lights = lights_;
         view.moves = false;
         const auto fresh = uploadScene(package(), view);
-        ASSERT_NE(fresh, nullptr);
         const auto renderer = makeRenderer(package(), *fresh, options());
-        ASSERT_NE(renderer, nullptr);
         EXPECT_EQ(image.pixels, drawn(*renderer, frame_).pixels) << what;
     }
     // Removes what was added.
@@ -295,7 +289,6 @@ private:
 // Poses and edits at random, with this seed.
 void play(unsigned seed, int count, int interval) {
     Playing playing;
-    ASSERT_TRUE(playing.ok());
     playing.expectSameAsFresh("as uploaded");
     const std::uint64_t allocated = playing.gpuScene().allocatedBytes();
     std::mt19937 random(seed);
@@ -335,7 +328,6 @@ TEST(LiveMotion, PosesAndEditsGiveThePictureOfAFreshUpload) {
 // What an edit has moved or hidden stays so, as long as the poses do not move or hide it themselves.
 TEST(LiveMotion, EditsOutlastPosesThatLeaveThemAlone) {
     Playing playing;
-    ASSERT_TRUE(playing.ok());
     std::mt19937 random(3);
     const InstanceHandle square = playing.handleOf(4);
     playing.frame();

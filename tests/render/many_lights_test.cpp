@@ -140,7 +140,6 @@ TEST(ManyLights, ChosenLightsConvergeToAll) {
     const LoadedScene all = load(scene, 0);
     EXPECT_EQ(all.package().lightSamples(), 0U);
     const LinearImage reference = all.render(package::kStrategyUber, setupOf(scene, 256, 1));
-    ASSERT_FALSE(reference.pixels.empty());
     for (const std::uint32_t lights : {1U, 4U}) {
         const LoadedScene chosen = load(scene, lights);
         EXPECT_EQ(chosen.package().lightSamples(), lights);
@@ -178,7 +177,6 @@ TEST(ManyLights, StrategiesChooseTheSameLights) {
     const LoadedScene loaded = load(scene, 2, package::allStrategies());
     const RenderSetup setup = setupOf(scene, 4, 3);
     const LinearImage reference = loaded.render(package::kStrategyUber, setup);
-    ASSERT_FALSE(reference.pixels.empty());
     for (const package::Strategy strategy : package::strategies()) {
         if ((package::tracersOf(strategy, package::kTracerRayQuery) & package::kTracerRayQuery) != 0) {
             expectSameImage(loaded.render(strategy, setup), reference,
@@ -193,7 +191,6 @@ TEST(ManyLights, AsManySamplesAsLightsHaveNoNoise) {
     const gltf::Scene scene = hallOfLights(kLights);
     const LoadedScene all = load(scene, 0);
     const LinearImage reference = all.render(package::kStrategyUber, setupOf(scene, 1, 1));
-    ASSERT_FALSE(reference.pixels.empty());
     const LoadedScene chosen = load(scene, kLights);
     EXPECT_LT(differenceOf(chosen.render(package::kStrategyUber, setupOf(scene, 1, 1)), reference), 1e-6);
 }
@@ -215,7 +212,6 @@ TEST(ManyLights, TheHierarchyFollowsLightsThatMove) {
     }
     const LoadedScene still = load(scene, 0);
     const LinearImage reference = still.render(package::kStrategyUber, setupOf(scene, 64, 1));
-    ASSERT_FALSE(reference.pixels.empty());
 
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
@@ -235,7 +231,6 @@ TEST(ManyLights, TheHierarchyFollowsLightsThatMove) {
     EXPECT_EQ(away, 0.0) << "out of range";
     must(moving.gpuScene().updateAndWait({instances, lights}));
     const LinearImage image = moving.render(package::kStrategyUber, setupOf(scene, 64, 1));
-    ASSERT_FALSE(image.pixels.empty());
     EXPECT_NEAR(meanOf(image), meanOf(reference), 0.02 * meanOf(reference));
 }
 

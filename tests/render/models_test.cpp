@@ -95,14 +95,12 @@ TEST(Models, LambertsLawGivesThePictureOfGltfsBase) {
         for (const bool ofPack : {false, true}) {
             const gltf::Scene scene = corner(ofPack);
             const LoadedScene loaded(scene, settings);
-            ASSERT_TRUE(loaded.ok()) << way.name;
             RenderSetup setup = defaultSetup(scene, 24, 24);
             setup.samples = 4;
             RendererOptions options;
             options.strategy = way.strategy;
             options.bounces = way.bounces;
             const LinearImage image = loaded.render(options, setup);
-            ASSERT_FALSE(image.pixels.empty()) << way.name;
             if (ofPack) {
                 expectSameImage(image, reference, way.name);
                 EXPECT_GT(meanOf(image), 0.05) << way.name;
@@ -124,8 +122,8 @@ Pixel litBy(const materials::Material& material, gltf::Float3 direction) {
     settings.effects = {false, compiler::builtinEffects({"shadow"})};
     settings.strategies = package::kStrategyUber;
     const LoadedScene loaded(scene, settings);
-    const LinearImage image = loaded.ok() ? loaded.render(package::kStrategyUber, setup) : LinearImage{};
-    return image.pixels.empty() ? Pixel{-1, -1, -1, -1} : at(image, 8, 8);
+    const LinearImage image = loaded.render(package::kStrategyUber, setup);
+    return at(image, 8, 8);
 }
 
 void expectLight(const Pixel& pixel, double share, const std::string& what) {

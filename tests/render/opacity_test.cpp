@@ -139,7 +139,6 @@ TEST(Opacity, PicturesDoNotShowWhatWasDecided) {
         FrameCounters few;
         FrameCounters many;
         const LinearImage image = proved.render(options, setup, &few);
-        ASSERT_FALSE(image.pixels.empty());
         EXPECT_EQ(image.pixels, tested.render(options, setup, &many).pixels)
             << "strategy " << options.strategy << ", tracer " << *options.tracer;
         EXPECT_GT(few.alphaTests, 0U);
@@ -273,9 +272,7 @@ TEST(Opacity, TestsOfRaysThroughGlassAreCounted) {
         settings.effects = {false, compiler::builtinEffects({"shadow"})};
         const LoadedScene loaded(scene, settings, use(OpacityUse::Tested));
         FrameCounters counters;
-        if (loaded.ok()) {
-            loaded.render(package::kStrategyUber, setup, &counters);
-        }
+        loaded.render(package::kStrategyUber, setup, &counters);
         return counters.alphaTests;
     };
     const std::uint32_t alone = testsWith(package::ShadowThrough::Alpha);
@@ -289,7 +286,7 @@ TEST(Opacity, NothingIsDecidedAboutWhatMayChange) {
     const compiler::CompileSettings settings = settingsOf(package::kStrategyUber);
     const auto provedOf = [&](const std::function<void(session::SceneViewData&)>& change) {
         const LoadedScene loaded(scene, settings, change);
-        return loaded.ok() ? loaded.gpuScene().statistics().provedOpaque : ~0ULL;
+        return loaded.gpuScene().statistics().provedOpaque;
     };
     EXPECT_GT(provedOf({}), 0U);
     // The material of an animated scene, whose cutoff or factor an update may change.

@@ -41,7 +41,6 @@ TEST_P(OrderingImages, AreTheSame) {
         const auto ordering = static_cast<Ordering>(i);
         FrameCounters counters;
         const LinearImage image = renderChecked(loaded, setup, ordering, counters);
-        ASSERT_FALSE(image.pixels.empty());
         EXPECT_EQ(std::accumulate(counters.bucketCounts.begin(), counters.bucketCounts.end(), 0U),
                   counters.rays)
             << nameOf(ordering);
@@ -71,7 +70,6 @@ TEST_P(OrderingImages, NeedNoRays) {
         const auto ordering = static_cast<Ordering>(i);
         FrameCounters counters;
         const LinearImage image = renderChecked(loaded, setup, ordering, counters);
-        ASSERT_FALSE(image.pixels.empty());
         EXPECT_EQ(counters.rays, 0U);
     }
 }
@@ -106,7 +104,6 @@ TEST(FirstHits, AreOrderedWhateverTheNumberOfBuckets) {
         FrameCounters counters;
         const LinearImage image =
             loaded.render(RendererOptions{.strategy = package::kStrategyUber}, setup, &counters);
-        ASSERT_FALSE(image.pixels.empty());
         const std::vector<std::uint32_t>& counts = counters.pixelCounts;
         EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), 0U), 77U * 45U);
         EXPECT_EQ(counters.unknownShader, 0U);

@@ -89,7 +89,6 @@ TEST_P(Orderings, GiveEachHitASlotOfItsBucket) {
     const std::uint32_t bucketCount = GetParam();
     for (const HitRecordFormat format : {HitRecordFormat::Full, HitRecordFormat::Packed}) {
         const std::unique_ptr<OrderKernel> kernel = makeKernel(bucketCount, format);
-        ASSERT_NE(kernel, nullptr);
         for (const std::uint32_t alignment : {1U, gpu::kRayGroupSize}) {
             for (const Spread spread : kSpreads) {
                 // The numbers of rays are: none, one, less than a workgroup, one for each bucket, and two
@@ -126,7 +125,6 @@ TEST(OrderingsOfManyHits, FillDispatchesOfTwoDimensions) {
     constexpr std::uint32_t kBuckets = 33;
     constexpr std::uint32_t kRays = gpu::kMaxRayGroupsX * gpu::kRayGroupSize + 1001;
     const std::unique_ptr<OrderKernel> kernel = makeKernel(kBuckets, HitRecordFormat::Packed);
-    ASSERT_NE(kernel, nullptr);
     expectAllOrder(*kernel, kBuckets, makeProblem(Spread::Zipf, kBuckets, kRays));
 }
 
@@ -168,7 +166,6 @@ std::vector<FaultCase> faultCases() {
 
 TEST(OrderCheck, FindsEveryFault) {
     const std::unique_ptr<OrderKernel> kernel = makeKernel(kFaultBuckets, HitRecordFormat::Full);
-    ASSERT_NE(kernel, nullptr);
     OrderProblem problem = makeProblem(Spread::InTurn, kFaultBuckets, kFaultRays);
     problem.alignment = gpu::kRayGroupSize;
     must(kernel->load(problem));

@@ -232,7 +232,6 @@ TEST(PathFootprint, TheConeAfterTwoBouncesIsAnalytic) {
     for (const Station& station : kStations) {
         setup.frame.camera.position[0] = static_cast<float>(station.x);
         const LinearImage image = loaded.render(options, setup);
-        ASSERT_FALSE(image.pixels.empty());
         double red = 0.0;
         double green = 0.0;
         for (const auto& pixel : image.pixels) {

@@ -24,7 +24,6 @@ TEST_P(Pixels, AnEmptySceneShowsTheSkyUpright) {
     setup.frame.sky = {{0.0F, 0.0F, 1.0F}, {0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}};
     FrameCounters counters;
     const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
-    ASSERT_FALSE(image.pixels.empty());
     EXPECT_EQ(counters.rays, 0U);
     EXPECT_EQ(counters.of(package::kEffectReflection).skippedSky, 32U * 32U);
     // Row 0 looks up by atan(31/32), and the sky is linear in the sine.
@@ -44,7 +43,6 @@ TEST_P(Pixels, TextureStandsUpright) {
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
     const LinearImage image = render(scene, squareSetup(scene));
-    ASSERT_FALSE(image.pixels.empty());
     expectColor(at(image, 8, 8), {1, 0, 0}, 1e-5F, "top left");
     expectColor(at(image, 24, 8), {0, 1, 0}, 1e-5F, "top right");
     expectColor(at(image, 8, 24), {0, 0, 1}, 1e-5F, "bottom left");
@@ -63,7 +61,6 @@ TEST_P(Pixels, ColourTexturesAreSrgbAndBoundTexturesTransform) {
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
     const LinearImage image = render(scene, squareSetup(scene));
-    ASSERT_FALSE(image.pixels.empty());
     expectColor(at(image, 8, 16), {0, 0, 0}, 1e-5F, "left");
     expectColor(at(image, 24, 16), {0.2158605F, 0.2158605F, 0.2158605F}, 1e-3F,
                 "right: sRGB 128 in linear light");
@@ -83,7 +80,6 @@ TEST_P(Pixels, AMirrorShowsWhatIsBehindTheCamera) {
     addDirectionalLight(scene, {0, -1, 0}, 1.0F);
     FrameCounters counters;
     const LinearImage image = render(scene, squareSetup(scene), package::AlphaPolicy::Opaque, &counters);
-    ASSERT_FALSE(image.pixels.empty());
     EXPECT_EQ(counters.rays, 32U * 32U);
     expectColor(at(image, 16, 4), kRed, 1e-4F, "above");
     expectColor(at(image, 16, 28), kBlue, 1e-4F, "below");
@@ -105,7 +101,6 @@ TEST_P(Pixels, AMirrorThatSeesNothingShowsTheSky) {
     RenderSetup setup = squareSetup(scene);
     setup.frame.sky = {kGreen, kGreen, kGreen};
     const LinearImage image = render(scene, setup);
-    ASSERT_FALSE(image.pixels.empty());
     expectColor(at(image, 16, 16), kGreen, 1e-4F, "centre");
 }
 
@@ -142,7 +137,6 @@ TEST_P(Facing, FollowsTheWindingInObjectSpace) {
         const LoadedScene loaded(scene, plan);
         RenderSetup setup = squareSetup(scene);
         const LinearImage image = loaded.render(strategy, setup);
-        ASSERT_FALSE(image.pixels.empty());
         const bool visible = facesCamera || doubleSided;
         const gltf::Float3 expected = visible ? kRed : gltf::Float3{1, 1, 1};
         expectColor(at(image, 8, 16), expected, 1e-4F, facesCamera ? "seen, front" : "seen, back");
@@ -165,7 +159,6 @@ TEST_P(Pixels, ALimitOfZeroStillLetsMirrorsReflect) {
     setup.frame.maxReflectionRoughness = 0.0F;
     FrameCounters counters;
     const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
-    ASSERT_FALSE(image.pixels.empty());
     EXPECT_EQ(counters.rays, 32U * 32U);
     expectColor(at(image, 16, 16), kGreen, 1e-4F, "centre");
 }
@@ -193,7 +186,6 @@ TEST_P(Pixels, SplittingAMeshChangesNothing) {
     limits.maxPrimitiveCount = 1;
     const LinearImage split = render(scene, setup);
     limits.maxPrimitiveCount = before;
-    ASSERT_FALSE(whole.pixels.empty());
     EXPECT_EQ(whole.pixels, split.pixels);
 }
 
@@ -293,7 +285,6 @@ TEST_P(Pixels, SamplesAverageAndSeedsRepeat) {
     setup.samples = 16;
     const LinearImage once = render(scene, setup);
     const LinearImage again = render(scene, setup);
-    ASSERT_FALSE(once.pixels.empty());
     EXPECT_EQ(once.pixels, again.pixels);
     // An edge pixel holds a mixture of quad and sky.
     const float edge = at(once, 7, 15)[1];

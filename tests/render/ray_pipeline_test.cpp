@@ -69,7 +69,6 @@ void expectAllWaysAgree(const gltf::Scene& scene, const compiler::CompileSetting
         SCOPED_TRACE(nameOf(way));
         FrameCounters counted;
         const LinearImage image = loaded.render(optionsOf(way), setup, &counted);
-        ASSERT_FALSE(image.pixels.empty());
         if (!reference) {
             reference = image;
             counters = counted;
@@ -132,7 +131,6 @@ TEST_F(DeviceWithPipelines, LetsLightAndRaysThroughMasks) {
     const RenderSetup setup = hallSetup(scene);
     const LinearImage withHoles = tested.render(package::kStrategyHitShaders, setup);
     const LinearImage without = opaque.render(package::kStrategyHitShaders, setup);
-    ASSERT_FALSE(withHoles.pixels.empty());
     EXPECT_NE(withHoles.pixels, without.pixels);
 }
 
@@ -152,7 +150,6 @@ TEST_F(DeviceWithPipelines, ShowsUnknownShadersInMagenta) {
     options.width = setup.width;
     options.height = setup.height;
     const auto renderer = loaded.makeRenderer(options);
-    ASSERT_NE(renderer, nullptr);
     const LinearImage image = must(renderer->render(setup.frame));
     expectColor(at(image, 16, 16), {1.0F, 0.0F, 1.0F}, 1e-4F, "unknown");
     const FrameCounters counters = must(renderer->counters());

@@ -40,7 +40,6 @@ TEST_F(ReplacePackageScene, ErrorsKeepThePackageBefore) {
     const std::unique_ptr<GpuScene> scene = uploadScene(*original, before_);
     const RendererOptions options = optionsOf(package::kStrategyUber);
     const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
-    ASSERT_NE(renderer, nullptr);
     const LinearImage old = draw(*renderer);
     const auto expectError = [&](const std::shared_ptr<const Package>& package, const char* id) {
         const Result<Renderer::Replacement> replaced = renderer->replacePackage(package);
@@ -84,7 +83,6 @@ TEST_F(ReplacePackageScene, AFallbackLeavesEmissiveTrianglesAsTheyAre) {
     const std::unique_ptr<GpuScene> scene = uploadScene(*original, lamps);
     const std::unique_ptr<Renderer> renderer =
         makeRenderer(*original, *scene, optionsOf(package::kStrategyVisibility));
-    ASSERT_NE(renderer, nullptr);
     const Result<Renderer::Replacement> replaced = renderer->replacePackage(extended);
     EXPECT_TRUE(replaced) << toString(replaced.error());
 }
@@ -137,7 +135,6 @@ TEST_F(ReplacePackageScene, TheAlphaOfDecidedTrianglesStays) {
     const gltf::Scene still = maskedRoom();
     for (const OpacityUse use : {OpacityUse::Proved, OpacityUse::Tested}) {
         const auto scene = uploadScene(*original, still, [use](SceneView& view) { view.opacity = use; });
-        ASSERT_NE(scene, nullptr);
         const bool isDecided = use == OpacityUse::Proved;
         EXPECT_EQ(scene->statistics().provedOpaque, isDecided ? 2U : 0U);
         EXPECT_EQ(scene->statistics().provedTransparent, isDecided ? 2U : 0U);
@@ -172,10 +169,8 @@ TEST_F(ReplacePackageScene, AnEditableSceneTakesThePackagesMaterials) {
     const std::shared_ptr<const Package> extended = packageOf(changed, uber);
     ASSERT_GT(extended->scene(0).materials.recordBytes, original->scene(0).materials.recordBytes);
     const auto scene = uploadScene(*original, before_, [](SceneView& view) { view.editable = true; });
-    ASSERT_NE(scene, nullptr);
     const RendererOptions options = optionsOf(package::kStrategyUber);
     const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
-    ASSERT_NE(renderer, nullptr);
     draw(*renderer);
     const Renderer::Replacement replaced = must(renderer->replacePackage(extended));
     expectEqualImage(draw(*renderer), fresh(changed, *extended, options), "the package's materials");
@@ -188,10 +183,8 @@ TEST_F(ReplacePackageScene, AnEditedMaterialNeedsAShader) {
     const compiler::CompileSettings uber = roomSettings(package::kStrategyUber);
     const std::shared_ptr<const Package> original = packageOf(before_, uber);
     const auto scene = uploadScene(*original, before_, [](SceneView& view) { view.editable = true; });
-    ASSERT_NE(scene, nullptr);
     const RendererOptions options = optionsOf(package::kStrategyUber);
     const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
-    ASSERT_NE(renderer, nullptr);
     gltf::Scene coated = roomScene();
     giveCoat(coated.materials[kGlossy]);
     const session::MaterialSourceData source = session::makeMaterialSource(
@@ -265,7 +258,6 @@ TEST_F(ReplacePackageScene, ValuesOfTheHostStay) {
             view.materials = views;
             view.editable = editable;
         });
-        ASSERT_NE(scene, nullptr);
         const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
         ASSERT_TRUE(renderer->replacePackage(repainted));
         expectEqualImage(draw(*renderer), fresh(extendedRoom(), *wanted, options), "the host's colour");

@@ -50,8 +50,6 @@ protected:
         delete before_;
     }
     void SetUp() override {
-        ASSERT_NE(*original_, nullptr);
-        ASSERT_NE(*edited_, nullptr);
         setup_ = defaultSetup(*before_, 24, 24);
     }
 
@@ -81,9 +79,7 @@ TEST_F(ReplacePackage, ThePictureIsThatOfTheOldPackageAndThenOfTheNewOne) {
         ASSERT_TRUE(differ(old, wanted)) << name;
         options.backgroundPipelines = true;
         const std::unique_ptr<GpuScene> scene = uploadScene(**original_, *before_);
-        ASSERT_NE(scene, nullptr);
         const std::unique_ptr<Renderer> renderer = makeRenderer(**original_, *scene, options);
-        ASSERT_NE(renderer, nullptr);
         renderer->waitForPipelines();
         expectEqualImage(draw(*renderer), old, name + ", before");
 
@@ -120,7 +116,6 @@ TEST_F(ReplacePackage, NoFrameMixesTwoPackages) {
     options.pipelineThreads = 2;
     const std::unique_ptr<GpuScene> scene = uploadScene(**original_, *before_);
     const std::unique_ptr<Renderer> renderer = makeRenderer(**original_, *scene, options);
-    ASSERT_NE(renderer, nullptr);
     // Not all pipelines of the first package are made yet.
     ASSERT_TRUE(renderer->replacePackage(*edited_));
     bool switched = false;
@@ -148,7 +143,6 @@ TEST_F(ReplacePackage, ADraftEndsWhileAPackageWaits) {
     options.backgroundPipelines = true;
     const std::unique_ptr<GpuScene> scene = uploadScene(**original_, *before_);
     const std::unique_ptr<Renderer> renderer = makeRenderer(**original_, *scene, options);
-    ASSERT_NE(renderer, nullptr);
     renderer->state().pipelines.adoptedAtOnce = 0;
     draw(*renderer);
     EXPECT_TRUE(renderer->pipelineProgress().draft);
@@ -177,7 +171,6 @@ TEST_F(ReplacePackage, FramesInFlightKeepWhatTheyUse) {
     const LinearImage wanted = fresh(*after_, **edited_, options);
     const std::unique_ptr<GpuScene> scene = uploadScene(**original_, *before_);
     const std::unique_ptr<Renderer> renderer = makeRenderer(**original_, *scene, options);
-    ASSERT_NE(renderer, nullptr);
     TwoFrames frames(sharedContext());
     // Returns the number of the recording.
     const auto submit = [&] {
@@ -227,7 +220,6 @@ TEST_F(ReplacePackage, OnlyPipelinesThatChangedAreMade) {
     const std::unique_ptr<GpuScene> scene = uploadScene(*original, *before_);
     const RendererOptions options = optionsOf(strategy);
     const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
-    ASSERT_NE(renderer, nullptr);
     const std::uint32_t pipelines = renderer->footprint().pipelines;
 
     const Renderer::Replacement values = must(renderer->replacePackage(repainted));
@@ -266,7 +258,6 @@ TEST_F(ReplacePackage, ALaterPackageTakesThePlaceOfOneThatWaits) {
     options.backgroundPipelines = true;
     const std::unique_ptr<GpuScene> scene = uploadScene(**original_, *before_);
     const std::unique_ptr<Renderer> renderer = makeRenderer(**original_, *scene, options);
-    ASSERT_NE(renderer, nullptr);
     renderer->waitForPipelines();
     const LinearImage old = draw(*renderer);
     const Renderer::Replacement first = must(renderer->replacePackage(*edited_));
@@ -290,7 +281,6 @@ TEST_F(ReplacePackage, APackageThatIsGivenUpIsLeftToAThread) {
     options.backgroundPipelines = true;
     const std::unique_ptr<GpuScene> scene = uploadScene(**original_, *before_);
     const std::unique_ptr<Renderer> renderer = makeRenderer(**original_, *scene, options);
-    ASSERT_NE(renderer, nullptr);
     ASSERT_TRUE(renderer->replacePackage(*edited_));
     ASSERT_TRUE(renderer->replacePackage(*original_));
     EXPECT_EQ(renderer->state().leftovers.size(), 1U);

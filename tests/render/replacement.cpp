@@ -73,7 +73,6 @@ gltf::Scene repaintedRoom() {
 
 void expectEqualImage(const LinearImage& image, const LinearImage& reference, const std::string& what) {
     ASSERT_EQ(image.pixels.size(), reference.pixels.size()) << what;
-    ASSERT_FALSE(image.pixels.empty()) << what;
     std::size_t others = 0;
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         others += image.pixels[i] == reference.pixels[i] ? 0 : 1;
@@ -104,8 +103,7 @@ LinearImage ReplacementTest::draw(Renderer& renderer) const {
 LinearImage ReplacementTest::fresh(const gltf::Scene& scene, const Package& package,
                                    const RendererOptions& options) const {
     const std::unique_ptr<GpuScene> uploaded = uploadScene(package, scene);
-    const auto renderer = uploaded ? makeRenderer(package, *uploaded, options) : nullptr;
-    return renderer ? draw(*renderer) : LinearImage{};
+    return draw(*makeRenderer(package, *uploaded, options));
 }
 
 }  // namespace glint::testing

@@ -31,11 +31,10 @@ inline bool differ(const LinearImage& first, const LinearImage& second) {
     return first.pixels != second.pixels;
 }
 
-// Fails the test and returns null if the scene can't be compiled.
+// Throws as must() does.
 std::shared_ptr<const Package> packageOf(const gltf::Scene& scene, const compiler::CompileSettings& settings);
 
-// Makes small pictures of `setup_`. On failure the functions return null or an image without a size, and the
-// test fails.
+// Makes small pictures of `setup_`.
 class ReplacementTest : public ::testing::Test {
 protected:
     RendererOptions optionsOf(package::Strategy strategy,

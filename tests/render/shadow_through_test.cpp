@@ -71,14 +71,13 @@ compiler::CompileSettings settingsFor(ShadowThrough through) {
 
 LinearImage picture(const gltf::Scene& scene, ShadowThrough through) {
     const LoadedScene loaded(scene, settingsFor(through));
-    return loaded.ok() ? loaded.render(package::kStrategyUber, darkSetup(scene, 16)) : LinearImage{};
+    return loaded.render(package::kStrategyUber, darkSetup(scene, 16));
 }
 
 // Expects that each pixel keeps this share of the light that it has without plates.
 void expectShare(const gltf::Scene& scene, ShadowThrough through, const std::array<double, 3>& share) {
     const LinearImage lit = picture(litWall(), ShadowThrough::Alpha);
     const LinearImage shaded = picture(scene, through);
-    ASSERT_FALSE(lit.pixels.empty());
     ASSERT_EQ(shaded.pixels.size(), lit.pixels.size());
     for (std::size_t i = 0; i < lit.pixels.size(); ++i) {
         for (std::size_t channel = 0; channel < 3; ++channel) {
@@ -150,7 +149,6 @@ TEST(ShadowThrough, VolumesThatHoldTheSurfaceOrTheLightAbsorbOneWay) {
         const LinearImage lit = picture(scene, ShadowThrough::Alpha);
         addPlate(scene, addMaterial(scene, absorbing()), 3.0F, !holdsLight);
         const LinearImage shaded = picture(scene, ShadowThrough::Glass);
-        ASSERT_FALSE(lit.pixels.empty());
         ASSERT_EQ(shaded.pixels.size(), lit.pixels.size());
         for (std::size_t i = 0; i < lit.pixels.size(); ++i) {
             // Where the pixel's light comes from is in the green channel; the others follow from it. The
@@ -257,7 +255,6 @@ TEST(ShadowThrough, EveryStrategyAndTracerGivesTheSamePicture) {
         RendererOptions options = optionsOf(way);
         options.bounces = 2;
         const LinearImage image = loaded.render(options, setup);
-        ASSERT_FALSE(image.pixels.empty());
         reference = reference.value_or(image);
         expectSameImage(image, *reference, name);
     };
@@ -298,10 +295,8 @@ TEST(ShadowThrough, PathsCountTheLightOfRoughGlassOnce) {
         RenderSetup setup = darkSetup(scene, 16);
         setup.samples = 256;
         double sum = 0.0;
-        if (loaded.ok()) {
-            for (const Pixel& pixel : loaded.render(options, setup).pixels) {
-                sum += pixel[1] / 256.0;
-            }
+        for (const Pixel& pixel : loaded.render(options, setup).pixels) {
+            sum += pixel[1] / 256.0;
         }
         return sum;
     };

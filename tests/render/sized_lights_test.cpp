@@ -324,7 +324,6 @@ TEST(FoundLights, TheNoiseOfHighlightsIsLess) {
         const LoadedScene found = load(scene, {SizedLights::On});
         const LoadedScene sampled = load(scene, {SizedLights::Off});
         const LinearImage reference = render(found, setupOf(scene, 2048, 1), 1);
-        ASSERT_FALSE(reference.pixels.empty());
         std::array<double, 2> errors{};
         for (int seed = 0; seed < 3; ++seed) {
             errors[0] += squaredDifference(render(sampled, setupOf(scene, 32, 30 + seed), 1), reference);
@@ -360,7 +359,6 @@ TEST(FoundLights, StrategiesAgree) {
                 RenderSetup setup = setupOf(scene, 4, 1);
                 setup.frame.shadowSamples = 2;
                 const LinearImage image = loaded.render(options, setup);
-                ASSERT_FALSE(image.pixels.empty());
                 reference = reference.value_or(image);
                 expectSameImage(image, *reference, nameOf(way));
             },

@@ -97,9 +97,6 @@ MeanEstimate estimate(const gltf::Scene& scene, const Environment* map, const Sk
                       std::uint32_t samples) {
     samples = test::nightly() ? samples : (samples + 2) / 3;
     const LoadedScene loaded = load(scene, settingsOf(ways));
-    if (!loaded.ok()) {
-        return {};
-    }
     EXPECT_EQ(loaded.package().skyLight(), ways.sky == SkyLight::On);
     EXPECT_EQ(loaded.package().shadowThrough(), ways.through);
     return estimateMean(20, [&](std::uint32_t seed) {
@@ -190,7 +187,6 @@ TEST(SkyLight, TheMeanIsThatOfChance) {
     lamp["emissiveFactor"] = {1.0F, 0.6F, 0.3F};
     addQuad(withLamp, lamp, {-1.99F, -0.5F, -1.0F}, {0, 0, -1.5F}, {0, 1.0F, 0});
     const std::unique_ptr<Environment> map = sunnyMap();
-    ASSERT_NE(map, nullptr);
     expectSameMean(estimate(scene, map.get(), {SkyLight::On, kManyBounces, true}, 96),
                    estimate(scene, map.get(), {SkyLight::Off, kManyBounces, true}, 384), "map with a sun");
     if (!test::nightly()) {
@@ -231,7 +227,6 @@ TEST(SkyLight, LightThroughGlassCountsOnce) {
 TEST(SkyLight, StrategiesAgree) {
     const gltf::Scene scene = glazedBox();
     const std::unique_ptr<Environment> map = sunnyMap();
-    ASSERT_NE(map, nullptr);
     for (const bool isMap : {false, true}) {
         const package::ShadowThrough through =
             isMap ? package::ShadowThrough::Alpha : package::ShadowThrough::Glass;
@@ -245,7 +240,6 @@ TEST(SkyLight, StrategiesAgree) {
                 options.bounces = 3;
                 const LinearImage image =
                     loaded.render(options, setupOf(scene, isMap ? map.get() : nullptr, 4, 1));
-                ASSERT_FALSE(image.pixels.empty());
                 reference = reference.value_or(image);
                 expectSameImage(image, *reference, nameOf(way));
             },
@@ -257,11 +251,9 @@ TEST(SkyLight, StrategiesAgree) {
 TEST(SkyLight, TheNoiseOfASunIsLess) {
     const gltf::Scene scene = openBox();
     const std::unique_ptr<Environment> map = sunnyMap();
-    ASSERT_NE(map, nullptr);
     const LoadedScene chance = load(scene, settingsOf({SkyLight::Off, 4, true}));
     const LoadedScene sampled = load(scene, settingsOf({SkyLight::On, 4, true}));
     const LinearImage reference = render(sampled, setupOf(scene, map.get(), 384, 1), 4);
-    ASSERT_FALSE(reference.pixels.empty());
     std::array<double, 2> errors{};
     for (int seed = 0; seed < 3; ++seed) {
         errors[0] +=
@@ -334,7 +326,6 @@ TEST(SkyLight, AMapHasToBeSampled) {
     options.strategy = package::kStrategyUber;
     options.width = options.height = 8;
     const auto renderer = loaded.makeRenderer(options);
-    ASSERT_NE(renderer, nullptr);
     FrameOptions frame = setupOf(scene, map.get(), 1, 1).frame;
     const Status refused = renderer->record(VK_NULL_HANDLE, frame);
     ASSERT_FALSE(refused);

@@ -61,7 +61,6 @@ protected:
             for (const auto strategy : {package::kStrategyUber, package::kStrategyVisibility}) {
                 FrameCounters counters;
                 const LinearImage image = loaded.render(strategy, setup, &counters);
-                ASSERT_FALSE(image.pixels.empty());
                 EXPECT_GT(counters.rays, 0U) << "nothing reflects: the scene tests no strategy";
                 if (reference.pixels.empty()) {
                     reference = image;

@@ -105,7 +105,7 @@ TEST(TextureFormats, DevicesReadWhatTheCpuUnpacks) {
                 data.images[i].pixels = inBlocks ? images.blocks[i] : images.pixels[i];
             }
         });
-        return loaded.ok() ? loaded.render(package::kStrategyUber, setup) : LinearImage{};
+        return loaded.render(package::kStrategyUber, setup);
     };
     const LinearImage blocks = picture(true);
     const LinearImage pixels = picture(false);
@@ -282,7 +282,7 @@ std::vector<double> pictureOf(const LoadedScene& loaded, const gltf::Scene& scen
     setup.frame.camera.position = {0, -kBetweenFloors * static_cast<float>(floor), 0};
     setup.frame.camera.forward = {0, -0.5F, -0.8660254F};
     setup.frame.camera.up = {0, 0.8660254F, -0.5F};
-    const LinearImage image = loaded.ok() ? loaded.render(package::kStrategyUber, setup) : LinearImage{};
+    const LinearImage image = loaded.render(package::kStrategyUber, setup);
     std::vector<double> light;
     for (const auto& pixel : image.pixels) {
         light.push_back(pixel[1]);
@@ -428,14 +428,13 @@ public:
         if (streamed_->editor() != nullptr) {
             streamed_->editor()->complete(frames_.completed());
         }
-        const Result<std::uint32_t> levels = stream().record(commands, frames_.frame(), bytes);
-        EXPECT_TRUE(levels.ok()) << (levels ? "" : toString(levels.error()));
+        const std::uint32_t levels = must(stream().record(commands, frames_.frame(), bytes));
         if (streamed_->editor() != nullptr) {
             EXPECT_TRUE(streamed_->editor()->record(commands, frames_.frame()));
         }
         EXPECT_TRUE(renderer_->record(commands, setup_.frame));
         frames_.submit();
-        return levels ? *levels : 0;
+        return levels;
     }
     void drain() {
         frames_.drain();

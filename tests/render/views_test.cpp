@@ -97,9 +97,8 @@ TEST(Views, SumsAreOverAllSamples) {
     options.width = 16;
     options.height = 16;
     const auto renderer = loaded.makeRenderer(options);
-    ASSERT_NE(renderer, nullptr);
     for (int picture = 0; picture < 2; ++picture) {
-        ASSERT_TRUE(renderer->render(defaultSetup(scene, 16, 16).frame, 3).ok());
+        must(renderer->render(defaultSetup(scene, 16, 16).frame, 3));
         EXPECT_EQ(LayerSet(*renderer).integer("rays", 8 * 16 + 4), 3U) << "and each picture begins anew";
     }
 }
@@ -183,8 +182,7 @@ void expectRightHalf(const gltf::Scene& scene, const LoadedScene& loaded, GpuSce
     options.width = 16;
     options.height = 16;
     const auto renderer = makeRenderer(loaded.package(), gpuScene, options);
-    ASSERT_NE(renderer, nullptr);
-    ASSERT_TRUE(renderer->render(defaultSetup(scene, 16, 16).frame, 1).ok());
+    must(renderer->render(defaultSetup(scene, 16, 16).frame, 1));
     measure::ViewInput input;
     input.package = &loaded.package();
     const measure::View view = must(measure::makeView(*measure::parseView("fallback"), *renderer, input));
@@ -218,7 +216,7 @@ TEST(Views, FindHitsOfTheFallback) {
     const EditReport set = must(editor.setInstanceMaterial(editor.instance(1), 0, added));
     EXPECT_EQ(set.missing.size(), 1U);
     TwoFrames frames(sharedContext());
-    ASSERT_TRUE(editor.record(frames.begin(), frames.frame()).ok());
+    must(editor.record(frames.begin(), frames.frame()));
     frames.submit();
     frames.drain();
     expectRightHalf(scene, loaded, *gpuScene, "fallback");
@@ -273,8 +271,7 @@ TEST(Views, EveryStrategyGivesTheSame) {
         options.width = 48;
         options.height = 28;
         const auto renderer = loaded.makeRenderer(options);
-        ASSERT_NE(renderer, nullptr);
-        ASSERT_TRUE(renderer->render(defaultSetup(scene, 48, 28).frame, 1).ok());
+        must(renderer->render(defaultSetup(scene, 48, 28).frame, 1));
         const LayerSet layers(*renderer);
         std::size_t hits = 0;
         std::uint32_t mostCases = 0;

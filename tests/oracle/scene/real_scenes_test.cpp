@@ -60,7 +60,7 @@ public:
     }
     LinearImage render(std::uint32_t samples) {
         setup_.samples = samples;
-        return loaded_.ok() ? loaded_.render(package::kStrategyVisibility, setup_) : LinearImage{};
+        return loaded_.render(package::kStrategyVisibility, setup_);
     }
 
 private:
@@ -120,7 +120,6 @@ TEST_P(RealScenes, AgreeWithTheOracle) {
     Device device(input);
 
     const LinearImage first = device.render(1);
-    ASSERT_FALSE(first.pixels.empty());
     const Difference centres =
         centreDifference(first, centrePicture(renderer, input.view), renderer, input.view);
     SCOPED_TRACE(toText(centres, 20));
@@ -130,7 +129,6 @@ TEST_P(RealScenes, AgreeWithTheOracle) {
     EXPECT_LE(centres.count(Cause::Other), subject.bounds.other);
 
     const LinearImage converged = device.render(kSamples);
-    ASSERT_FALSE(converged.pixels.empty());
     // At the same points as the device's samples, only chance and arithmetic differ.
     const Difference samples =
         meanDifference(converged, samplePicture(renderer, input.view, kSamples), kSamples);

@@ -183,17 +183,13 @@ Device::Device(const Rows& rows, const DeviceOptions& options)
         false, package::kEffectReflection | package::kEffectRefraction | package::kEffectIndirectDiffuse,
         1.0F};
     loaded_ = std::make_unique<testing::LoadedScene>(scene, settings);
-    if (!loaded_->ok()) {
-        return;
-    }
     RendererOptions wanted;
     wanted.strategy = package::kStrategyUber;
     wanted.width = wanted.height = options.size;
     renderer_ = loaded_->makeRenderer(wanted);
 }
 
-Device::~Device() {
-}
+Device::~Device() {}
 
 std::unique_ptr<Environment> Device::makeEnvironment(const Map& map) {
     LinearImage image{static_cast<std::uint32_t>(map.width()), static_cast<std::uint32_t>(map.height()), {}};
