@@ -3,6 +3,7 @@
 #include "cli/planted_device.h"
 #include "cli/render_command.h"
 #include "cli/schemas.h"
+#include "support/must.h"
 
 #include <glint/internal/package_modules.h>
 #include <glint/measure/device_file.h>
@@ -143,9 +144,7 @@ TEST_F(StrategyRender, DeviceFilesAreReadAsTheyAreWritten) {
     EXPECT_NE(cli::describe(*again).find("within 5 % at 100.0 %"), std::string::npos)
         << cli::describe(*again);
 
-    const Result<measure::DeviceFile> none = measure::fitDevice(read->device, {}, notes);
-    ASSERT_FALSE(none);
-    EXPECT_EQ(none.error().id, "calibration-points");
+    EXPECT_EQ(mustFail(measure::fitDevice(read->device, {}, notes)).id, "calibration-points");
 }
 
 TEST_F(StrategyRender, ConstantsAreOfTheStrategiesThatThereAre) {

@@ -287,9 +287,8 @@ TEST_F(Background, NeedsAPackageWithAFallback) {
     const LoadedScene without(*scene_, settingsWith(false));
     RendererOptions options = optionsOf(setup_, package::kStrategyUber, package::kTracerRayQuery);
     options.backgroundPipelines = true;
-    const auto renderer = Renderer::create(sharedContext(), without.package(), without.gpuScene(), options);
-    ASSERT_FALSE(renderer);
-    EXPECT_EQ(renderer.error().id, "package-fallback");
+    EXPECT_EQ(mustFail(Renderer::create(sharedContext(), without.package(), without.gpuScene(), options)).id,
+              "package-fallback");
     EXPECT_TRUE(
         without.package().spirv({package::roleNamed("ShadeFallback"), 0, package::kTracerRayQuery}).empty());
 }

@@ -82,10 +82,9 @@ TEST_F(FilteredHall, KeepsItsEdgesAndConverges) {
 
 TEST_F(FilteredHall, SaysWhichLayerIsMissing) {
     load({"depth", "normal", "motion", "emission", "demodulated", "variance"});
-    const auto denoiser = makeDenoiser();
-    ASSERT_FALSE(denoiser.ok());
-    EXPECT_EQ(denoiser.error().id, "layer-missing");
-    EXPECT_NE(denoiser.error().message.find("roughness"), std::string::npos) << denoiser.error().message;
+    const Diagnostic denoiser = mustFail(makeDenoiser());
+    EXPECT_EQ(denoiser.id, "layer-missing");
+    EXPECT_NE(denoiser.message.find("roughness"), std::string::npos) << denoiser.message;
 }
 
 }  // namespace

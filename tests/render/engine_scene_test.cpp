@@ -417,9 +417,7 @@ TEST(RayStepsReplacement, BatchesUseTheNewPackageAtOnce) {
         // Answers of another kind do not fit the engine's buffer.
         compiler::CompileSettings unlike = settings;
         unlike.answer = package::HitAnswer::Surface;
-        const auto refused = steps->replacePackage(packageOf(changed, unlike));
-        ASSERT_FALSE(refused);
-        EXPECT_EQ(refused.error().id, "ray-steps");
+        EXPECT_EQ(mustFail(steps->replacePackage(packageOf(changed, unlike))).id, "ray-steps");
     }
 }
 
@@ -451,9 +449,7 @@ TEST(RayStepsReplacement, ARendererOfTheSceneLeadsOrFollows) {
         ASSERT_TRUE(renderer->replacePackage(ofFrames[1]));
         const LinearImage image = drawn(*renderer, frame);
         engine.begin();
-        const Status stale = engine.ask(*steps, *scene);
-        ASSERT_FALSE(stale);
-        EXPECT_EQ(stale.error().id, "package-replaced");
+        EXPECT_EQ(mustFail(engine.ask(*steps, *scene)).id, "package-replaced");
         ASSERT_TRUE(steps->replacePackage(ofSteps[1]));
         ASSERT_TRUE(engine.ask(*steps, *scene));
         engine.submit();
@@ -466,9 +462,7 @@ TEST(RayStepsReplacement, ARendererOfTheSceneLeadsOrFollows) {
         engine.submit();
         engine.drain();
         EXPECT_EQ(engine.answers(2), wanted[0]);
-        const auto refused = renderer->render(frame);
-        ASSERT_FALSE(refused);
-        EXPECT_EQ(refused.error().id, "package-replaced");
+        EXPECT_EQ(mustFail(renderer->render(frame)).id, "package-replaced");
         ASSERT_TRUE(renderer->replacePackage(ofFrames[0]));
         EXPECT_TRUE(differ(drawn(*renderer, frame), image));
     }

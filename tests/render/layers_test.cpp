@@ -321,18 +321,13 @@ TEST(Layers, ErrorsSayWhatThereIs) {
     const gltf::Scene scene = hallScene();
     compiler::CompileSettings settings;
     settings.layers = {"refraction.radiance"};
-    const auto missing = compiler::compilePackage({&scene, 1}, settings);
-    ASSERT_FALSE(missing.ok());
-    EXPECT_EQ(missing.error().id, "layer-effect");
+    EXPECT_EQ(mustFail(compiler::compilePackage({&scene, 1}, settings)).id, "layer-effect");
     settings.layers = {"reflexion.radiance"};
-    const auto misspelt = compiler::compilePackage({&scene, 1}, settings);
-    ASSERT_FALSE(misspelt.ok());
-    EXPECT_NE(toString(misspelt.error()).find("reflection"), std::string::npos) << toString(misspelt.error());
+    const Diagnostic misspelt = mustFail(compiler::compilePackage({&scene, 1}, settings));
+    EXPECT_NE(toString(misspelt).find("reflection"), std::string::npos) << toString(misspelt);
     settings.layers = {"depth"};
     settings.passes = package::Passes::Steps;
-    const auto steps = compiler::compilePackage({&scene, 1}, settings);
-    ASSERT_FALSE(steps.ok());
-    EXPECT_EQ(steps.error().id, "passes");
+    EXPECT_EQ(mustFail(compiler::compilePackage({&scene, 1}, settings)).id, "passes");
 }
 
 }  // namespace

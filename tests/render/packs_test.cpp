@@ -230,12 +230,10 @@ TEST(Packs, ErrorsOfGlslNameTheFileTheLineAndTheFeature) {
     addCamera(scene);
     addInstance(scene,
                 addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -2}, {2, 0, 0}, {0, 2, 0})));
-    const Result<compiler::CompiledPackage> package = compiler::compilePackage(scene, {});
-    ASSERT_FALSE(package);
-    EXPECT_EQ(package.error().id, "glsl");
-    EXPECT_EQ(package.error().where, file.string() + ":5");
-    EXPECT_NE(package.error().message.find("feature retroreflection"), std::string::npos)
-        << package.error().message;
+    const Diagnostic package = mustFail(compiler::compilePackage(scene, {}));
+    EXPECT_EQ(package.id, "glsl");
+    EXPECT_EQ(package.where, file.string() + ":5");
+    EXPECT_NE(package.message.find("feature retroreflection"), std::string::npos) << package.message;
 }
 
 // Returns the texts of the modules of the example scene, by name, with the packs of `folder`.

@@ -6,6 +6,7 @@
 #include "render/rooms.h"
 #include "render/scene_builder.h"
 #include "render/ways.h"
+#include "support/must.h"
 #include "support/nightly.h"
 
 #include <gtest/gtest.h>
@@ -182,9 +183,8 @@ TEST(Paths, MoreBouncesThanThePackageHasAreAnError) {
     RendererOptions options = pathOptions(2);
     options.width = 8;
     options.height = 8;
-    const auto renderer = Renderer::create(sharedContext(), plain.package(), plain.gpuScene(), options);
-    ASSERT_FALSE(renderer.ok());
-    EXPECT_EQ(renderer.error().id, "package-bounces");
+    EXPECT_EQ(mustFail(Renderer::create(sharedContext(), plain.package(), plain.gpuScene(), options)).id,
+              "package-bounces");
 }
 
 materials::Material diffuse(float albedo, float emission) {

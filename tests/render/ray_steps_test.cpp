@@ -421,9 +421,8 @@ TEST(RaySteps, TakeAStructureByItsAddress) {
     const auto steps = must(RaySteps::create(sharedContext(), addressed.package(), **shared, options));
     RayBatch batch;
     batch.rays = batch.answers = 64;
-    const Status refused = steps->begin(VK_NULL_HANDLE, batch);
-    ASSERT_FALSE(refused);
-    EXPECT_NE(toString(refused.error()).find("RayBatch::tlas is 0"), std::string::npos);
+    const Diagnostic refused = mustFail(steps->begin(VK_NULL_HANDLE, batch));
+    EXPECT_NE(toString(refused).find("RayBatch::tlas is 0"), std::string::npos);
 }
 
 TEST(RaySteps, RefuseWhatTheyCannotDo) {

@@ -5,6 +5,7 @@
 #include "render/light_pictures.h"
 #include "render/scene_builder.h"
 #include "render/ways.h"
+#include "support/must.h"
 #include "support/nightly.h"
 #include "support/temporary_folder.h"
 
@@ -390,9 +391,7 @@ TEST(FoundLights, AutoDecidesByBouncesEffectsAndSizes) {
     settings.effects.named = compiler::builtinEffects({"reflection"});
     EXPECT_FALSE(finds()) << "without shadow rays";
     settings.sizedLights = SizedLights::On;
-    const auto refused = compiler::planPackage({&scene, 1}, settings);
-    ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().id, "sized-lights");
+    EXPECT_EQ(mustFail(compiler::planPackage({&scene, 1}, settings)).id, "sized-lights");
 }
 
 // A host's own lights, and the steps of its own rays, are not Glint's to find.
@@ -401,16 +400,12 @@ TEST(FoundLights, AHostsOwnLightsAreNotFound) {
     compiler::CompileSettings settings = settingsOf({SizedLights::On, 2});
     settings.skyLight = compiler::SkyLight::Off;
     settings.passes = package::Passes::Steps;
-    const auto steps = compiler::planPackage({&scene, 1}, settings);
-    ASSERT_FALSE(steps);
-    EXPECT_EQ(steps.error().id, "sized-lights");
+    EXPECT_EQ(mustFail(compiler::planPackage({&scene, 1}, settings)).id, "sized-lights");
     settings.passes = package::Passes::Frame;
     const test::TemporaryFolder folder;
     ASSERT_TRUE(base::writeFile(folder.path() / "lights.glsl", "// lights of a host\n"));
     settings.host = folder.path().string();
-    const auto host = compiler::planPackage({&scene, 1}, settings);
-    ASSERT_FALSE(host);
-    EXPECT_EQ(host.error().id, "sized-lights");
+    EXPECT_EQ(mustFail(compiler::planPackage({&scene, 1}, settings)).id, "sized-lights");
 }
 
 }  // namespace

@@ -287,9 +287,7 @@ TEST(SkyLight, AutoDecidesByBouncesAndEffects) {
     EXPECT_FALSE(samples()) << "without rays for the light that surfaces scatter";
     settings.effects.named = compiler::builtinEffects({"indirect-diffuse"});
     settings.skyLight = SkyLight::On;
-    const auto refused = compiler::planPackage({&scene, 1}, settings);
-    ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().id, "sky-light");
+    EXPECT_EQ(mustFail(compiler::planPackage({&scene, 1}, settings)).id, "sky-light");
 }
 
 // A host's own sky has no density: `auto` leaves it to rays, and `on` is refused.
@@ -310,9 +308,7 @@ vec3 hostSkyIrradianceOverPi(vec3 normal) { return vec3(0.5); }
     EXPECT_FALSE(loaded.package().skyLight());
     EXPECT_NEAR(meanOf(render(loaded, setupOf(scene, nullptr, 1, 1), 2)), 0.3, 1e-4);
     settings.skyLight = SkyLight::On;
-    const auto refused = compiler::planPackage({&scene, 1}, settings);
-    ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().id, "sky-light");
+    EXPECT_EQ(mustFail(compiler::planPackage({&scene, 1}, settings)).id, "sky-light");
 }
 
 // A map that was made without its distribution is refused.
@@ -327,9 +323,7 @@ TEST(SkyLight, AMapHasToBeSampled) {
     options.width = options.height = 8;
     const auto renderer = loaded.makeRenderer(options);
     FrameOptions frame = setupOf(scene, map.get(), 1, 1).frame;
-    const Status refused = renderer->record(VK_NULL_HANDLE, frame);
-    ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().id, "environment-unsampled");
+    EXPECT_EQ(mustFail(renderer->record(VK_NULL_HANDLE, frame)).id, "environment-unsampled");
 }
 
 }  // namespace

@@ -317,16 +317,13 @@ TEST(Views, AreMadeOfARenderersLayers) {
     EXPECT_EQ(pixels, 32U * 18U);
     EXPECT_EQ(view.picture.pixels.size(), 32U * 18U);
 
-    const auto missing = measure::makeView(*measure::parseView("rays"), shown.renderer(), input);
-    ASSERT_FALSE(missing.ok());
-    EXPECT_EQ(missing.error().id, "view-layer");
-    const auto unknown =
-        measure::makeView(*measure::parseView("refraction.hit-shader"), shown.renderer(), input);
-    ASSERT_FALSE(unknown.ok());
-    EXPECT_EQ(unknown.error().id, "view-source");
-    const auto alone = measure::makeView(*measure::parseView("difference"), shown.renderer(), input);
-    ASSERT_FALSE(alone.ok());
-    EXPECT_EQ(alone.error().id, "view-reference");
+    EXPECT_EQ(mustFail(measure::makeView(*measure::parseView("rays"), shown.renderer(), input)).id,
+              "view-layer");
+    EXPECT_EQ(
+        mustFail(measure::makeView(*measure::parseView("refraction.hit-shader"), shown.renderer(), input)).id,
+        "view-source");
+    EXPECT_EQ(mustFail(measure::makeView(*measure::parseView("difference"), shown.renderer(), input)).id,
+              "view-reference");
 }
 
 }  // namespace

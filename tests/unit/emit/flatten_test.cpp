@@ -80,9 +80,7 @@ TEST(Flatten, TakesTheNumbersThatALineGives) {
               "\n"
               "#line 5 \"root.comp\"\n"
               "int b;\n");
-    const auto bad = flattenRoot({}, "#version 460\n#define A 1\n#line 2\n#endif\n");
-    ASSERT_FALSE(bad);
-    EXPECT_EQ(bad.error().where, "root.comp:2");
+    EXPECT_EQ(mustFail(flattenRoot({}, "#version 460\n#define A 1\n#line 2\n#endif\n")).where, "root.comp:2");
 }
 
 TEST(Flatten, TakesCarriageReturnsAndAMissingLastNewline) {

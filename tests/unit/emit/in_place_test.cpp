@@ -81,10 +81,9 @@ TEST_F(WriteInPlace, LeavesTheEarlierPackageWholeWhenItFails) {
     fs::create_directories("new");
     std::ofstream("new/b.spv") << "of somebody else";
     const auto before = readFolder(".");
-    const Status status = writePackage(second_, ".");
-    ASSERT_FALSE(status);
-    EXPECT_EQ(status.error().id, "output-write");
-    EXPECT_NE(status.error().where.find("b.spv"), std::string::npos) << status.error().where;
+    const Diagnostic status = mustFail(writePackage(second_, "."));
+    EXPECT_EQ(status.id, "output-write");
+    EXPECT_NE(status.where.find("b.spv"), std::string::npos) << status.where;
     EXPECT_EQ(readFolder("."), before);
     EXPECT_EQ(countEntries("."), 6U);
 }

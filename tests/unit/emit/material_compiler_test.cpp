@@ -66,9 +66,7 @@ TEST(MaterialCompiler, CompilesOnlyWhatIsNew) {
 
         // An error changes nothing.
         set.materials.push_back({.name = "coat", .values = {{"clearcoatFacto", {1}}}});
-        const Result<compiler::CompiledMaterials> wrong = compiler->compile(set);
-        ASSERT_FALSE(wrong);
-        EXPECT_EQ(wrong.error().where, "game#/materials/2/values/clearcoatFacto");
+        EXPECT_EQ(mustFail(compiler->compile(set)).where, "game#/materials/2/values/clearcoatFacto");
         set.materials.pop_back();
         const compiler::CompiledMaterials again = must(compiler->compile(set));
         EXPECT_EQ(countCompiled(again), 0);
@@ -114,9 +112,7 @@ TEST(MaterialCompiler, CompilesOnlyWhatIsNew) {
 TEST(MaterialCompiler, RefusesPacksThatAreNotThere) {
     compiler::Settings settings = smallSettings();
     settings.materials = {"no such folder"};
-    const Result<compiler::MaterialCompiler> compiler = compiler::MaterialCompiler::create(settings);
-    ASSERT_FALSE(compiler);
-    EXPECT_EQ(compiler.error().id, "materials-folder");
+    EXPECT_EQ(mustFail(compiler::MaterialCompiler::create(settings)).id, "materials-folder");
 }
 
 }  // namespace

@@ -32,11 +32,10 @@ TEST(CompileModules, ReportsTheFirstErrorWhateverTheJobs) {
             sources.push_back(
                 testing::makeTinyModule(i, i >= 5 ? "data.x = wrong" + std::to_string(i) + ";" : ""));
         }
-        const auto modules = compileModules(std::move(sources), jobs, false);
-        ASSERT_FALSE(modules);
-        EXPECT_EQ(modules.error().id, "glsl");
-        EXPECT_EQ(modules.error().where, "case.glsl:13");
-        EXPECT_NE(modules.error().message.find("wrong5"), std::string::npos) << modules.error().message;
+        const Diagnostic modules = mustFail(compileModules(std::move(sources), jobs, false));
+        EXPECT_EQ(modules.id, "glsl");
+        EXPECT_EQ(modules.where, "case.glsl:13");
+        EXPECT_NE(modules.message.find("wrong5"), std::string::npos) << modules.message;
     }
 }
 
@@ -50,10 +49,9 @@ TEST(RenderTemplate, ReportsMissingAndMalformedTemplates) {
     compiler::SourceSet sources;
     sources.add("open.mustache", "{{#cases}} never closed");
     for (const char* const name : {"none.mustache", "open.mustache"}) {
-        const auto text = renderTemplate(sources, name, {});
-        ASSERT_FALSE(text);
-        EXPECT_EQ(text.error().id, "template");
-        EXPECT_EQ(text.error().where, name);
+        const Diagnostic text = mustFail(renderTemplate(sources, name, {}));
+        EXPECT_EQ(text.id, "template");
+        EXPECT_EQ(text.where, name);
     }
 }
 

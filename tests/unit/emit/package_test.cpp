@@ -150,9 +150,7 @@ TEST(CompilePackage, LayersThatAreOffLeaveNoCode) {
 TEST(CompilePackage, RefusesNoStrategy) {
     compiler::CompileSettings settings;
     settings.strategies = 0;
-    const auto package = compilePackage(makeSampleScene(), settings);
-    ASSERT_FALSE(package);
-    EXPECT_EQ(package.error().id, "strategy");
+    EXPECT_EQ(mustFail(compilePackage(makeSampleScene(), settings)).id, "strategy");
 }
 
 TEST(CompilePackage, FetchesNoTextureThatTheCaseDoesNotHave) {
@@ -353,10 +351,9 @@ TEST(CompilePackage, RefusesMoreCasesThanAllowed) {
     compiler::CompileSettings settings;
     settings.plan.merge = compiler::MergePolicy::None;
     settings.plan.maxShaders = 3;
-    const auto package = compilePackage(makeSampleScene(), settings);
-    ASSERT_FALSE(package);
-    EXPECT_EQ(package.error().id, "max-shaders");
-    EXPECT_FALSE(package.error().message.empty());
+    const Diagnostic package = mustFail(compilePackage(makeSampleScene(), settings));
+    EXPECT_EQ(package.id, "max-shaders");
+    EXPECT_FALSE(package.message.empty());
     settings.plan.maxShaders = 4;
     EXPECT_TRUE(compilePackage(makeSampleScene(), settings, &sharedModules()));
 }

@@ -87,9 +87,7 @@ TEST_F(WritePackage, RefusesAFolderThatHoldsSomethingElse) {
     fs::create_directories(other);
     std::ofstream(other / "manifest.json") << "{\"name\": \"a web page\"}";
     std::ofstream(other / "tables.bin") << "not ours";
-    const Status status = writePackage(second_, other);
-    ASSERT_FALSE(status);
-    EXPECT_EQ(status.error().id, "output-not-a-package");
+    EXPECT_EQ(mustFail(writePackage(second_, other)).id, "output-not-a-package");
     EXPECT_EQ(readFolder(other).size(), 2U);
 }
 
@@ -104,15 +102,9 @@ TEST_F(WritePackage, ReplacesAPackageWhoseManifestIsLost) {
 
 TEST_F(WritePackage, RefusesPlacesThatCannotBeWritten) {
     std::ofstream(temporary_.path() / "file") << "a file";
-    const Status onFile = writePackage(first_, temporary_.path() / "file");
-    ASSERT_FALSE(onFile);
-    EXPECT_EQ(onFile.error().id, "output-not-a-folder");
-    const Status belowFile = writePackage(first_, temporary_.path() / "file" / "out");
-    ASSERT_FALSE(belowFile);
-    EXPECT_EQ(belowFile.error().id, "output-write");
-    const Status inProc = writePackage(first_, "/proc/glint-out");
-    ASSERT_FALSE(inProc);
-    EXPECT_EQ(inProc.error().id, "output-write");
+    EXPECT_EQ(mustFail(writePackage(first_, temporary_.path() / "file")).id, "output-not-a-folder");
+    EXPECT_EQ(mustFail(writePackage(first_, temporary_.path() / "file" / "out")).id, "output-write");
+    EXPECT_EQ(mustFail(writePackage(first_, "/proc/glint-out")).id, "output-write");
     EXPECT_FALSE(writePackage(first_, ""));
     EXPECT_FALSE(writePackage(first_, "/"));
 }
@@ -124,10 +116,9 @@ TEST_F(WritePackage, LeavesTheEarlierPackageWholeWhenItFails) {
     fs::create_directories(folder_ / "new.spv");
     std::ofstream(folder_ / "new.spv" / "foreign") << "f";
     const auto before = readFolder(folder_);
-    const Status status = writePackage(second_, folder_);
-    ASSERT_FALSE(status);
-    EXPECT_EQ(status.error().id, "output-write");
-    EXPECT_FALSE(status.error().hint.empty());
+    const Diagnostic status = mustFail(writePackage(second_, folder_));
+    EXPECT_EQ(status.id, "output-write");
+    EXPECT_FALSE(status.hint.empty());
     EXPECT_EQ(readFolder(folder_), before);
     EXPECT_EQ(countEntries(folder_.parent_path()), 1U);
 }
@@ -137,9 +128,7 @@ TEST_F(WritePackage, LeavesTheEarlierPackageWholeWhenANameCannotBeWritten) {
     const auto before = readFolder(folder_);
     const compiler::CompiledPackage tooLong =
         makePackage({{"tables.bin", "three"}, {std::string(300, 'n') + ".spv", "n"}});
-    const Status status = writePackage(tooLong, folder_);
-    ASSERT_FALSE(status);
-    EXPECT_EQ(status.error().id, "output-write");
+    EXPECT_EQ(mustFail(writePackage(tooLong, folder_)).id, "output-write");
     EXPECT_EQ(readFolder(folder_), before);
     EXPECT_EQ(countEntries(folder_.parent_path()), 1U);
 }

@@ -99,10 +99,8 @@ TEST(GltfNodes, TakesTheSceneThatIsAskedFor) {
             << refused.error().message;
     }
     EXPECT_NE(read("Roon").error().message.find("did you mean Room?"), std::string::npos);
-    const Result<gltf::Scene> none =
-        importText(R"({"asset": {"version": "2.0"}, "nodes": [{}]})", {.scene = "0"});
-    ASSERT_FALSE(none);
-    EXPECT_EQ(none.error().id, "scene-unknown");
+    EXPECT_EQ(mustFail(importText(R"({"asset": {"version": "2.0"}, "nodes": [{}]})", {.scene = "0"})).id,
+              "scene-unknown");
 }
 
 TEST(GltfNodes, DrawsEachNodeOnce) {

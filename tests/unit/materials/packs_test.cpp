@@ -33,11 +33,10 @@ protected:
 
     // Expects that the pack is refused with this error at a place that ends so.
     void expectError(std::string_view id, std::string_view place, std::string_view message) const {
-        const Result<const materials::MaterialModel*> model = load();
-        ASSERT_FALSE(model);
-        EXPECT_EQ(model.error().id, id);
-        EXPECT_TRUE(model.error().where.ends_with(place)) << model.error().where;
-        EXPECT_NE(model.error().message.find(message), std::string::npos) << model.error().message;
+        const Diagnostic model = mustFail(load());
+        EXPECT_EQ(model.id, id);
+        EXPECT_TRUE(model.where.ends_with(place)) << model.where;
+        EXPECT_NE(model.message.find(message), std::string::npos) << model.message;
     }
 
     test::TemporaryFolder folder_;
@@ -74,10 +73,8 @@ TEST_F(MaterialPacks, WithoutFoldersTheModelIsThatOfGlint) {
 
 TEST_F(MaterialPacks, AFolderMustHaveADeclaration) {
     expectError("materials-folder", folder_.path().filename().string(), "holds no declaration");
-    const Result<const materials::MaterialModel*> none =
-        materials::loadMaterialModel(std::vector<std::string>{"/nowhere"});
-    ASSERT_FALSE(none);
-    EXPECT_EQ(none.error().id, "materials-folder");
+    EXPECT_EQ(mustFail(materials::loadMaterialModel(std::vector<std::string>{"/nowhere"})).id,
+              "materials-folder");
 }
 
 TEST_F(MaterialPacks, DeclaredGlslMustBeThere) {

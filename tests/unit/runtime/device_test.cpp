@@ -30,10 +30,9 @@ TEST_F(ContextTest, NamesItsDeviceAndDriver) {
 TEST_F(ContextTest, UnknownDeviceNamesListTheDevices) {
     HeadlessOptions options;
     options.deviceName = "no such device";
-    const auto other = Context::createHeadless(options);
-    ASSERT_FALSE(other);
-    EXPECT_EQ(other.error().id, "device-missing");
-    EXPECT_NE(other.error().hint.find(context().deviceName()), std::string::npos);
+    const Diagnostic other = mustFail(Context::createHeadless(options));
+    EXPECT_EQ(other.id, "device-missing");
+    EXPECT_NE(other.hint.find(context().deviceName()), std::string::npos);
 }
 
 // A device may have one type of memory for everything.
@@ -115,14 +114,12 @@ TEST_F(ContextTest, RenderersNameTheModuleAndTheFeatureThatTheDeviceLacks) {
     const std::unique_ptr<GpuScene> uploaded = upload(package, scene);
     ASSERT_NE(uploaded, nullptr);
     std::erase(context().state().features, "shaderStorageImageExtendedFormats");
-    const auto renderer =
-        Renderer::create(context(), package, *uploaded, {package::kStrategyVisibility, 8, 8});
-    ASSERT_FALSE(renderer);
-    EXPECT_EQ(renderer.error().id, "module-features");
-    EXPECT_NE(
-        renderer.error().message.find(" needs shaderStorageImageExtendedFormats, which the device lacks"),
-        std::string::npos)
-        << renderer.error().message;
+    const Diagnostic renderer =
+        mustFail(Renderer::create(context(), package, *uploaded, {package::kStrategyVisibility, 8, 8}));
+    EXPECT_EQ(renderer.id, "module-features");
+    EXPECT_NE(renderer.message.find(" needs shaderStorageImageExtendedFormats, which the device lacks"),
+              std::string::npos)
+        << renderer.message;
 }
 
 class AdoptedContextTest : public ContextTest, public ::testing::WithParamInterface<std::uint32_t> {};
@@ -172,15 +169,11 @@ TEST_F(ContextTest, AdoptChecksItsHandles) {
     for (const auto& change : breaks) {
         DeviceHandles handles = good;
         change(handles);
-        const auto adopted = Context::adopt(handles);
-        ASSERT_FALSE(adopted);
-        EXPECT_EQ(adopted.error().id, "context-handles");
+        EXPECT_EQ(mustFail(Context::adopt(handles)).id, "context-handles");
     }
     DeviceHandles handles = good;
     handles.queueFamily = 99;
-    const auto adopted = Context::adopt(handles);
-    ASSERT_FALSE(adopted);
-    EXPECT_EQ(adopted.error().id, "context-queue");
+    EXPECT_EQ(mustFail(Context::adopt(handles)).id, "context-queue");
 }
 
 class UploadTest : public test::DeviceTest {

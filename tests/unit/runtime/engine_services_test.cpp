@@ -251,9 +251,8 @@ TEST_F(EngineServices, NothingBypassesThem) {
         EXPECT_FALSE(adopted->addPipelineCache(*adopted->pipelineCacheData()));
         // The caller's allocator is full: an error, and everything stays.
         memory_.full = true;
-        const auto refused = Renderer::create(*adopted, *other, *uploaded, options);
-        ASSERT_FALSE(refused);
-        EXPECT_EQ(refused.error().kind, ErrorKind::OutOfDeviceMemory);
+        EXPECT_EQ(mustFail(Renderer::create(*adopted, *other, *uploaded, options)).kind,
+                  ErrorKind::OutOfDeviceMemory);
         memory_.full = false;
         EXPECT_TRUE(renderer->render(frame));
         renderer.reset();
@@ -311,9 +310,7 @@ TEST_F(EngineServices, PartsAreRefused) {
              [](HostServices& services) { services.lockQueue = nullptr; }}) {
         HostServices services = services_;
         change(services);
-        const auto adopted = Context::adopt(host_.handles(), services);
-        ASSERT_FALSE(adopted);
-        EXPECT_EQ(adopted.error().id, "context-services");
+        EXPECT_EQ(mustFail(Context::adopt(host_.handles(), services)).id, "context-services");
     }
 }
 
@@ -343,9 +340,7 @@ TEST_F(EngineServices, ClaimsAreComparedWithTheDevice) {
         DeviceHandles one = host_.handles();
         EXPECT_TRUE(checkClaims(one, without));
         one.*claim = true;
-        const Status status = checkClaims(one, without);
-        ASSERT_FALSE(status);
-        EXPECT_EQ(status.error().id, "device-features");
+        EXPECT_EQ(mustFail(checkClaims(one, without)).id, "device-features");
         ++refused;
     }
     EXPECT_EQ(refused, 6U);

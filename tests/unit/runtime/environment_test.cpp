@@ -24,11 +24,10 @@ LinearImage imageOf(std::uint32_t width, std::uint32_t height) {
 TEST(MapCheck, SaysWhichPixelIsWrong) {
     LinearImage image = imageOf(5, 3);
     image.pixels[2 * 5 + 4][1] = std::numeric_limits<float>::quiet_NaN();
-    const Result<CheckedMap> nan = checkMap(image);
-    ASSERT_FALSE(nan);
-    EXPECT_EQ(nan.error().id, "environment-radiance");
-    EXPECT_NE(nan.error().message.find("column 4, row 2"), std::string::npos) << nan.error().message;
-    EXPECT_NE(nan.error().message.find("NaN"), std::string::npos) << nan.error().message;
+    const Diagnostic nan = mustFail(checkMap(image));
+    EXPECT_EQ(nan.id, "environment-radiance");
+    EXPECT_NE(nan.message.find("column 4, row 2"), std::string::npos) << nan.message;
+    EXPECT_NE(nan.message.find("NaN"), std::string::npos) << nan.message;
     image.pixels[2 * 5 + 4][1] = std::numeric_limits<float>::infinity();
     EXPECT_NE(checkMap(image).error().message.find("infinite"), std::string::npos);
     image.pixels[2 * 5 + 4][1] = 2e18F;

@@ -187,9 +187,8 @@ TEST_F(InFlight, RenderersOfASceneSwitchTogether) {
         EXPECT_EQ(renderer->replacementProgress().inUse, 1U);
         EXPECT_EQ(renderer->state().size.bucketCount, other->bucketCount());
     }
-    const auto stale = Renderer::create(context(), *package, *uploaded, {package::kStrategyUber, 8, 8});
-    ASSERT_FALSE(stale);
-    EXPECT_EQ(stale.error().id, "scene-package");
+    EXPECT_EQ(mustFail(Renderer::create(context(), *package, *uploaded, {package::kStrategyUber, 8, 8})).id,
+              "scene-package");
     EXPECT_NE(makeRenderer(*other, *uploaded, package::kStrategyUber, 8, 8), nullptr);
 }
 

@@ -130,10 +130,9 @@ TEST(PackageMemory, WhatIsMissingIsNamed) {
     EXPECT_EQ(Package::load(std::span<const package::EmbeddedFile>{}).error().id, "package-missing");
     Files files(spec);
     files.remove(spec.modules[3].file);
-    const Result<Package> loaded = files.load();
-    ASSERT_FALSE(loaded);
-    EXPECT_EQ(loaded.error().id, "package-module-missing");
-    EXPECT_NE(loaded.error().where.find(spec.modules[3].file), std::string::npos);
+    const Diagnostic loaded = mustFail(files.load());
+    EXPECT_EQ(loaded.id, "package-module-missing");
+    EXPECT_NE(loaded.where.find(spec.modules[3].file), std::string::npos);
 }
 
 TEST(PackageMemory, FilesThatNoTableNamesAreIgnored) {

@@ -186,9 +186,7 @@ TEST_F(PackageTest, RetiredCasesNeedNoModules) {
 
     spec.primitives[0].shaderId = 1;
     write(spec);
-    const Result<Package> used = Package::load(folder_.path());
-    ASSERT_FALSE(used);
-    EXPECT_EQ(used.error().id, "package-altered");
+    EXPECT_EQ(mustFail(Package::load(folder_.path())).id, "package-altered");
 }
 
 // Runs the checks without files. Returns the ID of the error, or "".
@@ -247,9 +245,7 @@ TEST_F(PackageTest, ResealedGarbageIsNoCrash) {
 
 TEST_F(PackageTest, FoldersThatAreNoPackage) {
     EXPECT_EQ(load(), "package-missing");
-    const Result<Package> nowhere = Package::load(folder_.path() / "nowhere");
-    ASSERT_FALSE(nowhere);
-    EXPECT_EQ(nowhere.error().id, "package-missing");
+    EXPECT_EQ(mustFail(Package::load(folder_.path() / "nowhere")).id, "package-missing");
     EXPECT_EQ(loadTables({'P', 'N', 'G', ' ', 'f', 'i', 'l', 'e', '!'}), "package-foreign");
     EXPECT_EQ(loadTables(std::vector<std::uint8_t>(4096, 0)), "package-foreign");
     std::filesystem::remove(folder_.path() / package::kTablesFile);
@@ -261,10 +257,9 @@ TEST_F(PackageTest, OtherVersionsAreNamed) {
     PackageSpec spec = test::makeSpec();
     spec.version = package::kVersion + 1;
     write(spec);
-    const Result<Package> newer = Package::load(folder_.path());
-    ASSERT_FALSE(newer);
-    EXPECT_EQ(newer.error().id, "package-version");
-    EXPECT_NE(newer.error().message.find(std::to_string(package::kVersion + 1)), std::string::npos);
+    const Diagnostic newer = mustFail(Package::load(folder_.path()));
+    EXPECT_EQ(newer.id, "package-version");
+    EXPECT_NE(newer.message.find(std::to_string(package::kVersion + 1)), std::string::npos);
     spec = test::makeSpec();
     spec.interopHash ^= 1;
     write(spec);
@@ -322,9 +317,7 @@ TEST_F(PackageTest, LinksThatLeaveTheFolderAreRefused) {
     test::writeModules(spec, folder_.path());
     std::filesystem::remove(inside / spec.modules[0].file);
     std::filesystem::create_symlink(folder_.path() / spec.modules[0].file, inside / spec.modules[0].file);
-    const Result<Package> loaded = Package::load(inside);
-    ASSERT_FALSE(loaded);
-    EXPECT_EQ(loaded.error().id, "package-file-name");
+    EXPECT_EQ(mustFail(Package::load(inside)).id, "package-file-name");
 }
 
 // Each change breaks one promise of an otherwise valid package.

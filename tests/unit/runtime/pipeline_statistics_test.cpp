@@ -100,9 +100,7 @@ TEST(PipelineExecutables, AreReadWhole) {
     }
     EXPECT_EQ(askedExecutables, 2U);
     context.vk.GetPipelineExecutablePropertiesKHR = lost;
-    const auto failed = readExecutables(context, VK_NULL_HANDLE);
-    ASSERT_FALSE(failed);
-    EXPECT_EQ(failed.error().id, "vulkan-call");
+    EXPECT_EQ(mustFail(readExecutables(context, VK_NULL_HANDLE)).id, "vulkan-call");
 }
 
 TEST(PipelineExecutables, AreAskedOfTheDeviceWithTheRest) {
@@ -136,9 +134,7 @@ TEST_F(StatisticsOfARenderer, NameEveryPipeline) {
     ASSERT_NE(gpuScene, nullptr);
     const auto renderer = makeRenderer(package, *gpuScene, package::kStrategyVisibility, 8, 8);
     ASSERT_NE(renderer, nullptr);
-    const auto refused = renderer->pipelineStatistics();
-    ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().id, "pipeline-statistics");
+    EXPECT_EQ(mustFail(renderer->pipelineStatistics()).id, "pipeline-statistics");
 
     pretend(context().state());
     renderer->state().pipelines.captureStatistics = true;
@@ -168,9 +164,7 @@ TEST_F(StatisticsOfARenderer, AreRefusedWhereTheDeviceHasNone) {
     options.width = 8;
     options.height = 8;
     options.pipelineStatistics = true;
-    const auto renderer = Renderer::create(context(), package, *gpuScene, options);
-    ASSERT_FALSE(renderer);
-    EXPECT_EQ(renderer.error().id, "pipeline-statistics");
+    EXPECT_EQ(mustFail(Renderer::create(context(), package, *gpuScene, options)).id, "pipeline-statistics");
 }
 
 }  // namespace

@@ -279,13 +279,11 @@ TEST_P(RendererTest, BadRequestsAreErrors) {
     TestScene scene;
     gpuScene_ = upload(package, scene);
     for (const auto& [width, height] : {std::pair(0U, 8U), std::pair(8U, 0U), std::pair(1U << 20, 8U)}) {
-        const auto renderer = Renderer::create(context(), package, *gpuScene_, {GetParam(), width, height});
-        ASSERT_FALSE(renderer);
-        EXPECT_EQ(renderer.error().id, "render-size");
+        EXPECT_EQ(mustFail(Renderer::create(context(), package, *gpuScene_, {GetParam(), width, height})).id,
+                  "render-size");
     }
-    const auto noStrategy = Renderer::create(context(), package, *gpuScene_, {package::Strategy{3}, 8, 8});
-    ASSERT_FALSE(noStrategy);
-    EXPECT_EQ(noStrategy.error().id, "renderer-options");
+    EXPECT_EQ(mustFail(Renderer::create(context(), package, *gpuScene_, {package::Strategy{3}, 8, 8})).id,
+              "renderer-options");
     renderer_ = makeRenderer(package, *gpuScene_, GetParam(), 8, 8);
     EXPECT_FALSE(renderer_->render(makeFrame(4.0F), 0));
     FrameOptions frame = makeFrame(4.0F);

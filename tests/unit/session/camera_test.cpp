@@ -160,9 +160,7 @@ TEST(SceneCamera, OrthographicKeepsItsHeight) {
 }
 
 TEST(SceneCamera, FlatNodeIsAnError) {
-    const Result<CameraView> camera = sceneCamera(sceneWithCameras(), 2, 1.0);
-    ASSERT_FALSE(camera);
-    EXPECT_EQ(camera.error().id, "camera-matrix");
+    EXPECT_EQ(mustFail(sceneCamera(sceneWithCameras(), 2, 1.0)).id, "camera-matrix");
 }
 
 TEST(ChooseCamera, ByNameNumberAutoOrDefault) {

@@ -261,37 +261,31 @@ TEST(Join, ValidatesGroupsOfFunctions) {
         invalid += compiler::validateSpirv(copy, "copy") ? 0 : 1;
     }
     EXPECT_EQ(invalid, 1);
-    const Status found = compiler::validateJoined(shader, "shader", 2);
-    ASSERT_FALSE(found);
-    EXPECT_EQ(found.error().message, compiler::validateSpirv(shader, "shader").error().message);
+    EXPECT_EQ(mustFail(compiler::validateJoined(shader, "shader", 2)).message,
+              compiler::validateSpirv(shader, "shader").error().message);
 }
 
 TEST(Join, RefusesWhatDoesNotFit) {
     const Words first = partOf("first", "hit.place.x");
     const Words second = partOf("second", "hit.place.y");
-    const auto missing = join({headOf(), first});
-    ASSERT_FALSE(missing);
-    EXPECT_EQ(missing.error().id, "spirv-join");
-    EXPECT_NE(missing.error().message.find("second"), std::string::npos);
+    const Diagnostic missing = mustFail(join({headOf(), first}));
+    EXPECT_EQ(missing.id, "spirv-join");
+    EXPECT_NE(missing.message.find("second"), std::string::npos);
 
-    const auto twice = join({headOf(), first, second, first});
-    ASSERT_FALSE(twice);
-    EXPECT_NE(twice.error().message.find("two parts have a function first"), std::string::npos);
+    const Diagnostic twice = mustFail(join({headOf(), first, second, first}));
+    EXPECT_NE(twice.message.find("two parts have a function first"), std::string::npos);
 
     const Words other = compilePart("float second(float hit) { return hit; }\nvoid main() { second(1.0); }\n",
                                     {{"second"}, {}, false});
-    const auto type = join({headOf(), first, other});
-    ASSERT_FALSE(type);
-    EXPECT_NE(type.error().message.find("second"), std::string::npos);
+    const Diagnostic type = mustFail(join({headOf(), first, other}));
+    EXPECT_NE(type.message.find("second"), std::string::npos);
 
     const auto entry = join({headOf(false), first, headOf(false)});
     ASSERT_FALSE(entry);
 
     Words torn = second;
     torn[compiler::kSpirvHeaderWords] += 1U << 20U;  // an instruction that is longer than it can be
-    const auto damaged = join({headOf(), first, torn});
-    ASSERT_FALSE(damaged);
-    EXPECT_EQ(damaged.error().id, "spirv-join");
+    EXPECT_EQ(mustFail(join({headOf(), first, torn})).id, "spirv-join");
 }
 
 // Two parts that disagree about a resource were not made of the same sources.

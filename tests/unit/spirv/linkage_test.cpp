@@ -71,10 +71,9 @@ TEST(Linkage, AProgramKeepsItsEntryPoint) {
 }
 
 TEST(Linkage, RefusesToExportWhatIsNotThere) {
-    const auto words = compiler::compileLinkable({"library", compiler::ShaderStage::Compute, kSource, {}},
-                                                 {{"hostUnused"}, {}}, {});
-    ASSERT_FALSE(words);
-    EXPECT_EQ(words.error().id, "spirv-linkage");
+    const Diagnostic words = mustFail(compiler::compileLinkable(
+        {"library", compiler::ShaderStage::Compute, kSource, {}}, {{"hostUnused"}, {}}, {}));
+    EXPECT_EQ(words.id, "spirv-linkage");
 }
 
 }  // namespace

@@ -80,15 +80,12 @@ TEST(Lint, ReportsWhatIsNotValid) {
     Words operand = good;
     operand.back() = 2U << 16U | 253U;  // the end of the function, as a return of two words
     for (const Words& words : {bound, Words(good.begin(), good.end() - 1)}) {
-        const Result<compiler::SpirvLint> lint = compiler::lintSpirv(words);
-        ASSERT_FALSE(lint);
-        EXPECT_EQ(lint.error().id, "spirv-invalid");
-        EXPECT_FALSE(lint.error().hint.empty());
+        const Diagnostic lint = mustFail(compiler::lintSpirv(words));
+        EXPECT_EQ(lint.id, "spirv-invalid");
+        EXPECT_FALSE(lint.hint.empty());
     }
     for (const Words& words : {Words(), Words(5, 7U), operand}) {
-        const Result<compiler::SpirvLint> lint = compiler::lintSpirv(words);
-        ASSERT_FALSE(lint);
-        EXPECT_EQ(lint.error().id, "spirv-format");
+        EXPECT_EQ(mustFail(compiler::lintSpirv(words)).id, "spirv-format");
     }
 }
 
