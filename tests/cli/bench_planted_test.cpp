@@ -65,8 +65,7 @@ protected:
         std::vector<std::string> arguments{"compile",    "scene.gltf", "-o",     name,
                                            "--strategy", "visibility", "--emit", "glsl"};
         arguments.insert(arguments.end(), kExactPackage.begin(), kExactPackage.end());
-        const Outcome outcome = run(arguments);
-        ASSERT_EQ(outcome.exit, 0) << outcome.err;
+        must(run(arguments));
     }
     // Returns the points of the packages, by name.
     std::map<std::string, Json> measure(const std::vector<std::string>& packages) const {
@@ -79,8 +78,7 @@ protected:
             arguments.emplace_back("--candidate");
             arguments.emplace_back(name).append("=").append(name);
         }
-        const Outcome outcome = run(arguments);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome = must(run(arguments));
         const Json report = outcome.json();
         std::map<std::string, Json> points;
         for (const Json& point : report.at("points")) {

@@ -72,8 +72,7 @@ TEST_F(Choice, RaysTestAlphaMasksWhereASceneHasThem) {
         writeTinyScene(path(""), scene);
         std::vector<std::string> line{"compile", "scene.gltf", "-o", "package", "--strategy", "uber"};
         line.insert(line.end(), options.begin(), options.end());
-        const Outcome outcome = run(line);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome = must(run(line));
         EXPECT_EQ(outcome.err.find("[alpha-tested]") != std::string::npos, notes) << outcome.err;
         for (const auto& [note, asks] : {std::pair{"BLEND is drawn opaque: Floor [alpha-blend]", "tested"},
                                          std::pair{"[alpha-stochastic]", ""}}) {

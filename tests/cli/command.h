@@ -21,6 +21,10 @@ struct Outcome {
     nlohmann::json json() const;
 };
 
+// Returns the outcome of a command that has to succeed. Otherwise it throws what the command has said, which
+// GoogleTest reports as the failure of the case.
+Outcome must(Outcome outcome);
+
 // Gives each test an empty folder, which is removed at the end.
 class CommandTest : public ::testing::Test {
 protected:

@@ -23,8 +23,7 @@ private:
 
 TEST_F(CompileCommand, DryRunPlansAndWritesNothing) {
     const std::vector<std::string> before = filesBelow(path(""));
-    const Outcome outcome = run({"compile", scene(), "--dry-run", "--json", "-o", "package"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(run({"compile", scene(), "--dry-run", "--json", "-o", "package"}));
     const nlohmann::json json = outcome.json();
     EXPECT_EQ(json.at("counts").at("materials"), 3);
     EXPECT_EQ(json.at("counts").at("keysPresent"), 2);
@@ -68,8 +67,7 @@ TEST_F(CompileCommand, DryRunRefusesWhatIsRefusedWithoutIt) {
 }
 
 TEST_F(CompileCommand, ExplainWarnsOfSettingsThatChangeNothing) {
-    const Outcome outcome = run({"explain", scene(), "--no-trust-textures"});
-    EXPECT_EQ(outcome.exit, 0);
+    const Outcome outcome = must(run({"explain", scene(), "--no-trust-textures"}));
     EXPECT_TRUE(has(outcome.err, "--no-trust-textures changes nothing: there are no textures"))
         << outcome.err;
     EXPECT_FALSE(has(run({"explain", scene()}).err, "setting-idle"));
@@ -110,8 +108,7 @@ TEST_F(CompileCommand, SettingsThatChangeNothingAreWarnedOf) {
 }
 
 TEST_F(CompileCommand, JsonHasWhatIsPromised) {
-    const Outcome outcome = run({"compile", scene(), "-o", "package", "--json"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(run({"compile", scene(), "-o", "package", "--json"}));
     const nlohmann::json json = outcome.json();
     for (const char* name : {"materials", "keysPossible", "keysPresent", "cases", "uniqueSpirv"}) {
         EXPECT_TRUE(json.at("counts").at(name).is_number_integer()) << name;
@@ -135,9 +132,8 @@ TEST_F(CompileCommand, JsonHasWhatIsPromised) {
 }
 
 TEST_F(CompileCommand, JsonHasTheStagesOfTheManifest) {
-    const Outcome outcome = run({"compile", scene(), "-o", "package", "--json", "--strategy", "all",
-                                 "--tracer", "all", "--effects", "all"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(run({"compile", scene(), "-o", "package", "--json", "--strategy", "all",
+                                      "--tracer", "all", "--effects", "all"}));
     const nlohmann::json shaders = outcome.json().at("shaders");
     const nlohmann::json manifest = nlohmann::json::parse(readText(path("package/manifest.json")));
     ASSERT_EQ(shaders.size(), 2U);
@@ -188,8 +184,7 @@ TEST_F(CompileCommand, EmitChoosesWhatElseIsWritten) {
 }
 
 TEST_F(CompileCommand, TextSummaryNamesWhatItDid) {
-    const Outcome outcome = run({"compile", scene(), "-o", "package"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(run({"compile", scene(), "-o", "package"}));
     EXPECT_TRUE(outcome.err.empty()) << outcome.err;
     for (const char* label : {"materials", "keys present", "cases", "unique SPIR-V", "package bytes"}) {
         EXPECT_NE(outcome.out.find(label), std::string::npos) << label;
@@ -205,8 +200,7 @@ TEST_F(CompileCommand, WerrorRefusesBeforeAnythingIsWritten) {
     EXPECT_NE(refused.err.find("[werror]"), std::string::npos) << refused.err;
     EXPECT_FALSE(std::filesystem::exists(path("package")));
 
-    const Outcome accepted = run({"compile", scene(), "--dry-run", "--json"});
-    EXPECT_EQ(accepted.exit, 0);
+    const Outcome accepted = must(run({"compile", scene(), "--dry-run", "--json"}));
     EXPECT_EQ(accepted.json().at("diagnostics").size(), 1U);
     EXPECT_NE(accepted.err.find("EXT_not_known_to_anyone"), std::string::npos) << accepted.err;
 }
@@ -234,8 +228,7 @@ TEST_F(CompileCommand, RefusesAFolderOfSomethingElse) {
 
 TEST_F(CompileCommand, InspectShowsThePackage) {
     ASSERT_EQ(run({"compile", scene(), "-o", "package", "--merge", "none"}).exit, 0);
-    const Outcome outcome = run({"inspect", "package", "--json"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(run({"inspect", "package", "--json"}));
     const nlohmann::json json = outcome.json();
     EXPECT_EQ(json.at("merge"), "none");
     EXPECT_EQ(json.at("alpha"), "opaque");
@@ -253,8 +246,7 @@ TEST_F(CompileCommand, InspectShowsThePackage) {
     for (const nlohmann::json& module : json.at("modules")) {
         EXPECT_GT(module.at("instructions").get<int>(), 0) << module;
     }
-    const Outcome text = run({"inspect", "package"});
-    EXPECT_EQ(text.exit, 0);
+    const Outcome text = must(run({"inspect", "package"}));
     EXPECT_NE(text.out.find("uber, visibility"), std::string::npos) << text.out;
 }
 

@@ -35,8 +35,7 @@ protected:
 constexpr const char* kColor = "\x1b[1;33mwarning\x1b[0m: ";
 
 TEST_F(Diagnostics, AreReportedOnStandardErrorAndInJson) {
-    const Outcome outcome = plan({"--json"});
-    EXPECT_EQ(outcome.exit, 0);
+    const Outcome outcome = must(plan({"--json"}));
     EXPECT_TRUE(outcome.err.starts_with("scene.gltf#/extensionsUsed")) << outcome.err;
     EXPECT_TRUE(outcome.err.ends_with(" [extension-ignored]\n")) << outcome.err;
     const nlohmann::json list = outcome.json().at("diagnostics");
@@ -57,8 +56,7 @@ TEST_F(Diagnostics, AreInTheJsonOfACommandThatFails) {
 }
 
 TEST_F(Diagnostics, WnoLeavesThemOut) {
-    const Outcome outcome = plan({"-Wno-extension-ignored", "--json"});
-    EXPECT_EQ(outcome.exit, 0);
+    const Outcome outcome = must(plan({"-Wno-extension-ignored", "--json"}));
     EXPECT_EQ(outcome.err, "");
     EXPECT_TRUE(outcome.json().at("diagnostics").empty());
     EXPECT_EQ(plan({"-W", "no-extension-ignored"}).err, "");
@@ -124,8 +122,7 @@ TEST_F(Diagnostics, MisspeltIdsAreSuggested) {
 }
 
 TEST_F(Diagnostics, QuietLeavesErrorsAndJson) {
-    const Outcome quiet = plan({"--quiet"});
-    EXPECT_EQ(quiet.exit, 0);
+    const Outcome quiet = must(plan({"--quiet"}));
     EXPECT_EQ(quiet.out, "");
     EXPECT_EQ(quiet.err, "");
     EXPECT_EQ(plan({"--quiet", "--json"}).json().at("counts").at("materials"), 3);
@@ -136,8 +133,8 @@ TEST_F(Diagnostics, QuietLeavesErrorsAndJson) {
 }
 
 TEST_F(Diagnostics, VerboseSaysWhatIsDoneAndWhen) {
-    const Outcome outcome = run({"compile", "scene.gltf", "-o", "package", "--verbose", "--cache", "none"});
-    EXPECT_EQ(outcome.exit, 0);
+    const Outcome outcome =
+        must(run({"compile", "scene.gltf", "-o", "package", "--verbose", "--cache", "none"}));
     for (const char* step : {"reading scene.gltf", "compiling scene.gltf", "writing package"}) {
         EXPECT_TRUE(
             std::regex_search(outcome.err, std::regex(R"((^|\n) *\d+\.\d{3} s  )" + std::string(step))))

@@ -31,13 +31,11 @@ protected:
     int compile(const std::string& folder, std::vector<std::string> more) const {
         more.insert(more.begin(), {"compile", scene_, "-o", folder, "--strategy", "visibility", "--cache",
                                    "cache", "--json"});
-        const Outcome outcome = run(more);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome = must(run(more));
         return outcome.exit == 0 ? outcome.json().at("modules").at("compiled").get<int>() : -1;
     }
     Json diff() const {
-        const Outcome outcome = run({"diff", "a", "b", "--json"});
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome = must(run({"diff", "a", "b", "--json"}));
         return outcome.json();
     }
     std::string scene_;
@@ -51,8 +49,7 @@ TEST_F(Diff, EqualPackagesAreTheSame) {
     EXPECT_EQ(same.at("same").at("shaders"), 2);
     EXPECT_EQ(same.at("same").at("materials"), 2);
     EXPECT_EQ(same.at("same").at("modules"), run({"inspect", "a", "--json"}).json().at("modules").size());
-    const Outcome outcome = run({"diff", "a", "b", "--exit-code"});
-    EXPECT_EQ(outcome.exit, 0) << outcome.out;
+    const Outcome outcome = must(run({"diff", "a", "b", "--exit-code"}));
     EXPECT_TRUE(outcome.out.starts_with("the same: 2 shaders, ")) << outcome.out;
 }
 

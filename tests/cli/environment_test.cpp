@@ -38,9 +38,8 @@ protected:
 };
 
 TEST_F(EnvironmentCommand, LightsTheScene) {
-    const Outcome outcome = render("a.exr", {"--environment", "sky.hdr", "--environment-intensity", "2",
-                                             "--environment-rotation", "-90", "--json", "--validate"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(render("a.exr", {"--environment", "sky.hdr", "--environment-intensity", "2",
+                                                  "--environment-rotation", "-90", "--json", "--validate"}));
     const nlohmann::json map = outcome.json().at("environment");
     EXPECT_EQ(map.at("file"), "sky.hdr");
     EXPECT_EQ(map.at("width"), 256);
@@ -51,8 +50,7 @@ TEST_F(EnvironmentCommand, LightsTheScene) {
     // The top left shows the sky.
     EXPECT_NEAR(image.pixels[0][0], 1.0F, 1e-3F);
     EXPECT_NEAR(image.pixels[0][1], 4.0F, 1e-3F);
-    const Outcome none = render("b.png", {"--json"});
-    ASSERT_EQ(none.exit, 0) << none.err;
+    const Outcome none = must(render("b.png", {"--json"}));
     EXPECT_TRUE(none.json().at("environment").is_null());
 }
 
@@ -91,8 +89,7 @@ TEST_F(EnvironmentCommand, SaysWhatIsWrongWithAMap) {
     EXPECT_FALSE(std::filesystem::exists(path("a.png")));
 
     writeExr("odd.exr", 8, 8, -1.0F);
-    const Outcome odd = render("a.png", {"--environment", "odd.exr"});
-    EXPECT_EQ(odd.exit, 0) << odd.err;
+    const Outcome odd = must(render("a.png", {"--environment", "odd.exr"}));
     EXPECT_NE(odd.err.find("[environment-aspect]"), std::string::npos) << odd.err;
     EXPECT_NE(odd.err.find("1 pixels have negative radiance"), std::string::npos) << odd.err;
 }

@@ -45,8 +45,7 @@ TEST_F(HostCommand, IsAnInputOfThePackage) {
     writeText(path(kSkyFile), kSky);
     writeText(path("host/README.md"), "Notes are no part of a host.\n");
     const std::vector<std::string> options{"--host", "host", "--depfile", "package.d"};
-    const Outcome first = compile(options);
-    ASSERT_EQ(first.exit, 0) << first.err;
+    must(compile(options));
     EXPECT_TRUE(has(readText(path("package.d")), kSkyFile));
     const nlohmann::json manifest = nlohmann::json::parse(readText(path("package/manifest.json")));
     EXPECT_EQ(manifest.at("host"), nlohmann::json::array({"sky.glsl"}));
@@ -93,8 +92,7 @@ TEST_F(HostCommand, ErrorsOfGlslNameTheFileAndTheLine) {
 }
 
 TEST_F(HostCommand, TheLibraryIsPartOfThePackage) {
-    const Outcome outcome = compile({"--emit", "library,linkable", "--merge", "none"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(compile({"--emit", "library,linkable", "--merge", "none"}));
     const std::vector<std::string> files = filesBelow(path("package"));
     for (const char* const name : {"glint_host.glsl", "glint_library.glsl", "glint_library.spv"}) {
         EXPECT_TRUE(std::ranges::find(files, std::string("library/") + name) != files.end()) << name;

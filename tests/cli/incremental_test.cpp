@@ -32,8 +32,7 @@ protected:
                 words.insert(words.end(), {defaults[i], defaults[i + 1]});
             }
         }
-        Outcome outcome = run(words);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        Outcome outcome = must(run(words));
         return outcome;
     }
     // Gives every file of the package an old time stamp, so that a written file shows.
@@ -198,8 +197,7 @@ TEST_F(Incremental, ProcessesShareACache) {
         "\"$0\" compile scene/scene.gltf --cache cache -o a --quiet & first=$!\n"
         "\"$0\" compile scene/scene.gltf --cache cache -o b --quiet & second=$!\n"
         "wait $first && wait $second";
-    const Outcome both = runProgram({"sh", "-c", script, commandPath()});
-    ASSERT_EQ(both.exit, 0) << both.err;
+    const Outcome both = must(runProgram({"sh", "-c", script, commandPath()}));
     EXPECT_EQ(both.err, "");
     EXPECT_FALSE(contentsOf(path("a")).empty());
     EXPECT_TRUE(contentsOf(path("a")) == contentsOf(path("b")));
@@ -223,9 +221,8 @@ protected:
     void SetUp() override {
         Incremental::SetUp();
         writeManyKeys(path(folder_));
-        const Outcome outcome = run({"compile", folder_ + "/scene.gltf", "-o", "pack age", "--cache", "cache",
-                                     "--depfile", "list.d"});
-        ASSERT_EQ(outcome.exit, 0) << outcome.err;
+        must(run({"compile", folder_ + "/scene.gltf", "-o", "pack age", "--cache", "cache", "--depfile",
+                  "list.d"}));
     }
     // Makes a file newer than the package.
     void touch(const std::string& name) const {

@@ -12,8 +12,7 @@ protected:
     void compile(const std::vector<std::string>& options) const {
         std::vector<std::string> line{"compile", scene_, "-o", "package"};
         line.insert(line.end(), options.begin(), options.end());
-        const Outcome outcome = run(line);
-        ASSERT_EQ(outcome.exit, 0) << outcome.err;
+        must(run(line));
     }
     void expectRefused(const std::vector<std::string>& options, const std::string& message) const {
         std::vector<std::string> line{"--package", "package"};

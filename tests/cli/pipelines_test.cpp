@@ -38,14 +38,12 @@ protected:
                  const std::vector<std::string>& options) const {
         std::vector<std::string> line{"compile", scene, "-o", package};
         line.insert(line.end(), options.begin(), options.end());
-        const Outcome made = run(line);
-        ASSERT_EQ(made.exit, 0) << made.err;
+        must(run(line));
     }
     Json report(const std::vector<std::string>& options, const Variables& variables = {}) const {
         std::vector<std::string> line{"inspect", "package", "--pipelines", "--json"};
         line.insert(line.end(), options.begin(), options.end());
-        const Outcome outcome = run(line, variables);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome = must(run(line, variables));
         Json printed = outcome.json();
         expectFits("inspect", printed);
         return printed;
@@ -118,8 +116,7 @@ protected:
         return run({"inspect", "package", "--pipelines", "--budget", "budget.json", "--werror"}, radeon_);
     }
     void expectWithin(const Json& rules) const {
-        const Outcome outcome = check(rules);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err << outcome.out;
+        must(check(rules));
     }
 
     Variables radeon_;
@@ -186,8 +183,8 @@ TEST_F(PipelineBudgets, AndReportsOfTwoDevicesSideBySide) {
     const Json both = report({"--compare", "before.json"}, radeon_);
     EXPECT_EQ(both.at("compared").at("device").at("name"), device.at("name"));
     EXPECT_NE(both.at("device").at("name"), device.at("name"));
-    const Outcome text = run({"inspect", "package", "--pipelines", "--compare", "before.json"}, radeon_);
-    EXPECT_EQ(text.exit, 0) << text.err;
+    const Outcome text =
+        must(run({"inspect", "package", "--pipelines", "--compare", "before.json"}, radeon_));
     EXPECT_TRUE(has(text.out, " → ")) << text.out;
 }
 

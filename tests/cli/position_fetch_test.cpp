@@ -39,8 +39,7 @@ TEST_P(PositionFetch, GivesTheSameImage) {
         GTEST_SKIP() << "the device has no position fetch";
     }
     ASSERT_EQ(fetched.exit, 0) << fetched.err;
-    const Outcome stored = render("stored.exr", false);
-    ASSERT_EQ(stored.exit, 0) << stored.err;
+    const Outcome stored = must(render("stored.exr", false));
     EXPECT_EQ(run({"compare", "fetched.exr", "stored.exr", "--max-error", "0"}).exit, 0);
 }
 

@@ -55,8 +55,7 @@ protected:
     }
     Json compile(std::vector<std::string> options) const {
         options.insert(options.begin(), {"compile", "scene.gltf", "-o", "package", "--json"});
-        const Outcome outcome = run(options);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome = must(run(options));
         return outcome.json();
     }
     Json manifest() const {
@@ -120,8 +119,7 @@ TEST_F(StrategyAuto, VerboseSaysWhy) {
 
 TEST_F(StrategyAuto, ExplainListsWhatEachStrategyTakes) {
     const std::vector<std::string> line{"explain", "scene.gltf", "--calibration", device("sorted-uber")};
-    const Outcome text = run(line);
-    ASSERT_EQ(text.exit, 0) << text.err;
+    const Outcome text = must(run(line));
     EXPECT_NE(text.out.find("of the calibration of Planted"), std::string::npos) << text.out;
     EXPECT_NE(text.out.find("--strategy sorted-uber: "), std::string::npos) << text.out;
     std::vector<std::string> asJson = line;
@@ -274,8 +272,7 @@ TEST_F(StrategyAuto, TablesDecideAboutShadowsAndPrecision) {
         std::vector<std::string> line{"compile",   "scene.gltf", "-o",          "package",
                                       "--shadows", "auto",       "--precision", "auto"};
         line.insert(line.end(), options.begin(), options.end());
-        const Outcome outcome = run(line);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome = must(run(line));
         told = outcome.err;
         const Json settings = manifest().at("settings");
         return std::pair(settings.at("shadows").get<std::string>(), settings.at("precision").get<int>());

@@ -28,8 +28,7 @@ protected:
     }
     Json rendered(std::vector<std::string> options) const {
         options.insert(options.end(), {"--strategy", "auto", "--json"});
-        const Outcome outcome = render("a.png", options);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome = must(render("a.png", options));
         Json report = outcome.json();
         expectFits("render", report);
         return report;
