@@ -26,7 +26,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 gltf::Scene anyScene() {
     gltf::Scene scene = emptyScene();
     const int material = addMaterial(scene, unlitMaterial({1, 1, 1}));
-    addInstance(scene, addMesh(scene, makeQuad(material, {0, 0, 0}, {1, 0, 0}, {0, 1, 0})));
+    addQuad(scene, material, {0, 0, 0}, {1, 0, 0}, {0, 1, 0});
     return scene;
 }
 

@@ -19,14 +19,13 @@ constexpr Binning kBinnings[] = {Binning::None, Binning::Sign, Binning::Octahedr
 
 // Returns mirrors that send rays in all directions, in front of unlit walls.
 gltf::Scene mirrors() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const int mirror = addMaterial(scene, mirrorMaterial());
     const int wall = addMaterial(scene, unlitMaterial({0.8F, 0.3F, 0.2F}));
     addInstance(scene, addMesh(scene, makeSphere(mirror, {-1.0F, 0.2F, -2.5F}, 1.0F, 12)));
     addInstance(scene, addMesh(scene, makeSphere(mirror, {1.4F, 0.4F, -3.0F}, 0.9F, 7)));
-    addInstance(scene, addMesh(scene, makeQuad(mirror, {-9, -1, 0}, {18, 0, 0}, {0, 0, -8})));
-    addInstance(scene, addMesh(scene, makeQuad(wall, {-9, -1, -8}, {18, 0, 0}, {0, 3, 0})));
+    addQuad(scene, mirror, {-9, -1, 0}, {18, 0, 0}, {0, 0, -8});
+    addQuad(scene, wall, {-9, -1, -8}, {18, 0, 0}, {0, 3, 0});
     addDirectionalLight(scene, {0, -1, 0}, 1.0F);
     return scene;
 }
@@ -159,10 +158,8 @@ TEST(RayBinning, ChangesNothingOfAnyStrategy) {
 }
 
 TEST(RayBinning, NoRaysMakeAnEmptyList) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, unlitMaterial({0.2F, 0.4F, 0.6F})),
-                                               {-0.5F, -0.5F, -1}, {1, 0, 0}, {0, 1, 0})));
+    gltf::Scene scene = sceneWithCamera();
+    addQuad(scene, unlitMaterial({0.2F, 0.4F, 0.6F}), {-0.5F, -0.5F, -1}, {1, 0, 0}, {0, 1, 0});
     const LoadedScene loaded(scene, compiler::PlanOptions{});
     LinearImage reference;
     for (const Binning binning : kBinnings) {

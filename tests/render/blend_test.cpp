@@ -42,17 +42,15 @@ int addLayer(gltf::Scene& scene, const Layer& layer) {
 
 // Returns the layers in front of the camera; or behind it, where a mirror in front of it shows them.
 gltf::Scene stackedLayers(bool inMirror) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     if (inMirror) {
         const int mirror = addMaterial(scene, mirrorMaterial());
-        addInstance(scene, addMesh(scene, makeQuad(mirror, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
+        addQuad(scene, mirror, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0});
     }
     float distance = 1.0F;
     for (const Layer& layer : kLayers) {
         const float z = inMirror ? distance : -distance;
-        addInstance(scene,
-                    addMesh(scene, makeQuad(addLayer(scene, layer), {-9, -9, z}, {18, 0, 0}, {0, 18, 0})));
+        addQuad(scene, addLayer(scene, layer), {-9, -9, z}, {18, 0, 0}, {0, 18, 0});
         distance += 1.0F;
     }
     return scene;
@@ -151,12 +149,10 @@ TEST(Blend, RaysSeeLayersOverEachOther) {
 }
 
 TEST(Blend, ShadowsAreAsDarkAsTheAlpha) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material white;
     white["metallicFactor"] = 0.0F;
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, white), {-4, -4, -2}, {8, 0, 0}, {0, 8, 0})));
+    addQuad(scene, white, {-4, -4, -2}, {8, 0, 0}, {0, 8, 0});
     addDirectionalLight(scene, {0.0F, -0.9284767F, -0.3713907F}, 3.0F);
     RenderSetup setup = squareSetup(scene);
     setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
@@ -164,7 +160,7 @@ TEST(Blend, ShadowsAreAsDarkAsTheAlpha) {
     const LinearImage lit = bare.render(package::kStrategyUber, setup);
     // The plate is above the frustum, and between the sun and all of the wall that the camera sees.
     const int plate = addLayer(scene, kLayers[0]);
-    addInstance(scene, addMesh(scene, makeQuad(plate, {-8, 3, 0.5F}, {16, 0, 0}, {0, 0, -2.4F})));
+    addQuad(scene, plate, {-8, 3, 0.5F}, {16, 0, 0}, {0, 0, -2.4F});
     setup.samples = 4;
     const LoadedScene covered(scene, blendSettings());
     const LinearImage shaded = covered.render(package::kStrategyUber, setup);
@@ -188,8 +184,7 @@ constexpr std::array kLitLayers{LitLayer::Blended, LitLayer::Opaque, LitLayer::N
 // opaque, or not there. The camera looks at the first three stations. At three others a mirror shows what is
 // behind the camera.
 gltf::Scene litStations() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material layer;
     layer["baseColorFactor"] = {0.7F, 0.3F, 0.2F, kLitAlpha};
     layer["metallicFactor"] = 0.0F;
@@ -215,8 +210,7 @@ gltf::Scene litStations() {
     for (const bool inMirror : {false, true}) {
         for (const LitLayer kind : kLitLayers) {
             const auto add = [&](int material, float half, float z) {
-                addInstance(scene, addMesh(scene, makeQuad(material, {x - half, -half, z}, {2 * half, 0, 0},
-                                                           {0, 2 * half, 0})));
+                addQuad(scene, material, {x - half, -half, z}, {2 * half, 0, 0}, {0, 2 * half, 0});
             };
             const float behind = inMirror ? 1.0F : -1.0F;
             if (inMirror) {
@@ -349,8 +343,7 @@ gltf::Primitive turnedProfile(int material, const std::vector<std::array<double,
 // front leaves. Two vases stand far apart, around things of different colours.
 TEST(Blend, AVaseShowsTheThingInIt) {
     constexpr float kVaseAlpha = 0.25F;
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material glass;
     glass["baseColorFactor"] = {0.8F, 0.9F, 1.0F, kVaseAlpha};
     glass["metallicFactor"] = 0.0F;

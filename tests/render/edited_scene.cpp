@@ -103,8 +103,7 @@ gltf::Scene furtherScene() {
     cloth.give("KHR_materials_sheen");
     cloth["sheenColorFactor"] = {0.5F, 0.4F, 0.3F};
     cloth["sheenRoughnessFactor"] = 0.5F;
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, cloth), {-1, -1, -3}, {2, 0, 0}, {0, 2, 0})));
+    addQuad(scene, cloth, {-1, -1, -3}, {2, 0, 0}, {0, 2, 0});
     return scene;
 }
 
@@ -121,8 +120,7 @@ std::uint32_t meshOfCatalogue(std::uint32_t shape, std::span<const std::uint32_t
 }
 
 gltf::Scene catalogueScene() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addKinds(scene);
     for (std::uint32_t shape = 0; shape < kShapes; ++shape) {
         for (std::uint32_t first = 0; first < kKinds; ++first) {

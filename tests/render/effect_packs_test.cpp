@@ -27,8 +27,7 @@ constexpr gltf::Float3 kPanel{0.5F, 0.25F, 1.0F};
 // panel of known radiance, so large and near that the sheet's far side sees next to nothing else; the panel
 // does without light.
 gltf::Scene sheetAndPanel(const materials::MaterialModel& model) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material sheet(model);
     sheet["baseColorFactor"] = {0, 0, 0, 1};
     sheet["metallicFactor"] = 0.0F;
@@ -43,9 +42,8 @@ gltf::Scene sheetAndPanel(const materials::MaterialModel& model) {
     panel["baseColorFactor"] = {kPanel[0], kPanel[1], kPanel[2], 1};
     const int sheetNumber = addMaterial(scene, sheet);
     const int panelNumber = addMaterial(scene, panel);
-    addInstance(scene, addMesh(scene, makeQuad(sheetNumber, {-4, -4, -2}, {8, 0, 0}, {0, 8, 0})));
-    addInstance(scene,
-                addMesh(scene, makeQuad(panelNumber, {-4000, -4000, -2.5F}, {8000, 0, 0}, {0, 8000, 0})));
+    addQuad(scene, sheetNumber, {-4, -4, -2}, {8, 0, 0}, {0, 8, 0});
+    addQuad(scene, panelNumber, {-4000, -4000, -2.5F}, {8000, 0, 0}, {0, 8000, 0});
     return scene;
 }
 

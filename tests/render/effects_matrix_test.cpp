@@ -23,8 +23,7 @@ struct Properties {
 };
 
 gltf::Scene sceneWith(const Properties& has) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material plaster;
     plaster["metallicFactor"] = 0.0F;
     materials::Material mirror = mirrorMaterial();
@@ -36,8 +35,7 @@ gltf::Scene sceneWith(const Properties& has) {
     glass.give("KHR_materials_transmission");
     glass["transmissionFactor"] = 0.75F;
     const auto place = [&](const materials::Material& material, float x) {
-        addInstance(
-            scene, addMesh(scene, makeQuad(addMaterial(scene, material), {x, -1, -1}, {1, 0, 0}, {0, 2, 0})));
+        addQuad(scene, material, {x, -1, -1}, {1, 0, 0}, {0, 2, 0});
     };
     place(plaster, -1.0F);
     if (has.smooth) {

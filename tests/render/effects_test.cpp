@@ -44,8 +44,8 @@ gltf::Scene roomBehindGlass() {
     pane["attenuationDistance"] = 0.5F;
     pane["attenuationColor"] = {0.9F, 0.5F, 0.4F};
     const int thick = addMaterial(scene, pane);
-    addInstance(scene, addMesh(scene, makeQuad(thick, {0.1F, -0.4F, -1.2F}, {1, 0, 0}, {0, 1, 0})));
-    addInstance(scene, addMesh(scene, makeQuad(thick, {1.1F, -0.4F, -1.4F}, {-1, 0, 0}, {0, 1, 0})));
+    addQuad(scene, thick, {0.1F, -0.4F, -1.2F}, {1, 0, 0}, {0, 1, 0});
+    addQuad(scene, thick, {1.1F, -0.4F, -1.4F}, {-1, 0, 0}, {0, 1, 0});
     return scene;
 }
 
@@ -229,12 +229,10 @@ TEST(AllEffects, OffIsAsIfTheyWereNotThere) {
 
 // Under a uniform sky, indirect light and occlusion change nothing.
 TEST(IndirectDiffuse, OfAnEmptySkyIsTheSkysLight) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material white;
     white["metallicFactor"] = 0.0F;
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, white), {-2, -2, -1}, {4, 0, 0}, {0, 4, 0})));
+    addQuad(scene, white, {-2, -2, -1}, {4, 0, 0}, {0, 4, 0});
     RenderSetup setup = squareSetup(scene);
     setup.samples = 4;
     compiler::CompileSettings settings;
@@ -268,7 +266,7 @@ materials::Material clearGlass(float ior) {
 // outside.
 void addBlock(gltf::Scene& scene, int material, float near, float far, float half) {
     const auto face = [&](gltf::Float3 corner, gltf::Float3 right, gltf::Float3 up) {
-        addInstance(scene, addMesh(scene, makeQuad(material, corner, right, up)));
+        addQuad(scene, material, corner, right, up);
     };
     const float size = 2.0F * half;
     const float depth = far - near;
@@ -282,8 +280,7 @@ void addBlock(gltf::Scene& scene, int material, float near, float far, float hal
 
 // Returns a wall of coloured squares that shows where a ray goes.
 gltf::Scene squaresBehind() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     std::vector<std::uint8_t> texels;
     for (int i = 0; i < 16 * 16; ++i) {
         const auto across = static_cast<std::uint8_t>(i % 16 * 16);
@@ -293,8 +290,7 @@ gltf::Scene squaresBehind() {
     }
     materials::Material squares = unlitMaterial({1, 1, 1});
     squares.texture("baseColorTexture").texture = addTexture(scene, 16, 16, std::move(texels));
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, squares), {-8, -8, -6}, {16, 0, 0}, {0, 16, 0})));
+    addQuad(scene, squares, {-8, -8, -6}, {16, 0, 0}, {0, 16, 0});
     return scene;
 }
 
@@ -346,13 +342,11 @@ TEST(NestedDielectrics, AreBoundedByTheMediumAround) {
 
 // A sample whose weight is below the bound sends no ray, and is counted.
 TEST(Gates, FaintSamplesAreSkipped) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material glossy;
     glossy["metallicFactor"] = 0.0F;
     glossy["roughnessFactor"] = 0.0F;
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, glossy), {-2, -2, -1}, {4, 0, 0}, {0, 4, 0})));
+    addQuad(scene, glossy, {-2, -2, -1}, {4, 0, 0}, {0, 4, 0});
     RenderSetup setup = squareSetup(scene);
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
@@ -369,12 +363,10 @@ TEST(Gates, FaintSamplesAreSkipped) {
 
 // A spot light misses half of the wall, and the range of a point light ends in front of it.
 TEST(Gates, LightsAreKeptByConeRangeAndFacing) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material wall;
     wall["metallicFactor"] = 0.0F;
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, wall), {-2, -2, -1}, {4, 0, 0}, {0, 4, 0})));
+    addQuad(scene, wall, {-2, -2, -1}, {4, 0, 0}, {0, 4, 0});
     gltf::Light light;
     light.type = gltf::LightType::Point;
     light.range = 0.5F;

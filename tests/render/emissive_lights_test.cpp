@@ -122,14 +122,11 @@ double polygonIrradiance(const Double3& point, const Double3& normal, const std:
 TEST(EmissiveLights, AQuadLightsAWallByItsFormFactor) {
     constexpr double kAlbedo = 0.5;
     constexpr double kRadiance = 3.0;
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, matte(kAlbedo)), {-8, -8, -4}, {16, 0, 0},
-                                               {0, 16, 0})));
+    gltf::Scene scene = sceneWithCamera();
+    addQuad(scene, matte(kAlbedo), {-8, -8, -4}, {16, 0, 0}, {0, 16, 0});
     // Its solid angle is large for some pixels, and small for others.
     const std::vector<Double3> corners{{-1, 0.5, -3.8}, {1, 0.5, -3.8}, {1, 0.5, -2.6}, {-1, 0.5, -2.6}};
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, lamp({1, 1, 1}, kRadiance)),
-                                               {-1, 0.5F, -3.8F}, {2, 0, 0}, {0, 0, 1.2F})));
+    addQuad(scene, lamp({1, 1, 1}, kRadiance), {-1, 0.5F, -3.8F}, {2, 0, 0}, {0, 0, 1.2F});
     for (const bool traces : {false, true}) {
         for (const std::uint32_t lights : {0U, 1U}) {
             if (!test::nightly() && traces != (lights > 0)) {
@@ -184,8 +181,7 @@ materials::Material tintedGlass() {
 TEST(EmissiveLights, LightPassesAPaneOnce) {
     constexpr double kAlbedo = 0.5;
     constexpr double kRadiance = 3.0;
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addQuad(scene, matte(kAlbedo), {-8, -8, -4}, {16, 0, 0}, {0, 16, 0});
     const std::vector<Double3> corners{{-1, 0.5, -3.8}, {1, 0.5, -3.8}, {1, 0.5, -2.6}, {-1, 0.5, -2.6}};
     addQuad(scene, lamp({1, 1, 1}, kRadiance), {-1, 0.5F, -3.8F}, {2, 0, 0}, {0, 0, 1.2F});
@@ -233,8 +229,7 @@ double lowerMean(const LinearImage& image) {
 // Where a pane hides a part of a lamp, light that passes it counts whole in samples, and samples and rays
 // share the rest. Paths by chance pass the pane themselves.
 TEST(EmissiveLights, HalfAPaneHasTheMeanOfChance) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material glossy = mirrorMaterial();
     glossy["roughnessFactor"] = 0.5F;
     addQuad(scene, glossy, {-8, -8, -4}, {16, 0, 0}, {0, 16, 0});
@@ -254,8 +249,7 @@ TEST(EmissiveLights, HalfAPaneHasTheMeanOfChance) {
 
 // A mirror takes no samples of lights, so its rays bring all that is behind a pane.
 TEST(EmissiveLights, AMirrorShowsALampBehindAPane) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addQuad(scene, mirrorMaterial(), {-50, -50, -2}, {100, 0, 0}, {0, 100, 0});
     addQuad(scene, tintedGlass(), {50, -50, 0.5F}, {-100, 0, 0}, {0, 100, 0});
     addQuad(scene, lamp({1, 1, 1}, 2.0F), {2, -2, 1}, {-4, 0, 0}, {0, 4, 0});
@@ -276,8 +270,7 @@ TEST(EmissiveLights, AMirrorShowsALampBehindAPane) {
 // A floor, a glossy wall, a sheet that lets light through, and two lamps: a textured one that shines on both
 // sides, of which half is black, and a small one that shines down and is partly clear.
 gltf::Scene litRoom() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material glossy = mirrorMaterial();
     glossy["roughnessFactor"] = 0.45F;
     materials::Material sheet = matte(0.3F);
@@ -357,12 +350,10 @@ TEST(EmissiveLights, StrategiesAgree) {
 
 // One lamp is moved, and another one changes its shape.
 TEST(EmissiveLights, LampsThatMoveAreFollowed) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const int shining = addMaterial(scene, lamp({1, 1, 1}, 8.0F));
-    addInstance(
-        scene, addMesh(scene, makeQuad(addMaterial(scene, matte(0.5F)), {-4, -1, 0}, {8, 0, 0}, {0, 0, -8})));
-    addInstance(scene, addMesh(scene, makeQuad(shining, {-1.5F, 0.2F, -4}, {0.6F, 0, 0}, {0, 0, 0.6F})));
+    addQuad(scene, matte(0.5F), {-4, -1, 0}, {8, 0, 0}, {0, 0, -8});
+    addQuad(scene, shining, {-1.5F, 0.2F, -4}, {0.6F, 0, 0}, {0, 0, 0.6F});
     gltf::Primitive sheet = makeQuad(shining, {1, -0.5F, -4}, {0.5F, 0, 0}, {0, 0.5F, 0});
     gltf::Scene still = scene;
     sheet.targets.resize(1);
@@ -460,7 +451,7 @@ TEST(EmissiveLights, AutoTakesAFewSamples) {
         const std::int32_t material = addMaterial(scene, lamp({1.0F, 1.0F, 1.0F}, 1.0F));
         for (int i = 0; i < quads; ++i) {
             const auto x = static_cast<float>(i);
-            addInstance(scene, addMesh(scene, makeQuad(material, {x, 0, 0}, {1, 0, 0}, {0, 1, 0})));
+            addQuad(scene, material, {x, 0, 0}, {1, 0, 0}, {0, 1, 0});
         }
         gltf::Light light;
         light.type = gltf::LightType::Point;

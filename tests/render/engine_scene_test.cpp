@@ -45,8 +45,7 @@ gltf::Scene texturedRoom() {
         material.texture("baseColorTexture").texture =
             isFirst ? addTexture(scene, 2, 1, {255, 40, 40, 255, 40, 40, 255, 255})
                     : addTexture(scene, 1, 2, {40, 255, 40, 255, 200, 200, 40, 255});
-        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), {x, -0.5F, -3.5F}, {1, 0, 0},
-                                                   {0, 1, 0})));
+        addQuad(scene, material, {x, -0.5F, -3.5F}, {1, 0, 0}, {0, 1, 0});
     }
     return scene;
 }

@@ -74,15 +74,13 @@ LoadedScene loadForMap(const gltf::Scene& scene) {
 }
 
 gltf::Scene emptySceneWithCamera() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     return scene;
 }
 
 gltf::Scene wallScene(const materials::Material& material) {
     gltf::Scene scene = emptySceneWithCamera();
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
+    addQuad(scene, material, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0});
     // Only the sky lights the scene.
     addDirectionalLight(scene, {0, 0, 1}, 0.0F);
     return scene;

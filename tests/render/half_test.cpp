@@ -129,8 +129,7 @@ std::vector<materials::Material> extremeMaterials() {
 // Returns quads of those materials, from facing the camera to edge-on, with vertex colours from 0 to 1e6,
 // under lamps of a millionth and a million.
 gltf::Scene extremeScene() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const std::vector<materials::Material> materials = extremeMaterials();
     constexpr int kColumns = 6;
     for (std::size_t i = 0; i < materials.size(); ++i) {

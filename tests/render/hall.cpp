@@ -41,14 +41,12 @@ materials::Material fenceMaterial(gltf::Scene& scene) {
 }  // namespace
 
 gltf::Scene hallScene() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const int fence = addMaterial(scene, fenceMaterial(scene));
     const int coated = addMaterial(scene, coatedMaterial(kRed));
     const int glossy = addMaterial(scene, glossyMaterial(kGreen, 0.3F));
     const int unlit = addMaterial(scene, unlitMaterial(kBlue));
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-4, -1, 0}, {8, 0, 0},
-                                               {0, 0, -8})));
+    addQuad(scene, mirrorMaterial(), {-4, -1, 0}, {8, 0, 0}, {0, 0, -8});
     gltf::Mesh wall;
     wall.primitives = {makeQuad(coated, {-4, -0.9F, -5}, {3, 0, 0}, {0, 4, 0}),
                        makeQuad(glossy, {-1, -0.9F, -5}, {2, 0, 0}, {0, 4, 0}),

@@ -292,7 +292,7 @@ TEST(LayerMotion, OfAPaneIsThatOfWhatIsBehind) {
     glass["metallicFactor"] = 0.0F;
     glass["roughnessFactor"] = 0.0F;
     const int pane = addMaterial(posed, glass);
-    addInstance(posed, addMesh(posed, makeQuad(pane, {-1.4F, -0.6F, -1.5F}, {2.8F, 0, 0}, {0, 1.2F, 0})));
+    addQuad(posed, pane, {-1.4F, -0.6F, -1.5F}, {2.8F, 0, 0}, {0, 1.2F, 0});
     compiler::CompileSettings settings = withMotion();
     settings.effects = {false, compiler::builtinEffects({"refraction"})};
     settings.layers.insert(settings.layers.end(), {"refraction.virtual-motion", "refraction.distance"});

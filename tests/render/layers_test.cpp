@@ -32,8 +32,7 @@ gltf::Scene hallBehindGlass() {
     glass["transmissionFactor"] = 0.9F;
     glass["metallicFactor"] = 0.0F;
     glass["roughnessFactor"] = 0.1F;
-    addInstance(
-        scene, addMesh(scene, makeQuad(addMaterial(scene, glass), {-1.5F, -0.5F, -2}, {1, 0, 0}, {0, 1, 0})));
+    addQuad(scene, glass, {-1.5F, -0.5F, -2}, {1, 0, 0}, {0, 1, 0});
     return scene;
 }
 
@@ -122,16 +121,14 @@ TEST(Layers, BouncesAddUpToTheLightOfTheirEffect) {
 
 // A pane before a lamp that rays find. The walk through the pane finds it before the end of its ray.
 TEST(Layers, LightsThatRefractedRaysFindAreOfTheRefraction) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material glass;
     glass["transmissionFactor"] = 1.0F;
     glass["metallicFactor"] = 0.0F;
     glass["roughnessFactor"] = 0.0F;
     glass["baseColorFactor"] = {0.25F, 0.5F, 0.75F, 1.0F};
     glass.doubleSided = true;
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, glass), {-9, -9, -1}, {18, 0, 0}, {0, 18, 0})));
+    addQuad(scene, glass, {-9, -9, -1}, {18, 0, 0}, {0, 18, 0});
     gltf::Light lamp;
     lamp.type = gltf::LightType::Point;
     lamp.position = {0.2F, 0, -3};
@@ -217,15 +214,14 @@ TEST(Layers, LeaveNoBufferOrPassWhereTheyAreOff) {
 
 TEST(Layers, ShowThePrimarySurface) {
     // A red metal wall 3 m ahead, turned by 45 degrees about Y, and an unlit one beside it.
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material metal;
     metal["baseColorFactor"] = {0.8F, 0.2F, 0.1F, 1.0F};
     metal["roughnessFactor"] = 0.4F;
     addMaterial(scene, unlitMaterial({0.25F, 0.5F, 0.75F}));
     addMaterial(scene, metal);
-    addInstance(scene, addMesh(scene, makeQuad(1, {-2, -10, -5}, {2, 0, 2}, {0, 20, 0})));
-    addInstance(scene, addMesh(scene, makeQuad(0, {0, -10, -3}, {1, 0, 0}, {0, 20, 0})));
+    addQuad(scene, 1, {-2, -10, -5}, {2, 0, 2}, {0, 20, 0});
+    addQuad(scene, 0, {0, -10, -3}, {1, 0, 0}, {0, 20, 0});
     compiler::CompileSettings settings = everyLayer();
     settings.layers = {"surface"};
     settings.plan.merge = compiler::MergePolicy::None;

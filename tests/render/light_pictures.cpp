@@ -1,7 +1,5 @@
 #include "render/light_pictures.h"
 
-#include "render/scene_builder.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,11 +15,6 @@ materials::Material matte(float albedo) {
     material["roughnessFactor"] = 1.0F;
     material["specularFactor"] = 0.0F;
     return material;
-}
-
-void addQuad(gltf::Scene& scene, const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
-             gltf::Float3 up) {
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
 }
 
 double meanOf(const LinearImage& image, std::size_t channel) {

@@ -13,9 +13,6 @@ namespace glint::testing {
 
 // Returns a diffuse surface that reflects nothing else.
 materials::Material matte(float albedo);
-// Adds a parallelogram as makeQuad() makes it.
-void addQuad(gltf::Scene& scene, const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
-             gltf::Float3 up);
 
 // The mean over all pixels of one channel, or of red, green and blue.
 double meanOf(const LinearImage& image, std::size_t channel);

@@ -27,13 +27,11 @@ INSTANTIATE_TEST_SUITE_P(Strategies, Lights,
 // Tests a diffuse surface. f0 = 0 by a metallic factor of 1 and black, plus emission, would hide the light,
 // so this uses the dielectric BRDF at normal incidence: (1 - F) albedo / π + F D V with F = 0.04.
 TEST_P(Lights, DirectLightOnADiffuseWallIsAnalytic) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material material;
     material["metallicFactor"] = 0.0F;
     material["baseColorFactor"] = {0.5F, 0.5F, 0.5F, 1.0F};
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
+    addQuad(scene, material, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0});
     addDirectionalLight(scene, {0, 0, -1}, 2.0F);
     const RenderSetup setup = darkSetup(scene, 33);  // a pixel in the middle, whose ray is the axis
     const LinearImage image = render(scene, setup);
@@ -52,13 +50,11 @@ float wallRadiance(float irradiance) {
 
 float litWall(const gltf::Light& light,
               const std::function<LinearImage(const gltf::Scene&, const RenderSetup&)>& render) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material material;
     material["metallicFactor"] = 0.0F;
     material["baseColorFactor"] = {0.5F, 0.5F, 0.5F, 1.0F};
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
+    addQuad(scene, material, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0});
     scene.lights.push_back(light);
     const RenderSetup setup = darkSetup(scene, 33);
     const LinearImage image = render(scene, setup);
@@ -146,17 +142,15 @@ TEST_P(Lights, LightsAtTheirLimitsStayFinite) {
 // A hit takes one random light. Over many samples it shows the sum of all, which a primary surface shows at
 // once.
 TEST_P(Lights, TheChosenLightOfAHitIsUnbiased) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material white;
     white["metallicFactor"] = 0.0F;
     const int wall = addMaterial(scene, white);
     // The left half of the view shows the wall behind the camera in a mirror. The right half shows the same
     // wall in front, mirrored about the mirror's plane, so that both see it from the same distance and angle.
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-1, -1, -1}, {1, 0, 0},
-                                               {0, 2, 0})));
-    addInstance(scene, addMesh(scene, makeQuad(wall, {9, -9, 3}, {-18, 0, 0}, {0, 18, 0})));
-    addInstance(scene, addMesh(scene, makeQuad(wall, {0.001F, -9, -5}, {9, 0, 0}, {0, 18, 0})));
+    addQuad(scene, mirrorMaterial(), {-1, -1, -1}, {1, 0, 0}, {0, 2, 0});
+    addQuad(scene, wall, {9, -9, 3}, {-18, 0, 0}, {0, 18, 0});
+    addQuad(scene, wall, {0.001F, -9, -5}, {9, 0, 0}, {0, 18, 0});
     // Two lights are in front of each wall, mirrored in the same way. Their range ends in front of the other
     // wall.
     gltf::Light light;
@@ -190,8 +184,7 @@ TEST_P(Lights, TheChosenLightOfAHitIsUnbiased) {
 // A wall is lit by the sun with a plate in between. The plate's shadow lies on the wall, in the picture and
 // in a mirror.
 gltf::Scene shadowScene(bool shadeInMirror, int plateMaterialKind) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material white;
     white["metallicFactor"] = 0.0F;
     const int wall = addMaterial(scene, white);
@@ -203,15 +196,15 @@ gltf::Scene shadowScene(bool shadeInMirror, int plateMaterialKind) {
     }
     const int plateMaterial = addMaterial(scene, plate);
     if (!shadeInMirror) {
-        addInstance(scene, addMesh(scene, makeQuad(wall, {-4, -4, -2}, {8, 0, 0}, {0, 8, 0})));
+        addQuad(scene, wall, {-4, -4, -2}, {8, 0, 0}, {0, 8, 0});
         // The plate is above the frustum's centre line, between the sun and the wall's middle.
-        addInstance(scene, addMesh(scene, makeQuad(plateMaterial, {-1, 3, -1.0F}, {2, 0, 0}, {0, 0, -0.5F})));
+        addQuad(scene, plateMaterial, {-1, 3, -1.0F}, {2, 0, 0}, {0, 0, -0.5F});
         addDirectionalLight(scene, {0.0F, -0.9284767F, -0.3713907F}, 3.0F);
     } else {
         const int mirror = addMaterial(scene, mirrorMaterial());
-        addInstance(scene, addMesh(scene, makeQuad(mirror, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
-        addInstance(scene, addMesh(scene, makeQuad(wall, {9, -9, 3}, {-18, 0, 0}, {0, 18, 0})));
-        addInstance(scene, addMesh(scene, makeQuad(plateMaterial, {-1, 3, 1.5F}, {2, 0, 0}, {0, 0, 0.7F})));
+        addQuad(scene, mirror, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0});
+        addQuad(scene, wall, {9, -9, 3}, {-18, 0, 0}, {0, 18, 0});
+        addQuad(scene, plateMaterial, {-1, 3, 1.5F}, {2, 0, 0}, {0, 0, 0.7F});
         addDirectionalLight(scene, {0.0F, -0.9284767F, 0.3713907F}, 3.0F);
     }
     return scene;

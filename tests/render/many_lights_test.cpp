@@ -24,15 +24,14 @@ constexpr std::uint32_t kBothSides = 0x80008000U;
 // A floor and a wall that throws shadows, below 150 lights of every kind: points with and without a range,
 // spots, a sun.
 gltf::Scene hallOfLights(std::size_t count = 150) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material material;
     material["metallicFactor"] = 0.0F;
     material["roughnessFactor"] = 0.7F;
     material["baseColorFactor"] = {0.5F, 0.5F, 0.5F, 1.0F};
     const int matte = addMaterial(scene, material);
-    addInstance(scene, addMesh(scene, makeQuad(matte, {-4, -1, 0}, {8, 0, 0}, {0, 0, -8})));
-    addInstance(scene, addMesh(scene, makeQuad(matte, {-0.5, -1, -3}, {1, 0, 0}, {0, 1, 0})));
+    addQuad(scene, matte, {-4, -1, 0}, {8, 0, 0}, {0, 0, -8});
+    addQuad(scene, matte, {-0.5, -1, -3}, {1, 0, 0}, {0, 1, 0});
     std::mt19937 random(7);
     std::uniform_real_distribution<float> unit(0.0F, 1.0F);
     for (std::size_t i = 0; i < count; ++i) {
@@ -172,8 +171,7 @@ TEST(ManyLights, ChosenLightsConvergeToAll) {
 TEST(ManyLights, StrategiesChooseTheSameLights) {
     gltf::Scene scene = hallOfLights();
     materials::Material mirror = mirrorMaterial();
-    addInstance(
-        scene, addMesh(scene, makeQuad(addMaterial(scene, mirror), {1, -1, -4}, {1.5, 0, 0.5}, {0, 1.5, 0})));
+    addQuad(scene, mirror, {1, -1, -4}, {1.5, 0, 0.5}, {0, 1.5, 0});
     const LoadedScene loaded = load(scene, 2, package::allStrategies());
     const RenderSetup setup = setupOf(scene, 4, 3);
     const LinearImage reference = loaded.render(package::kStrategyUber, setup);
@@ -293,10 +291,8 @@ TEST(ManyLights, ChancesAreThoseOfTheChoice) {
 // shadows, over the square of its mean, for lights that fill a volume and for lights in groups.
 TEST(ManyLights, LightsAreChosenByWhatTheyBring) {
     for (const bool groups : {false, true}) {
-        gltf::Scene scene = emptyScene();
-        addCamera(scene);
-        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, materials::Material()), {-10, 0, -10},
-                                                   {20, 0, 0}, {0, 0, 20})));
+        gltf::Scene scene = sceneWithCamera();
+        addQuad(scene, materials::Material(), {-10, 0, -10}, {20, 0, 0}, {0, 0, 20});
         std::mt19937 random(11);
         std::uniform_real_distribution<float> unit(0.0F, 1.0F);
         for (int i = 0; i < 1000; ++i) {

@@ -53,8 +53,7 @@ materials::Material lambert(bool ofPack) {
 
 // A corner of two walls and a floor under a lamp and a directional light, with a mirror.
 gltf::Scene corner(bool ofPack) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addQuad(scene, lambert(ofPack), {-3, -1, -6}, {6, 0, 0}, {0, 4, 0});
     addQuad(scene, lambert(ofPack), {-3, -1, 1}, {6, 0, 0}, {0, 0, -7});
     materials::Material lamp(models());
@@ -112,8 +111,7 @@ TEST(Models, LambertsLawGivesThePictureOfGltfsBase) {
 
 // The light that goes along `direction` from a wall at right angles to the view to the camera, without a sky.
 Pixel litBy(const materials::Material& material, gltf::Float3 direction) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addQuad(scene, material, {-4, -4, -4}, {8, 0, 0}, {0, 8, 0});
     addDirectionalLight(scene, direction, 2.0F);
     RenderSetup setup = defaultSetup(scene, 17, 17);

@@ -26,7 +26,7 @@ void addRoom(gltf::Scene& scene) {
     addCamera(scene);
     addDirectionalLight(scene, {0.0F, -0.6F, -0.8F}, 3.0F);
     const int mirror = addMaterial(scene, mirrorMaterial());
-    addInstance(scene, addMesh(scene, makeQuad(mirror, {-4, -1, -1}, {8, 0, 0}, {0, 0, -8})));
+    addQuad(scene, mirror, {-4, -1, -1}, {8, 0, 0}, {0, 0, -8});
 }
 
 // Returns a strip of 1 x 2 m with `segments` rows above (0, 0, 0). All its vertices have normals and

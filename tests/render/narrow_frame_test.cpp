@@ -197,13 +197,11 @@ TEST(HalfPicture, IsWithinItsBitsOfTheFullOne) {
 
 // What a picture of bright light shows in a package with these layers.
 void expectBrightPicture(std::vector<std::string> layers, float expected) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material lamp;
     lamp["emissiveFactor"] = {1.0F, 1.0F, 1.0F};
     lamp["emissiveStrength"] = 1e6F;
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, lamp), {-20, -20, -2}, {40, 0, 0}, {0, 40, 0})));
+    addQuad(scene, lamp, {-20, -20, -2}, {40, 0, 0}, {0, 40, 0});
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     settings.layers = std::move(layers);

@@ -71,8 +71,8 @@ materials::Material leafMaterial(gltf::Scene& scene, float cutoff) {
 void addSurroundings(gltf::Scene& scene) {
     const int mirror = addMaterial(scene, mirrorMaterial());
     const int wall = addMaterial(scene, unlitMaterial({0.2F, 0.3F, 0.7F}));
-    addInstance(scene, addMesh(scene, makeQuad(mirror, {-4, -1.2F, 0}, {8, 0, 0}, {0, 0, -8})));
-    addInstance(scene, addMesh(scene, makeQuad(wall, {-6, -3, -6}, {12, 0, 0}, {0, 8, 0})));
+    addQuad(scene, mirror, {-4, -1.2F, 0}, {8, 0, 0}, {0, 0, -8});
+    addQuad(scene, wall, {-6, -3, -6}, {12, 0, 0}, {0, 8, 0});
     addDirectionalLight(scene, {0.3F, -1.0F, -0.4F}, 3.0F);
     addCamera(scene);
 }
@@ -262,7 +262,7 @@ TEST(Opacity, TestsOfRaysThroughGlassAreCounted) {
     materials::Material pane;
     pane["metallicFactor"] = 0.0F;
     pane["transmissionFactor"] = 1.0F;
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, pane), {-4, 3, 0}, {8, 0, 0}, {0, 0, -8})));
+    addQuad(scene, pane, {-4, 3, 0}, {8, 0, 0}, {0, 0, -8});
     RenderSetup setup = defaultSetup(scene, 64, 36);
     setup.countsLight = true;
     const auto testsWith = [&](package::ShadowThrough through) {

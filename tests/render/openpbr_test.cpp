@@ -413,8 +413,7 @@ TEST(OpenPbr, AMediumAbsorbsOverTheWay) {
     medium["transmissionColor"] = {0.5F, 0.7F, 0.9F};
     medium["transmissionDepth"] = 2.0F;
     medium.doubleSided = true;
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addQuad(scene, medium, {-8, -8, -4}, {16, 0, 0}, {0, 16, 0});
     addQuad(scene, medium, {-8, -8, -7}, {0, 16, 0}, {16, 0, 0});
     const Pixel middle = at(underSky(scene, {kWhiteSky}), 4, 4);
@@ -431,16 +430,14 @@ TEST(OpenPbr, PrimarySurfacesFollowTheirOwnSamples) {
     metal["metallicFactor"] = 1.0F;
     metal["roughnessFactor"] = 0.0F;
     metal["baseColorFactor"] = {1.0F, 1.0F, 1.0F, 1.0F};
-    gltf::Scene mirror = emptyScene();
-    addCamera(mirror);
+    gltf::Scene mirror = sceneWithCamera();
     addQuad(mirror, metal, {-8, -8, 4}, {16, 0, 0}, {0, 16, -16});
     const Pixel seen = at(underSky(mirror, {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}}), 4, 4);
     EXPECT_NEAR(seen[0], 1.0, 0.03);
     EXPECT_NEAR(seen[1], 0.0, 0.03);
     EXPECT_NEAR(seen[2], 0.0, 1e-3);
     metal["roughnessFactor"] = 0.6F;
-    gltf::Scene rough = emptyScene();
-    addCamera(rough);
+    gltf::Scene rough = sceneWithCamera();
     addQuad(rough, metal, {-8, -8, -4}, {16, 0, 0}, {0, 16, 0});
     for (const compiler::SkyLight skyLight : {compiler::SkyLight::Off, compiler::SkyLight::On}) {
         EXPECT_NEAR(meanOf(underSky(rough, {kWhiteSky, skyLight})), 1.0, 0.02) << static_cast<int>(skyLight);

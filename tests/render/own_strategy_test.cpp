@@ -24,16 +24,15 @@ const package::StrategyInfo& splitUber() {
 
 // A mirror that sees a wall on its left and the sky on its right.
 gltf::Scene mirrorAndWall() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material wall;
     wall["baseColorFactor"] = {0.75F, 0.5F, 0.25F, 1};
     wall["metallicFactor"] = 0.0F;
     wall.doubleSided = true;
     const int mirrorNumber = addMaterial(scene, mirrorMaterial());
     const int wallNumber = addMaterial(scene, wall);
-    addInstance(scene, addMesh(scene, makeQuad(mirrorNumber, {-4, -4, -2}, {8, 0, 0}, {0, 8, 0})));
-    addInstance(scene, addMesh(scene, makeQuad(wallNumber, {-40, -40, 3}, {40, 0, 0}, {0, 80, 0})));
+    addQuad(scene, mirrorNumber, {-4, -4, -2}, {8, 0, 0}, {0, 8, 0});
+    addQuad(scene, wallNumber, {-40, -40, 3}, {40, 0, 0}, {0, 80, 0});
     return scene;
 }
 

@@ -108,20 +108,19 @@ compiler::CompileSettings separateCases(package::AlphaPolicy alpha = package::Al
 // The camera sees a mirror on the left and the tinted quad on the right. Another tinted quad is behind the
 // camera.
 TEST(PackStages, AttributesOfVerticesAndTheTimeReachPrimarySurfacesAndHits) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const int tinted = addMaterial(scene, blackWith("TEST_tint"));
     const int clock = addMaterial(scene, blackWith("TEST_clock"));
     materials::Material mirror(stagesModel());
     mirror["roughnessFactor"] = 0.0F;
     const int reflecting = addMaterial(scene, mirror);
-    addInstance(scene, addMesh(scene, makeQuad(reflecting, {-2, -0.5F, -2}, {1, 0, 0}, {0, 1, 0})));
+    addQuad(scene, reflecting, {-2, -0.5F, -2}, {1, 0, 0}, {0, 1, 0});
     addInstance(scene, addMesh(scene, tintedQuad(tinted, {-0.5F, -0.5F, -2}, {1, 0, 0}, {0, 1, 0})));
-    addInstance(scene, addMesh(scene, makeQuad(clock, {1, -0.5F, -2}, {1, 0, 0}, {0, 1, 0})));
+    addQuad(scene, clock, {1, -0.5F, -2}, {1, 0, 0}, {0, 1, 0});
     // The mirror image of what is at (-4.5, 0, 2) is in the middle of the mirror.
     addInstance(scene, addMesh(scene, tintedQuad(tinted, {-4, -0.5F, 2}, {-1, 0, 0}, {0, 1, 0})));
     // A primitive without the attribute does not have the feature.
-    addInstance(scene, addMesh(scene, makeQuad(tinted, {-0.5F, 1, -2}, {1, 0, 0}, {0, 0.5F, 0})));
+    addQuad(scene, tinted, {-0.5F, 1, -2}, {1, 0, 0}, {0, 0.5F, 0});
     RenderSetup setup = glossySetup(scene);
     setup.frame.time = 2.5F;
     const LoadedScene loaded(scene, separateCases());
@@ -141,8 +140,7 @@ TEST(PackStages, AttributesOfVerticesAndTheTimeReachPrimarySurfacesAndHits) {
 }
 
 TEST(PackStages, AttributesThatDoNotFitAreErrors) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const int tinted = addMaterial(scene, blackWith("TEST_tint"));
     addInstance(scene, addMesh(scene, tintedQuad(tinted, {-1, -1, -2}, {2, 0, 0}, {0, 2, 0})));
     const LoadedScene loaded(scene, separateCases());
@@ -162,17 +160,15 @@ TEST(PackStages, AttributesThatDoNotFitAreErrors) {
 // A cut quad before a wall. The light comes from the left, so that the shadow of the part that is left falls
 // to the right of it.
 gltf::Scene cutScene() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material wall(stagesModel());
     wall["baseColorFactor"] = {1, 1, 1, 1};
     wall["metallicFactor"] = 0.0F;
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, wall), {-4, -4, -4}, {8, 0, 0}, {0, 8, 0})));
+    addQuad(scene, wall, {-4, -4, -4}, {8, 0, 0}, {0, 8, 0});
     materials::Material cut = blackWith("TEST_half");
     cut.alphaMode = materials::AlphaMode::Mask;
     cut.doubleSided = true;
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, cut), {-1, -1, -2}, {2, 0, 0}, {0, 2, 0})));
+    addQuad(scene, cut, {-1, -1, -2}, {2, 0, 0}, {0, 2, 0});
     addDirectionalLight(scene, {0.4472136F, 0, -0.8944272F}, 2.0F);
     return scene;
 }
@@ -189,8 +185,7 @@ TEST(PackStages, OpacityCutsRasterAndShadowsAlike) {
 }
 
 TEST(PackStages, CoordinatesMoveTextures) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const int texture = addTexture(scene, 2, 1, {255, 0, 0, 255, 0, 255, 0, 255});
     for (const bool shifts : {false, true}) {
         materials::Material material(stagesModel());
@@ -199,8 +194,7 @@ TEST(PackStages, CoordinatesMoveTextures) {
         if (shifts) {
             material.give("TEST_shift");
         }
-        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material),
-                                                   {-1, shifts ? -1.0F : 0.0F, -2}, {2, 0, 0}, {0, 1, 0})));
+        addQuad(scene, material, {-1, shifts ? -1.0F : 0.0F, -2}, {2, 0, 0}, {0, 1, 0});
     }
     const LoadedScene loaded(scene, separateCases());
     const LinearImage image = loaded.render(package::kStrategyVisibility, glossySetup(scene));
@@ -215,8 +209,7 @@ gltf::Scene stagesRoom() {
     gltf::Scene scene = cutScene();
     materials::Material floor(stagesModel());
     floor["roughnessFactor"] = 0.0F;
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, floor), {-4, -1, 0}, {8, 0, 0}, {0, 0, -4})));
+    addQuad(scene, floor, {-4, -1, 0}, {8, 0, 0}, {0, 0, -4});
     const int tinted = addMaterial(scene, blackWith("TEST_tint"));
     addInstance(scene, addMesh(scene, tintedQuad(tinted, {0.5F, 0, -3.5F}, {1, 0, 0}, {0, 1, 0})));
     materials::Material clock = blackWith("TEST_clock");
@@ -224,8 +217,7 @@ gltf::Scene stagesRoom() {
     clock["baseColorFactor"] = {1, 1, 1, 1};
     clock.texture("baseColorTexture").texture = texture;
     clock.give("TEST_shift");
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, clock), {-3, -0.5F, -3}, {1, 0, 0}, {0, 1, 0})));
+    addQuad(scene, clock, {-3, -0.5F, -3}, {1, 0, 0}, {0, 1, 0});
     return scene;
 }
 

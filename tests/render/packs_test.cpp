@@ -75,12 +75,10 @@ TEST_P(ExamplePacks, StrategiesAndMergePoliciesGiveOneImage) {
 // A black wall with a layer, under one directional light without a sky. Returns the radiance along the axis
 // of the camera, whose direction is the wall's normal turned by `tilt` radians about x.
 Pixel litWall(const materials::Material& material, double tilt, gltf::Float3 light) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const auto cosine = static_cast<float>(std::cos(tilt));
     const auto sine = static_cast<float>(std::sin(tilt));
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), {-4, -4 * cosine, -4 - 4 * sine},
-                                               {8, 0, 0}, {0, 8 * cosine, 8 * sine})));
+    addQuad(scene, material, {-4, -4 * cosine, -4 - 4 * sine}, {8, 0, 0}, {0, 8 * cosine, 8 * sine});
     addDirectionalLight(scene, light, 2.0F);
     RenderSetup setup = defaultSetup(scene, 33, 33);
     setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
@@ -226,10 +224,8 @@ TEST(Packs, ErrorsOfGlslNameTheFileTheLineAndTheFeature) {
     materials::Material material = blackMaterial(*model);
     material.give("EXAMPLE_materials_retroreflection");
     material["retroreflectionFactor"] = 0.75F;
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -2}, {2, 0, 0}, {0, 2, 0})));
+    gltf::Scene scene = sceneWithCamera();
+    addQuad(scene, material, {-1, -1, -2}, {2, 0, 0}, {0, 2, 0});
     const Diagnostic package = mustFail(compiler::compilePackage(scene, {}));
     EXPECT_EQ(package.id, "glsl");
     EXPECT_EQ(package.where, file.string() + ":5");

@@ -38,8 +38,7 @@ materials::Material coated(float albedo, float roughness, float metallic) {
 
 // A floor between a matte wall and a glossy one, below the sky, and a block that throws a shadow.
 gltf::Scene yard() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addQuad(scene, coated(0.7F, 0.8F, 0.0F), {-3, -1, 1}, {6, 0, 0}, {0, 0, -5});
     addQuad(scene, coated(0.8F, 0.45F, 1.0F), {-3, -1, -4}, {6, 0, 0}, {0, 2.5F, 0});
     addQuad(scene, coated(0.6F, 1.0F, 0.0F), {-2, -1, -1}, {0, 0, -3}, {0, 2, 0});

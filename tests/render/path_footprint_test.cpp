@@ -100,8 +100,7 @@ materials::Material wallOf(const Station& station) {
 }
 
 gltf::Scene coneScene() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     scene.cameras[0].yfov = kFieldOfView;
     const int mirror = addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-0.11F, -0.11F, -1},
                                                {0.22F, 0, 0}, {0, 0.22F, 0}));

@@ -216,8 +216,7 @@ void addBox(gltf::Scene& scene, int material, gltf::Float3 low, gltf::Float3 hig
 }
 
 gltf::Scene closedBox(float albedo, float emission, const gltf::Matrix4& world = scaling(1, 1, 1)) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addBox(scene, addMaterial(scene, diffuse(albedo, emission)), {-1.13F, -0.77F, -2.31F},
            {1.29F, 1.07F, 0.93F}, world);
     return scene;
@@ -382,8 +381,7 @@ TEST(Paths, AClosedBoxLosesNoRay) {
 // What a coat with a turned normal sends to the other side of its triangle is reflected there, so that no ray
 // leaves a closed box.
 TEST(Paths, CoatsWithTurnedNormalsSendNoRayThroughTheirSurface) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material coated = diffuse(0.5F, 0.0F);
     coated["clearcoatFactor"] = 1.0F;
     coated["clearcoatRoughnessFactor"] = 0.2F;
@@ -402,8 +400,7 @@ TEST(Paths, CoatsWithTurnedNormalsSendNoRayThroughTheirSurface) {
 
 // White surfaces under a uniform sky are as bright as the sky, whatever their lobes are.
 TEST(Paths, WhiteSurfacesVanishInAUniformSky) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material rough = diffuse(1.0F, 0.0F);
     rough["specularFactor"] = 1.0F;
     rough["roughnessFactor"] = 0.5F;
@@ -415,9 +412,7 @@ TEST(Paths, WhiteSurfacesVanishInAUniformSky) {
     wall["roughnessFactor"] = 0.0F;
     wall.doubleSided = true;
     const auto add = [&](const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
-                         gltf::Float3 up) {
-        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
-    };
+                         gltf::Float3 up) { addQuad(scene, material, corner, right, up); };
     add(rough, {-3, -1, 1}, {6, 0, 0}, {0, 0, -5});
     add(mirrorMaterial(), {-3, -1, -1}, {2, 0, -3}, {0, 3, 0});
     add(metal, {1, -1, -4}, {2, 0, 3}, {0, 3, 0});
@@ -440,10 +435,9 @@ TEST(Paths, WhiteSurfacesVanishInAUniformSky) {
 // A mirror shows a block of glass, whose single-sided surface the paths enter and leave. `color` is what one
 // metre of the glass lets through. With `holdsClear` the middle half of it is clear glass of the same index.
 double brightnessOfMirroredGlass(gltf::Float3 color, float roughness = 0.0F, bool holdsClear = false) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const int mirror = addMaterial(scene, mirrorMaterial());
-    addInstance(scene, addMesh(scene, makeQuad(mirror, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
+    addQuad(scene, mirror, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0});
     materials::Material glass = diffuse(1.0F, 0.0F);
     glass["specularFactor"] = 1.0F;
     glass["roughnessFactor"] = roughness;

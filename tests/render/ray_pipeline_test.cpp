@@ -44,7 +44,7 @@ RenderSetup hallSetup(const gltf::Scene& scene) {
 // Adds a mirror in front of the camera, across its view.
 void addMirror(gltf::Scene& scene) {
     const int mirror = addMaterial(scene, mirrorMaterial());
-    addInstance(scene, addMesh(scene, makeQuad(mirror, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
+    addQuad(scene, mirror, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0});
 }
 
 bool deviceHas(Tracer tracer) {
@@ -108,8 +108,7 @@ TEST(RayPipelines, PackedHitsToo) {
 
 // First no surface, so that lists have no elements; then one whose rays all leave the scene.
 TEST(RayPipelines, ListsWithoutElementsAndRaysWithoutHits) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const compiler::CompileSettings settings =
         settingsFor(ShadowPlacement::Deferred, compiler::MergePolicy::None);
     FrameCounters counters;
@@ -136,11 +135,10 @@ TEST_F(DeviceWithPipelines, LetsLightAndRaysThroughMasks) {
 
 // A mirror sees a wall whose shader ID no case has.
 TEST_F(DeviceWithPipelines, ShowsUnknownShadersInMagenta) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addMirror(scene);
     const int red = addMaterial(scene, unlitMaterial(kRed));
-    addInstance(scene, addMesh(scene, makeQuad(red, {9, -9, 3}, {-18, 0, 0}, {0, 18, 0})));
+    addQuad(scene, red, {9, -9, 3}, {-18, 0, 0}, {0, 18, 0});
     const LoadedScene loaded(scene, settingsFor(ShadowPlacement::Inline, compiler::MergePolicy::None));
     const RenderSetup setup = squareSetup(scene);
     expectColor(at(loaded.render(package::kStrategyHitShaders, setup), 16, 16), kRed, 1e-4F, "known");
@@ -157,8 +155,7 @@ TEST_F(DeviceWithPipelines, ShowsUnknownShadersInMagenta) {
 }
 
 TEST_F(DeviceWithPipelines, RefusesImagesAboveOneDispatch) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     compiler::CompileSettings settings = settingsFor(ShadowPlacement::Inline, compiler::MergePolicy::None);
     settings.strategies = package::kStrategyHitShaders;
     const LoadedScene loaded(scene, settings);

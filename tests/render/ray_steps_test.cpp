@@ -287,10 +287,9 @@ gltf::Scene wallAndLamp() {
     paint["metallicFactor"] = 0.0F;
     paint["roughnessFactor"] = 0.5F;
     paint["emissiveFactor"] = {0.0F, 0.75F, 0.0F};
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, paint), {-1, -1, -4}, {2, 0, 0}, {0, 2, 0})));
+    addQuad(scene, paint, {-1, -1, -4}, {2, 0, 0}, {0, 2, 0});
     const materials::Material lamp = unlitMaterial({0.25F, 0.5F, 1.0F});
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, lamp), {3, -1, -4}, {2, 0, 0}, {0, 2, 0})));
+    addQuad(scene, lamp, {3, -1, -4}, {2, 0, 0}, {0, 2, 0});
     return scene;
 }
 

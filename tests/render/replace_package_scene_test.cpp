@@ -90,8 +90,7 @@ TEST_F(ReplacePackageScene, AFallbackLeavesEmissiveTrianglesAsTheyAre) {
 // A masked leaf whose left half is opaque, above a mirror: without rays nothing is tested. UVs keep clear of
 // the border, so that the states of all triangles are known.
 gltf::Scene maskedRoom() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addDirectionalLight(scene, {0.0F, -0.6F, -0.8F}, 2.0F);
     materials::Material leaf = glossyMaterial(kGreen);
     leaf.alphaMode = materials::AlphaMode::Mask;
@@ -105,8 +104,7 @@ gltf::Scene maskedRoom() {
         }
         addInstance(scene, addMesh(scene, quad));
     }
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-4, -1, 0}, {8, 0, 0},
-                                               {0, 0, -8})));
+    addQuad(scene, mirrorMaterial(), {-4, -1, 0}, {8, 0, 0}, {0, 0, -8});
     return scene;
 }
 

@@ -44,10 +44,8 @@ void giveSheen(materials::Material& material) {
 }
 
 gltf::Scene roomScene() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-4, -1, 0}, {8, 0, 0},
-                                               {0, 0, -8})));
+    gltf::Scene scene = sceneWithCamera();
+    addQuad(scene, mirrorMaterial(), {-4, -1, 0}, {8, 0, 0}, {0, 0, -8});
     materials::Material coated = glossyMaterial(kGreen);
     giveCoat(coated);
     materials::Material sheen = glossyMaterial(kBlue);

@@ -37,7 +37,7 @@ int checkers(gltf::Scene& scene, int size, std::uint8_t otherAlpha) {
 
 void addWall(gltf::Scene& scene, const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
              gltf::Float3 up) {
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
+    addQuad(scene, material, corner, right, up);
 }
 
 void addLamp(gltf::Scene& scene, gltf::Float3 position, gltf::Float3 color, float candela) {
@@ -63,8 +63,7 @@ void addStrip(gltf::Scene& scene, const materials::Material& material, int strip
 }
 
 gltf::Scene roomOf(bool everyLobe) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addWall(scene, metal({0.9F, 0.9F, 0.9F}, 0.25F), {-5, -1, 0}, {10, 0, 0}, {0, 0, -5});
 
     materials::Material textured = painted({1, 1, 1}, 0.8F);
@@ -115,14 +114,12 @@ gltf::Scene roomBehindPane() {
     pane["roughnessFactor"] = 0.1F;
     pane["transmissionFactor"] = 0.8F;
     pane.doubleSided = true;
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, pane), {-1.2F, -0.4F, -1.2F}, {1, 0, 0},
-                                               {0, 1, 0})));
+    addQuad(scene, pane, {-1.2F, -0.4F, -1.2F}, {1, 0, 0}, {0, 1, 0});
     return scene;
 }
 
 gltf::Scene roomWithFence() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addWall(scene, mirrorMaterial(), {-3, -2, -4}, {6, 0, 0}, {0, 5, 0});
     addWall(scene, painted({0.6F, 0.6F, 0.6F}, 0.2F), {-3, -1, 1}, {6, 0, 0}, {0, 0, -5});
     materials::Material fence = painted({0.9F, 0.8F, 0.3F}, 0.4F);

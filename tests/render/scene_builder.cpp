@@ -25,6 +25,12 @@ gltf::Scene emptyScene() {
     return scene;
 }
 
+gltf::Scene sceneWithCamera() {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    return scene;
+}
+
 int addMaterial(gltf::Scene& scene, const materials::Material& material) {
     scene.materials.push_back(material);
     return static_cast<int>(scene.materials.size()) - 1;
@@ -70,6 +76,15 @@ void addInstance(gltf::Scene& scene, int mesh, const gltf::Matrix4& world) {
 
 void addInstance(gltf::Scene& scene, int mesh) {
     addInstance(scene, mesh, scaling(1.0, 1.0, 1.0));
+}
+
+void addQuad(gltf::Scene& scene, int material, gltf::Float3 corner, gltf::Float3 right, gltf::Float3 up) {
+    addInstance(scene, addMesh(scene, makeQuad(material, corner, right, up)));
+}
+
+void addQuad(gltf::Scene& scene, const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
+             gltf::Float3 up) {
+    addQuad(scene, addMaterial(scene, material), corner, right, up);
 }
 
 gltf::Matrix4 scaling(double x, double y, double z) {

@@ -29,14 +29,13 @@ void addBox(gltf::Scene& scene, int material, gltf::Float3 low, gltf::Float3 siz
 
 // Returns a mirror floor one metre below the camera that ends at a wall: blue below 2 m, green above.
 gltf::Scene room() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const int mirror = addMaterial(scene, mirrorMaterial());
     const int blue = addMaterial(scene, unlitMaterial(kBlue));
     const int green = addMaterial(scene, unlitMaterial(kGreen));
-    addInstance(scene, addMesh(scene, makeQuad(mirror, {-20, -1, 4}, {40, 0, 0}, {0, 0, -14})));
-    addInstance(scene, addMesh(scene, makeQuad(blue, {-20, -1, -10}, {40, 0, 0}, {0, 3, 0})));
-    addInstance(scene, addMesh(scene, makeQuad(green, {-20, 2, -10}, {40, 0, 0}, {0, 6, 0})));
+    addQuad(scene, mirror, {-20, -1, 4}, {40, 0, 0}, {0, 0, -14});
+    addQuad(scene, blue, {-20, -1, -10}, {40, 0, 0}, {0, 3, 0});
+    addQuad(scene, green, {-20, 2, -10}, {40, 0, 0}, {0, 6, 0});
     addDirectionalLight(scene, {0, -1, 0}, 1.0F);
     return scene;
 }
@@ -156,7 +155,7 @@ TEST_P(ScreenSpace, WhatIsHiddenIsLeftToRays) {
     const int slab = addMaterial(scene, unlitMaterial({0.9F, 0.9F, 0.1F}));
     const int panel = addMaterial(scene, unlitMaterial(kRed));
     addBox(scene, slab, {-0.8F, 0.45F, -3.2F}, {1.6F, 0.75F, 0.2F});
-    addInstance(scene, addMesh(scene, makeQuad(panel, {-1, 1, -6}, {2, 0, 0}, {0, 1.2F, 0})));
+    addQuad(scene, panel, {-1, 1, -6}, {2, 0, 0}, {0, 1.2F, 0});
     const LoadedScene loaded(scene, compiler::PlanOptions{});
     for (const float thickness : {0.02F, 10.0F}) {
         RenderSetup setup = withSteps(scene, GetParam());
@@ -175,8 +174,7 @@ TEST_P(ScreenSpace, WhatIsHiddenIsLeftToRays) {
 // A convex mirror does not see itself, whatever its facets and normals are.
 TEST_P(ScreenSpace, ASphereDoesNotReflectItself) {
     for (const int rows : {6, 40}) {
-        gltf::Scene scene = emptyScene();
-        addCamera(scene);
+        gltf::Scene scene = sceneWithCamera();
         addInstance(scene, addMesh(scene, makeSphere(addMaterial(scene, mirrorMaterial()),
                                                      {0.1F, -0.2F, -2.0F}, 1.3F, rows)));
         const LoadedScene loaded(scene, compiler::PlanOptions{});
@@ -193,10 +191,8 @@ TEST_P(ScreenSpace, ASphereDoesNotReflectItself) {
 // Rays that the march has followed pixel by pixel start where it ends, on the same line. Other rays start
 // where they would without it.
 TEST_P(ScreenSpace, RaysStartWhereTheMarchEnds) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-20, -1, 4}, {40, 0, 0},
-                                               {0, 0, -14})));
+    gltf::Scene scene = sceneWithCamera();
+    addQuad(scene, mirrorMaterial(), {-20, -1, 4}, {40, 0, 0}, {0, 0, -14});
     addBox(scene, addMaterial(scene, unlitMaterial(kRed)), {-1.0F, 0.5F, -6.0F}, {2.0F, 1.5F, 1.0F});
     compiler::CompileSettings settings;
     settings.hitRecord = package::HitRecordFormat::Packed;

@@ -119,8 +119,7 @@ double meanOfSphere(double candela, double distance) {
 
 // A mirror before the camera, and one behind it.
 gltf::Scene mirrors() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addQuad(scene, mirrorMaterial(), {-50, -50, -2}, {100, 0, 0}, {0, 100, 0});
     addQuad(scene, mirrorMaterial(), {50, -50, 1}, {-100, 0, 0}, {0, 100, 0});
     return scene;
@@ -156,8 +155,7 @@ TEST(FoundLights, MirrorsShowLamps) {
 // A mirror takes no samples, so what it shows depends on the search for lights alone. All of a few hundred
 // lights are looked at without a hierarchy.
 TEST(FoundLights, AMirrorShowsTheSameWithAHierarchy) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addQuad(scene, mirrorMaterial(), {-50, -50, -2}, {100, 0, 0}, {0, 100, 0});
     std::mt19937 random(7);
     std::uniform_real_distribution<float> unit(0.0F, 1.0F);
@@ -184,8 +182,7 @@ TEST(FoundLights, AMirrorShowsTheSameWithAHierarchy) {
 }
 
 TEST(FoundLights, AMirrorShowsTheSunUnlessItIsHidden) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addQuad(scene, mirrorMaterial(), {-50, -50, -2}, {100, 0, 0}, {0, 100, 0});
     addDirectionalLight(scene, {0, 0, -1}, 3.0F);
     const double sine = std::sin(kSunHalfAngle);
@@ -200,8 +197,7 @@ TEST(FoundLights, AMirrorShowsTheSunUnlessItIsHidden) {
 
 // Thin glass whose index is that of air passes its tint.
 TEST(FoundLights, GlassShowsALamp) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material glass = plastic(1.0F);
     glass["baseColorFactor"] = {0.25F, 0.5F, 0.75F, 1.0F};
     glass["roughnessFactor"] = 0.0F;
@@ -221,8 +217,7 @@ TEST(FoundLights, GlassShowsALamp) {
 // A room with surfaces of several lobes, lit by lamps and through an opening by a sun. `glazed` puts glass
 // in the opening, and another pane before the wall.
 gltf::Scene room(bool glazed) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material glossy = plastic(0.5F);
     glossy["roughnessFactor"] = 0.4F;
     materials::Material coated = plastic(0.3F);
@@ -318,8 +313,7 @@ TEST(FoundLights, ShareAHierarchyWithTriangles) {
 // balance heuristic costs little there.
 TEST(FoundLights, TheNoiseOfHighlightsIsLess) {
     for (const float roughness : {0.05F, 0.4F}) {
-        gltf::Scene scene = emptyScene();
-        addCamera(scene);
+        gltf::Scene scene = sceneWithCamera();
         addQuad(scene, metalOf(roughness), {-50, -50, -2}, {100, 0, 0}, {0, 100, 0});
         addLamp(scene, {0, 0, -0.5F}, 2.0F);
         const LoadedScene found = load(scene, {SizedLights::On});

@@ -119,8 +119,7 @@ std::unique_ptr<Environment> sunnyMap() {
 
 // A plane that fills the picture and sees half of the sky.
 gltf::Scene plane(const materials::Material& material) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addQuad(scene, material, {-50, -50, -2}, {100, 0, 0}, {0, 100, 0});
     return scene;
 }
@@ -128,8 +127,7 @@ gltf::Scene plane(const materials::Material& material) {
 // A box with an opening above, as wide as its half, with a glossy wall and a sheet that scatters light to
 // both sides.
 gltf::Scene openBox() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material glossy = mirrorMaterial();
     glossy["roughnessFactor"] = 0.45F;
     materials::Material sheet = matte(0.3F);

@@ -50,8 +50,7 @@ double solidAngleOf(std::uint32_t index) {
 
 // Stratified random numbers of 24 bits.
 std::vector<Drawn> draw(bool isMap, const gpu::FrameConstants& constants) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const int mesh = addMesh(
         scene, makeQuad(addMaterial(scene, materials::Material()), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0}));
     addInstance(scene, mesh);

@@ -25,8 +25,7 @@ double srgbOf(double linear) {
 
 // A material for each pair of wrap modes, each filter, with levels and without.
 gltf::Scene texturedScene(std::mt19937& random) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     constexpr gltf::Wrap kWraps[] = {gltf::Wrap::Repeat, gltf::Wrap::ClampToEdge, gltf::Wrap::MirroredRepeat};
     constexpr int kSizes[][2] = {{7, 5}, {16, 8}, {32, 32}, {1, 6}};
     for (std::size_t i = 0; i < 9 * 2 * 3; ++i) {
@@ -46,8 +45,7 @@ gltf::Scene texturedScene(std::mt19937& random) {
         materials::Material material = unlitMaterial({1, 1, 1});
         material.texture("baseColorTexture").texture = texture;
         const float x = 0.1F * static_cast<float>(i);
-        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), {x, 0, -3}, {0.1F, 0, 0},
-                                                   {0, 0.1F, 0})));
+        addQuad(scene, material, {x, 0, -3}, {0.1F, 0, 0}, {0, 0.1F, 0});
     }
     return scene;
 }

@@ -31,8 +31,7 @@ constexpr std::uint32_t kSide = kCells * kCellTexels;
 
 // A scene of unlit squares, of which each shows an image of its own, texel by pixel.
 gltf::Scene squares(std::size_t count) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     for (std::size_t i = 0; i < count; ++i) {
         materials::Material material = unlitMaterial({1.0F, 1.0F, 1.0F});
         material.texture("baseColorTexture").texture = addTexture(
@@ -41,8 +40,7 @@ gltf::Scene squares(std::size_t count) {
         const float left = -1.0F + size * static_cast<float>(i % kCells);
         const std::size_t row = i / kCells;
         const float bottom = -1.0F + size * static_cast<float>(row);
-        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), {left, bottom, -1.0F},
-                                                   {size, 0, 0}, {0, size, 0})));
+        addQuad(scene, material, {left, bottom, -1.0F}, {size, 0, 0}, {0, size, 0});
     }
     return scene;
 }
@@ -138,8 +136,7 @@ TEST(TextureFormats, DataInOneAndTwoChannels) {
     if (!gltf::hasBasisu()) {
         GTEST_SKIP() << "this build does not pack blocks";
     }
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addDirectionalLight(scene, {0.3F, -0.5F, -0.8F}, 3.0F);
     constexpr std::uint32_t kSize = 16;
     std::vector<std::uint8_t> normals;
@@ -158,8 +155,7 @@ TEST(TextureFormats, DataInOneAndTwoChannels) {
     material.texture("normalTexture").texture = addTexture(scene, kSize, kSize, normals);
     material.texture("metallicRoughnessTexture").texture = addTexture(scene, kSize, kSize, data);
     material.texture("occlusionTexture").texture = addTexture(scene, kSize, kSize, data);
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
+    addQuad(scene, material, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0});
     const auto packed = [&](TexelFormat format, const std::vector<std::uint8_t>& pixels,
                             const std::array<int, 2>& channels) {
         std::vector<std::uint8_t> blocks;
@@ -249,8 +245,7 @@ constexpr float kBetweenFloors = 100.0F;
 // Metal floors far below each other, which a low sun lights. The first has squares of two roughnesses, and
 // the others one of them each.
 gltf::Scene roughFloors(std::uint8_t smooth, std::uint8_t rough) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addDirectionalLight(scene, {0.0F, -0.5F, 0.866F}, 3.0F);
     const std::array<std::array<std::uint8_t, 2>, 3> pairs{
         {{smooth, rough}, {smooth, smooth}, {rough, rough}}};
@@ -268,8 +263,7 @@ gltf::Scene roughFloors(std::uint8_t smooth, std::uint8_t rough) {
         scene.samplers.back() = gltf::Sampler();
         scene.samplers.back().magnification = gltf::Filter::Nearest;
         const float height = -1.0F - kBetweenFloors * static_cast<float>(i);
-        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), {-40.0F, height, 5.0F},
-                                                   {80, 0, 0}, {0, 0, -80})));
+        addQuad(scene, material, {-40.0F, height, 5.0F}, {80, 0, 0}, {0, 0, -80});
     }
     return scene;
 }
@@ -322,8 +316,7 @@ TEST(TextureLevels, LevelsOfRoughnessAreNearerToTheFinestLevelThanPlainMeans) {
 
 // Two unlit squares side by side, with textures of 64 x 64 texels, and one behind the camera.
 gltf::Scene texturedPair() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     for (int i = 0; i < 3; ++i) {
         const gltf::Texels texels = noise(static_cast<std::uint32_t>(i));
         materials::Material material = unlitMaterial({1.0F, 1.0F, 1.0F});
@@ -332,8 +325,7 @@ gltf::Scene texturedPair() {
         scene.images.back().levels = texels.levels;
         scene.samplers.back() = gltf::Sampler();
         const float z = i == 2 ? 1.0F : -1.0F;
-        addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material),
-                                                   {i == 1 ? 0.0F : -1.0F, -1.0F, z}, {1, 0, 0}, {0, 2, 0})));
+        addQuad(scene, material, {i == 1 ? 0.0F : -1.0F, -1.0F, z}, {1, 0, 0}, {0, 2, 0});
     }
     return scene;
 }

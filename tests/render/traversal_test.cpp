@@ -88,7 +88,7 @@ gltf::Scene stripes(bool shuffled) {
         addInstance(scene, 0, world);
     }
     const int wall = addMaterial(scene, unlitMaterial({0.2F, 0.7F, 0.3F}));
-    addInstance(scene, addMesh(scene, makeQuad(wall, {-8, -1, -14}, {16, 0, 0}, {0, 5, 0})));
+    addQuad(scene, wall, {-8, -1, -14}, {16, 0, 0}, {0, 5, 0});
     addCamera(scene);
     return scene;
 }

@@ -90,8 +90,7 @@ gltf::Scene texturedRoom() {
     material["metallicFactor"] = 0.0F;
     material.texture("baseColorTexture").texture = addTexture(scene, 32, 32, texels);
     scene.samplers.back() = gltf::Sampler();
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -4}, {2, 0, 0}, {0, 2, 0})));
+    addQuad(scene, material, {-1, -1, -4}, {2, 0, 0}, {0, 2, 0});
     return scene;
 }
 

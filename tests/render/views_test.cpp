@@ -26,8 +26,7 @@ constexpr std::uint32_t kNothing = 0xFFFFFFFF;
 // A wall that fills the left half of the picture, 3 m ahead, with a checkered texture of 64 by 64 texels. A
 // light shines along the view.
 gltf::Scene litWall() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     std::vector<std::uint8_t> texels;
     for (int i = 0; i < 64 * 64; ++i) {
         const auto value = static_cast<std::uint8_t>((i + i / 64) % 2 == 0 ? 255 : 64);
@@ -39,8 +38,7 @@ gltf::Scene litWall() {
     // Changes nothing, so that no pixel reads it. Its texels are much larger.
     paper.texture("normalTexture").texture = addTexture(scene, 2, 2, std::vector<std::uint8_t>(16, 200));
     paper["normalScale"] = 0.0F;
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, paper), {-6, -3, -3}, {6, 0, 0}, {0, 6, 0})));
+    addQuad(scene, paper, {-6, -3, -3}, {6, 0, 0}, {0, 6, 0});
     addDirectionalLight(scene, {0, 0, -1}, 3.0F);
     return scene;
 }
@@ -58,8 +56,7 @@ TEST(Views, LayersHaveTheValuesOfASceneThatIsKnown) {
     materials::Material fence;
     fence.alphaMode = materials::AlphaMode::Mask;
     fence.texture("baseColorTexture").texture = 0;
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, fence), {-9, -9, 2}, {18, 0, 0}, {0, 18, 0})));
+    addQuad(scene, fence, {-9, -9, 2}, {18, 0, 0}, {0, 18, 0});
     compiler::CompileSettings settings = settingsWith(
         {"rays", "candidates", "non-finite", "texture-level", "footprint", "branches", "lobes", "shader"});
     settings.plan.keys.alpha = package::AlphaPolicy::Tested;
@@ -118,12 +115,9 @@ TEST(Views, CountInfiniteSamples) {
 
 // A wall on the left and one on the right, 3 m ahead. They share their mesh's shape alone.
 gltf::Scene twoWalls(const materials::Material& left, const materials::Material& right, float z) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, left), {-9, -9, z}, {9, 0, 0}, {0, 18, 0})));
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, right), {0, -9, z}, {9, 0, 0}, {0, 18, 0})));
+    gltf::Scene scene = sceneWithCamera();
+    addQuad(scene, left, {-9, -9, z}, {9, 0, 0}, {0, 18, 0});
+    addQuad(scene, right, {0, -9, z}, {9, 0, 0}, {0, 18, 0});
     addDirectionalLight(scene, {0, 0, -1}, 3.0F);
     return scene;
 }
@@ -169,8 +163,7 @@ gltf::Scene mirroredWalls() {
     for (gltf::Mesh& mesh : scene.meshes) {
         mesh.primitives[0].indices = {0, 2, 1, 0, 3, 2};  // they face the mirror
     }
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-9, -9, -3}, {18, 0, 0},
-                                               {0, 18, 0})));
+    addQuad(scene, mirrorMaterial(), {-9, -9, -3}, {18, 0, 0}, {0, 18, 0});
     return scene;
 }
 

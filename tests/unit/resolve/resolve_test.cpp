@@ -36,8 +36,7 @@ materials::Material lamp() {
 }
 
 void addQuad(gltf::Scene& scene, const materials::Material& material) {
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -2}, {2, 0, 0}, {0, 2, 0})));
+    addQuad(scene, material, {-1, -1, -2}, {2, 0, 0}, {0, 2, 0});
 }
 
 // Returns a scene in which nothing but triangles shines.
