@@ -2,6 +2,7 @@
 #include "context/upload.h"
 #include "render/hall.h"
 #include "render/harness.h"
+#include "render/light_pictures.h"
 #include "renderer/renderer.h"
 #include "support/must.h"
 
@@ -72,14 +73,6 @@ void expectDraft(Renderer& renderer, std::uint64_t drafts, const std::string& na
     ASSERT_TRUE(counters) << name;
     EXPECT_TRUE(counters->draft) << name;
     EXPECT_EQ(counters->rays, 0U) << name;
-}
-
-double meanOf(const LinearImage& image) {
-    double sum = 0.0;
-    for (const std::array<float, 4>& pixel : image.pixels) {
-        sum += (pixel[0] + pixel[1] + pixel[2]) / 3.0;
-    }
-    return sum / static_cast<double>(image.pixels.size());
 }
 
 // A draft shows the scene, finite and about as bright, and is another picture.

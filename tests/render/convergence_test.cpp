@@ -1,5 +1,6 @@
 // Glossy reflections converge to one picture with every strategy.
 #include "render/harness.h"
+#include "render/light_pictures.h"
 #include "render/rooms.h"
 #include "support/nightly.h"
 
@@ -18,25 +19,6 @@ using namespace glint::testing;
 
 constexpr std::uint32_t kWidth = 24;
 constexpr std::uint32_t kHeight = 16;
-
-double rootMeanSquare(const LinearImage& image, const LinearImage& reference) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-        for (int channel = 0; channel < 3; ++channel) {
-            const double difference = image.pixels[i][channel] - reference.pixels[i][channel];
-            sum += difference * difference;
-        }
-    }
-    return std::sqrt(sum / (3.0 * static_cast<double>(image.pixels.size())));
-}
-
-double mean(const LinearImage& image) {
-    double sum = 0.0;
-    for (const auto& pixel : image.pixels) {
-        sum += pixel[0] + pixel[1] + pixel[2];
-    }
-    return sum / (3.0 * static_cast<double>(image.pixels.size()));
-}
 
 // Removes highlights of point lights in smooth surfaces: a rare sample of one is as bright as the lobe is
 // narrow, and no picture of 4,096 samples has found them all.
@@ -118,7 +100,7 @@ TEST_F(Convergence, StrategiesHaveTheSameMean) {
         std::vector<double> means;
         for (int k = 0; k < kSeeds; ++k) {
             const LinearImage image = render(strategy, 16, seed++);
-            means.push_back(mean(image));
+            means.push_back(meanOf(image));
         }
         Estimate estimate;
         for (const double value : means) {

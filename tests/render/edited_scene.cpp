@@ -17,14 +17,6 @@
 namespace glint::testing {
 namespace {
 
-materials::Material glossy(gltf::Float3 color, float roughness) {
-    materials::Material material;
-    material["baseColorFactor"] = {color[0], color[1], color[2], 1.0F};
-    material["metallicFactor"] = 0.0F;
-    material["roughnessFactor"] = roughness;
-    return material;
-}
-
 std::vector<std::uint8_t> chequers(int size, std::uint8_t dark) {
     std::vector<std::uint8_t> texels;
     for (int i = 0; i < size * size; ++i) {
@@ -36,19 +28,19 @@ std::vector<std::uint8_t> chequers(int size, std::uint8_t dark) {
 
 void addKinds(gltf::Scene& scene) {
     addMaterial(scene, mirrorMaterial());
-    addMaterial(scene, glossy({0.8F, 0.2F, 0.1F}, 0.4F));
-    materials::Material coated = glossy({0.1F, 0.3F, 0.8F}, 0.6F);
+    addMaterial(scene, paint({0.8F, 0.2F, 0.1F}, 0.4F));
+    materials::Material coated = paint({0.1F, 0.3F, 0.8F}, 0.6F);
     coated.give("KHR_materials_clearcoat");
     coated["clearcoatFactor"] = 0.9F;
     coated["clearcoatRoughnessFactor"] = 0.1F;
     addMaterial(scene, coated);
-    materials::Material textured = glossy({0.9F, 0.9F, 0.9F}, 0.3F);
+    materials::Material textured = paint({0.9F, 0.9F, 0.9F}, 0.3F);
     textured.texture("baseColorTexture").texture = addTexture(scene, 4, 4, chequers(4, 40));
     // With mips, and linear.
     scene.samplers.back() = gltf::Sampler{};
     addMaterial(scene, textured);
     addMaterial(scene, unlitMaterial({0.2F, 0.7F, 0.3F}));
-    materials::Material fence = glossy({0.9F, 0.8F, 0.3F}, 0.5F);
+    materials::Material fence = paint({0.9F, 0.8F, 0.3F}, 0.5F);
     fence.alphaMode = materials::AlphaMode::Mask;
     fence.doubleSided = true;
     fence.texture("baseColorTexture").texture = addTexture(scene, 8, 8, chequers(8, 0));
@@ -99,7 +91,7 @@ gltf::Scene furtherScene() {
     gltf::Scene scene = emptyScene();
     scene.path = "further.gltf";
     addCamera(scene);
-    materials::Material cloth = glossy({0.5F, 0.5F, 0.5F}, 0.5F);
+    materials::Material cloth = paint({0.5F, 0.5F, 0.5F}, 0.5F);
     cloth.give("KHR_materials_sheen");
     cloth["sheenColorFactor"] = {0.5F, 0.4F, 0.3F};
     cloth["sheenRoughnessFactor"] = 0.5F;

@@ -57,10 +57,6 @@ compiler::CompileSettings settingsOf(const Ways& ways) {
     return settings;
 }
 
-void noLights(session::SceneViewData& data) {
-    data.lights.clear();
-}
-
 LoadedScene load(const gltf::Scene& scene, const Ways& ways) {
     return LoadedScene(scene, settingsOf(ways), noLights);
 }

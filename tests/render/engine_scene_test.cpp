@@ -40,7 +40,7 @@ compiler::CompileSettings roomSteps() {
 gltf::Scene texturedRoom() {
     gltf::Scene scene = roomScene();
     for (const float x : {-1.5F, 0.5F}) {
-        materials::Material material = glossyMaterial({0.9F, 0.9F, 0.9F});
+        materials::Material material = paint({0.9F, 0.9F, 0.9F});
         const bool isFirst = x < 0.0F;
         material.texture("baseColorTexture").texture =
             isFirst ? addTexture(scene, 2, 1, {255, 40, 40, 255, 40, 40, 255, 255})

@@ -3,10 +3,20 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
 namespace glint::testing {
+
+void noLights(session::SceneViewData& data) {
+    data.lights.clear();
+}
+
+SkyView uniformSky(float radiance) {
+    const std::array<float, 3> sky{radiance, radiance, radiance};
+    return {sky, sky, sky};
+}
 
 materials::Material matte(float albedo) {
     materials::Material material;
@@ -27,6 +37,14 @@ double meanOf(const LinearImage& image, std::size_t channel) {
 
 double meanOf(const LinearImage& image) {
     return (meanOf(image, 0) + meanOf(image, 1) + meanOf(image, 2)) / 3.0;
+}
+
+double meanSquare(const LinearImage& image, const LinearImage& reference) {
+    return squaredDifference(image, reference) / (3.0 * static_cast<double>(image.pixels.size()));
+}
+
+double rootMeanSquare(const LinearImage& image, const LinearImage& reference) {
+    return std::sqrt(meanSquare(image, reference));
 }
 
 double squaredDifference(const LinearImage& image, const LinearImage& reference) {

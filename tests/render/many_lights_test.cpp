@@ -1,5 +1,6 @@
 // Lights that a hierarchy chooses: the means of their pictures are those of all lights.
 #include "render/hit_kernel.h"
+#include "render/light_pictures.h"
 #include "render/pixel_test.h"
 #include "support/must.h"
 
@@ -75,25 +76,6 @@ RenderSetup setupOf(const gltf::Scene& scene, std::uint32_t samples, std::uint32
     return setup;
 }
 
-double meanOf(const LinearImage& image) {
-    double sum = 0.0;
-    for (const Pixel& pixel : image.pixels) {
-        sum += pixel[0] + pixel[1] + pixel[2];
-    }
-    return sum / (3.0 * static_cast<double>(image.pixels.size()));
-}
-
-double differenceOf(const LinearImage& image, const LinearImage& reference) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-        for (std::size_t channel = 0; channel < 3; ++channel) {
-            const double difference = image.pixels[i][channel] - reference.pixels[i][channel];
-            sum += difference * difference;
-        }
-    }
-    return std::sqrt(sum / (3.0 * static_cast<double>(image.pixels.size())));
-}
-
 // The pictures of shadow rays that wait in memory are those of rays that the cases trace: with more rays than
 // a round holds, lights of several points, bands, and both tracers.
 TEST(FirstShadows, WaitWithoutAChange) {
@@ -152,7 +134,7 @@ TEST(ManyLights, ChosenLightsConvergeToAll) {
             sum += mean;
             squares += mean * mean;
             for (const std::uint32_t samples : {4U, 64U}) {
-                errors[samples] += differenceOf(
+                errors[samples] += rootMeanSquare(
                     samples == 64 ? image
                                   : chosen.render(package::kStrategyUber, setupOf(scene, samples, 10 + seed)),
                     reference);
@@ -190,7 +172,7 @@ TEST(ManyLights, AsManySamplesAsLightsHaveNoNoise) {
     const LoadedScene all = load(scene, 0);
     const LinearImage reference = all.render(package::kStrategyUber, setupOf(scene, 1, 1));
     const LoadedScene chosen = load(scene, kLights);
-    EXPECT_LT(differenceOf(chosen.render(package::kStrategyUber, setupOf(scene, 1, 1)), reference), 1e-6);
+    EXPECT_LT(rootMeanSquare(chosen.render(package::kStrategyUber, setupOf(scene, 1, 1)), reference), 1e-6);
 }
 
 TEST(ManyLights, AutoTakesAllOfFew) {

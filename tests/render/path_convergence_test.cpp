@@ -26,7 +26,6 @@ using namespace glint;
 using namespace glint::testing;
 
 constexpr std::uint32_t kBounces = 4;
-constexpr std::array<float, 3> kBlack{0.0F, 0.0F, 0.0F};
 
 materials::Material coated(float albedo, float roughness, float metallic) {
     materials::Material material;
@@ -141,7 +140,7 @@ public:
                   }),
           setup_(defaultSetup(scene, 8, 6)) {
         setup_.frame.maxReflectionRoughness = 1.0F;
-        setup_.frame.sky = {kBlack, kBlack, kBlack};
+        setup_.frame.sky = uniformSky(0.0F);
         RendererOptions options;
         options.strategy = strategy;
         options.bounces = kBounces;
@@ -164,17 +163,6 @@ private:
     RenderSetup setup_;
     std::unique_ptr<Renderer> renderer_;
 };
-
-double squaredError(const LinearImage& image, const LinearImage& reference) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-        for (std::size_t channel = 0; channel < 3; ++channel) {
-            const double difference = image.pixels[i][channel] - reference.pixels[i][channel];
-            sum += difference * difference;
-        }
-    }
-    return sum / (3.0 * static_cast<double>(image.pixels.size()));
-}
 
 // Returns the slope of a line through (log2 2, y), (log2 4, y) and so on.
 double slopeOf(const std::vector<double>& values) {
@@ -210,7 +198,7 @@ TEST_P(PathConvergence, ErrorFallsWithTheRootOfTheSamples) {
         double squares = 0.0;
         constexpr std::uint32_t kSeeds = 4;
         for (std::uint32_t seed = 2; seed < 2 + kSeeds; ++seed) {
-            squares += squaredError(yard.render(samples, seed), reference) / kSeeds;
+            squares += meanSquare(yard.render(samples, seed), reference) / kSeeds;
         }
         errors.push_back(0.5 * std::log2(squares));
         std::printf("%u samples: error %.5f\n", samples, std::sqrt(squares));

@@ -3,6 +3,7 @@
 #include "frame/bounce_levels.h"
 #include "render/hall.h"
 #include "render/harness.h"
+#include "render/light_pictures.h"
 #include "render/rooms.h"
 #include "render/scene_builder.h"
 #include "render/ways.h"
@@ -64,23 +65,6 @@ RendererOptions pathOptions(std::uint32_t bounces,
     options.strategy = strategy;
     options.bounces = bounces;
     return options;
-}
-
-SkyView uniformSky(float radiance) {
-    const std::array<float, 3> sky{radiance, radiance, radiance};
-    return {sky, sky, sky};
-}
-
-void noLights(session::SceneViewData& data) {
-    data.lights.clear();
-}
-
-double meanOf(const LinearImage& image) {
-    double sum = 0.0;
-    for (const auto& pixel : image.pixels) {
-        sum += pixel[0] + pixel[1] + pixel[2];
-    }
-    return sum / (3.0 * static_cast<double>(image.pixels.size()));
 }
 
 // Shared cases and deferred shadow rays change no picture either.
@@ -188,11 +172,7 @@ TEST(Paths, MoreBouncesThanThePackageHasAreAnError) {
 }
 
 materials::Material diffuse(float albedo, float emission) {
-    materials::Material material;
-    material["baseColorFactor"] = {albedo, albedo, albedo, 1.0F};
-    material["metallicFactor"] = 0.0F;
-    material["roughnessFactor"] = 1.0F;
-    material["specularFactor"] = 0.0F;
+    materials::Material material = matte(albedo);
     material["emissiveFactor"] = {emission, emission, emission};
     return material;
 }

@@ -1,6 +1,7 @@
 // Which packages a renderer takes over, and what its scene keeps of the values before.
 #include "render/pixel_test.h"
 #include "render/replacement.h"
+#include "render/scene_builder.h"
 #include "support/must.h"
 
 #include <glint/session/material_source.h>
@@ -92,7 +93,7 @@ TEST_F(ReplacePackageScene, AFallbackLeavesEmissiveTrianglesAsTheyAre) {
 gltf::Scene maskedRoom() {
     gltf::Scene scene = sceneWithCamera();
     addDirectionalLight(scene, {0.0F, -0.6F, -0.8F}, 2.0F);
-    materials::Material leaf = glossyMaterial(kGreen);
+    materials::Material leaf = paint(kGreen);
     leaf.alphaMode = materials::AlphaMode::Mask;
     leaf.texture("baseColorTexture").texture =
         addTexture(scene, 2, 1, {255, 255, 255, 255, 255, 255, 255, 100});
@@ -162,7 +163,7 @@ TEST_F(ReplacePackageScene, AnEditableSceneTakesThePackagesMaterials) {
     gltf::Scene changed = extendedRoom();
     changed.materials[2].doubleSided = true;
     std::swap(changed.meshes[1].primitives[0].material, changed.meshes[1].primitives[2].material);
-    changed.materials.push_back(glossyMaterial(kRed));
+    changed.materials.push_back(paint(kRed));
     const std::shared_ptr<const Package> original = packageOf(before_, uber);
     const std::shared_ptr<const Package> extended = packageOf(changed, uber);
     ASSERT_GT(extended->scene(0).materials.recordBytes, original->scene(0).materials.recordBytes);
@@ -193,7 +194,7 @@ TEST_F(ReplacePackageScene, AnEditedMaterialNeedsAShader) {
     const LinearImage before = draw(*renderer);
     // The room without a coat, and one whose coat comes with a sheen.
     gltf::Scene bare = roomScene();
-    bare.materials[2] = glossyMaterial(kGreen);
+    bare.materials[2] = paint(kGreen);
     gltf::Scene both = roomScene();
     giveSheen(both.materials[2]);
     const std::pair<const gltf::Scene*, const char*> refused[] = {{&bare, "scene-edit-feature"},

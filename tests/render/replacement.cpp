@@ -23,14 +23,6 @@ compiler::CompileSettings roomSettings(std::uint32_t strategies, bool fallback) 
     return settings;
 }
 
-materials::Material glossyMaterial(gltf::Float3 color) {
-    materials::Material material;
-    material["baseColorFactor"] = {color[0], color[1], color[2], 1.0F};
-    material["metallicFactor"] = 0.0F;
-    material["roughnessFactor"] = 0.5F;
-    return material;
-}
-
 void giveCoat(materials::Material& material) {
     material.give("KHR_materials_clearcoat");
     material["clearcoatFactor"] = 1.0F;
@@ -46,13 +38,13 @@ void giveSheen(materials::Material& material) {
 gltf::Scene roomScene() {
     gltf::Scene scene = sceneWithCamera();
     addQuad(scene, mirrorMaterial(), {-4, -1, 0}, {8, 0, 0}, {0, 0, -8});
-    materials::Material coated = glossyMaterial(kGreen);
+    materials::Material coated = paint(kGreen);
     giveCoat(coated);
-    materials::Material sheen = glossyMaterial(kBlue);
+    materials::Material sheen = paint(kBlue);
     giveSheen(sheen);
     gltf::Mesh walls;
     float x = -4.0F;
-    for (const materials::Material& material : {glossyMaterial(kRed), coated, sheen, unlitMaterial(kGreen)}) {
+    for (const materials::Material& material : {paint(kRed), coated, sheen, unlitMaterial(kGreen)}) {
         walls.primitives.push_back(
             makeQuad(addMaterial(scene, material), {x, -0.9F, -5.0F}, {2, 0, 0}, {0, 4, 0}));
         x += 2.0F;

@@ -17,7 +17,6 @@ compiler::CompileSettings roomSettings(std::uint32_t strategies, bool fallback =
 
 inline constexpr std::size_t kGlossy = 1;  // the material of the room that is edited
 
-materials::Material glossyMaterial(gltf::Float3 color);
 void giveCoat(materials::Material& material);
 void giveSheen(materials::Material& material);
 // Returns a mirror below walls with a material each.

@@ -43,6 +43,14 @@ materials::Material unlitMaterial(gltf::Float3 color) {
     return material;
 }
 
+materials::Material paint(gltf::Float3 color, float roughness) {
+    materials::Material material;
+    material["baseColorFactor"] = {color[0], color[1], color[2], 1.0F};
+    material["metallicFactor"] = 0.0F;
+    material["roughnessFactor"] = roughness;
+    return material;
+}
+
 materials::Material mirrorMaterial() {
     materials::Material material;
     material["roughnessFactor"] = 0.0F;

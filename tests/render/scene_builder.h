@@ -15,6 +15,8 @@ gltf::Scene sceneWithCamera();
 // Each of these returns the index of what it appends.
 int addMaterial(gltf::Scene& scene, const materials::Material& material);
 materials::Material unlitMaterial(gltf::Float3 color);
+// Returns an opaque dielectric.
+materials::Material paint(gltf::Float3 color, float roughness = 0.5F);
 // Returns a perfect mirror: metallic, roughness 0, white.
 materials::Material mirrorMaterial();
 

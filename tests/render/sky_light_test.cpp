@@ -59,17 +59,8 @@ compiler::CompileSettings settingsOf(const SkyWays& ways) {
     return settings;
 }
 
-void noLights(session::SceneViewData& data) {
-    data.lights.clear();
-}
-
 LoadedScene load(const gltf::Scene& scene, const compiler::CompileSettings& settings) {
     return LoadedScene(scene, settings, noLights);
-}
-
-SkyView uniformSky(float radiance) {
-    const std::array<float, 3> sky{radiance, radiance, radiance};
-    return {sky, sky, sky};
 }
 
 RenderSetup setupOf(const gltf::Scene& scene, const Environment* map, std::uint32_t samples,

@@ -23,11 +23,6 @@
 namespace glint::compiler {
 namespace {
 
-using testing::addInstance;
-using testing::addMaterial;
-using testing::addMesh;
-using testing::makeQuad;
-
 materials::Material lamp() {
     materials::Material material;
     material["metallicFactor"] = 0.0F;
@@ -36,7 +31,7 @@ materials::Material lamp() {
 }
 
 void addQuad(gltf::Scene& scene, const materials::Material& material) {
-    addQuad(scene, material, {-1, -1, -2}, {2, 0, 0}, {0, 2, 0});
+    testing::addQuad(scene, material, {-1, -1, -2}, {2, 0, 0}, {0, 2, 0});
 }
 
 // Returns a scene in which nothing but triangles shines.
