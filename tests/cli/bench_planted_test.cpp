@@ -62,10 +62,8 @@ protected:
 
     // Compiles a package with that name.
     void compile(const std::string& name) const {
-        std::vector<std::string> arguments{"compile",    "scene.gltf", "-o",     name,
-                                           "--strategy", "visibility", "--emit", "glsl"};
-        arguments.insert(arguments.end(), kExactPackage.begin(), kExactPackage.end());
-        must(run(arguments));
+        must(runWith({"compile", "scene.gltf", "-o", name, "--strategy", "visibility", "--emit", "glsl"},
+                     kExactPackage));
     }
     // Returns the points of the packages, by name.
     std::map<std::string, Json> measure(const std::vector<std::string>& packages) const {

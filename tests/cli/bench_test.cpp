@@ -15,11 +15,9 @@ using Json = nlohmann::json;
 class Bench : public RenderCommand {
 protected:
     Outcome bench(const std::vector<std::string>& more) const {
-        std::vector<std::string> arguments{"bench",  scene_,  "-o",    "out", "--quick",
-                                           "--size", "32x18", "--spp", "2",   "--reference-error",
-                                           "0.1",    "--json"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run(arguments);
+        return runWith({"bench", scene_, "-o", "out", "--quick", "--size", "32x18", "--spp", "2",
+                        "--reference-error", "0.1", "--json"},
+                       more);
     }
     static const Json* point(const Json& report, const std::string& name) {
         for (const Json& candidate : report.at("points")) {
@@ -211,15 +209,10 @@ TEST_F(Bench, RepeatsItsErrorsAndKeepsItsReference) {
     // A reference that must be more accurate continues from what is stored.
     other = options;
     other[1] = "spp";
-    std::vector<std::string> arguments{"bench",   scene_,
-                                       "-o",      "more",
-                                       "--quick", "--size",
-                                       "32x18",   "--spp",
-                                       "2",       "--reference-error",
-                                       "1e-9",    "--reference-spp",
-                                       "512",     "--json"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const Json third = run(arguments).json();
+    const Json third = runWith({"bench", scene_, "-o", "more", "--quick", "--size", "32x18", "--spp", "2",
+                                "--reference-error", "1e-9", "--reference-spp", "512", "--json"},
+                               options)
+                           .json();
     EXPECT_TRUE(third.at("reference").at("cached").get<bool>());
     EXPECT_EQ(third.at("reference").at("samples"), 512);
     EXPECT_FALSE(third.at("reference").at("reached").get<bool>());

@@ -18,10 +18,8 @@ using Json = nlohmann::json;
 class Calibrate : public CommandTest {
 protected:
     Outcome calibrate(const std::vector<std::string>& more) const {
-        std::vector<std::string> arguments{"bench", "--calibrate",      "-o",  "out", "--rounds",
-                                           "2",     "--calibrate-rays", "1024"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run(arguments);
+        return runWith({"bench", "--calibrate", "-o", "out", "--rounds", "2", "--calibrate-rays", "1024"},
+                       more);
     }
     void expectRefused(const std::vector<std::string>& arguments, const std::string& text) const {
         const Outcome outcome = run(arguments);

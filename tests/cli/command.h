@@ -38,6 +38,10 @@ protected:
     // build's own. Fails the test if a diagnostic has an id or a severity that the table lacks.
     Outcome run(const std::vector<std::string>& arguments,
                 const std::vector<std::pair<std::string, std::string>>& variables = {}) const;
+    Outcome runWith(std::vector<std::string> arguments, const std::vector<std::string>& more) const {
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run(arguments);
+    }
     // Does the same with a terminal as standard error; Outcome::err is what the terminal received, with
     // "\r\n".
     Outcome runOnTerminal(const std::vector<std::string>& arguments,

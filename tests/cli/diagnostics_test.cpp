@@ -10,12 +10,10 @@ namespace glint::testing {
 namespace {
 
 // The scene causes one warning, "extension-ignored".
-class Diagnostics : public CommandTest {
+class Diagnostics : public TinySceneTest {
 protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        writeTinyScene(path(""), {.unknownExtension = true});
-    }
+    Diagnostics() : TinySceneTest({.unknownExtension = true}) {}
+
     static std::vector<std::string> dryRun(const std::vector<std::string>& options) {
         std::vector<std::string> line{"compile", "scene.gltf", "--dry-run"};
         line.insert(line.end(), options.begin(), options.end());

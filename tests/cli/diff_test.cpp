@@ -21,12 +21,8 @@ std::vector<Json> changesOf(const Json& list, const std::string& change) {
     return found;
 }
 
-class Diff : public CommandTest {
+class Diff : public TinySceneTest {
 protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        scene_ = writeTinyScene(path("")).string();
-    }
     // Returns how many modules were compiled and not taken from the test's cache, or -1.
     int compile(const std::string& folder, std::vector<std::string> more) const {
         more.insert(more.begin(), {"compile", scene_, "-o", folder, "--strategy", "visibility", "--cache",
@@ -38,7 +34,6 @@ protected:
         const Outcome outcome = must(run({"diff", "a", "b", "--json"}));
         return outcome.json();
     }
-    std::string scene_;
 };
 
 TEST_F(Diff, EqualPackagesAreTheSame) {

@@ -10,11 +10,10 @@
 namespace glint::testing {
 namespace {
 
-class Disassembly : public CommandTest {
+class Disassembly : public TinySceneTest {
 protected:
     void SetUp() override {
-        CommandTest::SetUp();
-        writeTinyScene(path(""));
+        TinySceneTest::SetUp();
         must(run({"compile", "scene.gltf", "-o", "package", "--strategy", "uber,visibility,hit-shaders",
                   "--tracer", "all", "--effects", "all"}));
     }

@@ -29,16 +29,7 @@ protected:
     // Renders another file of the same folder, in which the edits are made already.
     void renderBaked(const std::string& image, const Json& gltf, std::vector<std::string> more) const {
         writeText(path("baked.gltf"), gltf.dump());
-        std::vector<std::string> words{"render", "baked.gltf", "-o", image, "--size", "64x36"};
-        words.insert(words.end(), more.begin(), more.end());
-        must(run(words));
-    }
-    void expectSame(const std::string& a, const std::string& b) const {
-        const Outcome same = run({"compare", a, b, "--max-error", "1e-4"});
-        EXPECT_EQ(same.exit, 0) << a << " and " << b << ": " << same.out << same.err;
-    }
-    void expectOther(const std::string& a, const std::string& b) const {
-        EXPECT_EQ(run({"compare", a, b, "--max-error", "1e-2"}).exit, 1) << a << " and " << b;
+        must(runWith({"render", "baked.gltf", "-o", image, "--size", "64x36"}, more));
     }
 };
 

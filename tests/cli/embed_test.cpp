@@ -8,13 +8,7 @@
 namespace glint::testing {
 namespace {
 
-class Embed : public CommandTest {
-protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        writeTinyScene(path("."));
-    }
-};
+class Embed : public TinySceneTest {};
 
 TEST_F(Embed, AloneWritesASourceAndItsHeader) {
     const Outcome outcome = must(run({"compile", "scene.gltf", "--embed", "made/scene_package.cpp",

@@ -12,20 +12,16 @@
 namespace glint::testing {
 namespace {
 
-class EnvironmentCommand : public CommandTest {
+class EnvironmentCommand : public TinySceneTest {
 protected:
     void SetUp() override {
-        CommandTest::SetUp();
-        scene_ = writeTinyScene(path("")).string();
+        TinySceneTest::SetUp();
         const std::vector<std::array<float, 3>> pixels(64 * 32, {0.5F, 2.0F, 0.25F});
         const std::vector<std::uint8_t> bytes = encodeHdr(64, 32, pixels, HdrEncoding::Flat);
         writeText(path("sky.hdr"), std::string(bytes.begin(), bytes.end()));
     }
     Outcome render(const std::string& image, const std::vector<std::string>& more) const {
-        std::vector<std::string> arguments{"render", scene_,  "-o",      image,
-                                           "--size", "64x36", "--merge", "all"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run(arguments);
+        return runWith({"render", scene_, "-o", image, "--size", "64x36", "--merge", "all"}, more);
     }
     // Writes a map with the value 1 in all pixels except one.
     void writeExr(const std::string& name, std::uint32_t width, std::uint32_t height, float odd) const {
@@ -34,7 +30,6 @@ protected:
         image.pixels[width + 2][1] = odd;
         ASSERT_TRUE(image::writeImage(path(name), image, 0.0));
     }
-    std::string scene_;
 };
 
 TEST_F(EnvironmentCommand, LightsTheScene) {

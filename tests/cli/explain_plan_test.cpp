@@ -10,18 +10,11 @@ namespace {
 
 using Json = nlohmann::json;
 
-class ExplainPlan : public CommandTest {
+class ExplainPlan : public TinySceneTest {
 protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        scene_ = writeTinyScene(path("")).string();
-    }
     Outcome explain(const std::vector<std::string>& more) const {
-        std::vector<std::string> arguments{"explain", scene_, "--plan"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run(arguments);
+        return runWith({"explain", scene_, "--plan"}, more);
     }
-    std::string scene_;
 };
 
 TEST_F(ExplainPlan, JsonHasEveryCaseAndItsCost) {

@@ -4,14 +4,7 @@
 namespace glint::testing {
 namespace {
 
-class Explain : public CommandTest {
-protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        scene_ = writeTinyScene(path("")).string();
-    }
-    std::string scene_;
-};
+class Explain : public TinySceneTest {};
 
 TEST_F(Explain, EveryMaterialIsThere) {
     const Outcome outcome = must(run({"explain", scene_, "--json"}));

@@ -18,18 +18,16 @@ constexpr const char* kSky =
     "vec3 hostSkyAround(vec3 direction, float roughness) {\n    return vec3(0.25);\n}\n"
     "vec3 hostSkyIrradianceOverPi(vec3 normal) {\n    return vec3(0.25);\n}\n";
 
-class HostCommand : public CommandTest {
+class HostCommand : public TinySceneTest {
 protected:
     void SetUp() override {
-        CommandTest::SetUp();
-        writeTinyScene(path(""));
+        TinySceneTest::SetUp();
         fs::create_directories(path("host"));
     }
     Outcome compile(std::vector<std::string> options) const {
-        std::vector<std::string> words{"compile", "scene.gltf", "-o",    "package", "--strategy",
-                                       "uber",    "--cache",    "cache", "--json"};
-        words.insert(words.end(), options.begin(), options.end());
-        return run(words);
+        return runWith(
+            {"compile", "scene.gltf", "-o", "package", "--strategy", "uber", "--cache", "cache", "--json"},
+            options);
     }
     void expectError(const std::string& id, const std::string& part) const {
         const Outcome outcome = compile({"--host", "host"});

@@ -13,12 +13,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 // The scene has two keys: "unlit" for the wall, and "normals" for the floor.
-class Lock : public CommandTest {
+class Lock : public TinySceneTest {
 protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        scene_ = writeTinyScene(path("")).string();
-    }
     void coatTheFloor() const {
         writeTinyScene(path(""), {.variants = true});
     }
@@ -36,7 +32,6 @@ protected:
         const std::string text = readText(path("glint.lock"));
         return text.substr(std::min(text.find("version"), text.size()));
     }
-    std::string scene_;
 };
 
 TEST_F(Lock, IsMadeAndThenLeftAlone) {

@@ -27,16 +27,10 @@ Json makeProfileJson(int unlitHits, int normalHits) {
               {{"features", {"normals"}}, {"materials", {"Floor"}}, {"hits", normalHits}}}}};
 }
 
-class Merge : public CommandTest {
+class Merge : public TinySceneTest {
 protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        scene_ = writeTinyScene(path("")).string();
-    }
     Outcome plan(const std::vector<std::string>& more) const {
-        std::vector<std::string> arguments{"compile", scene_, "--dry-run", "--json"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run(arguments);
+        return runWith({"compile", scene_, "--dry-run", "--json"}, more);
     }
     Outcome planWith(const Json& profile, const std::vector<std::string>& more = {}) const {
         writeText(path("hits.json"), profile.dump());
@@ -47,7 +41,6 @@ protected:
         arguments.insert(arguments.end(), more.begin(), more.end());
         return plan(arguments);
     }
-    std::string scene_;
 };
 
 TEST_F(Merge, AutoKeepsToTheLimit) {

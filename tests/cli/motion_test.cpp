@@ -34,19 +34,10 @@ TEST(MotionOptions, NumberFiles) {
 
 class MovingScene : public RenderCommand {
 protected:
-    void SetUp() override {
-        RenderCommand::SetUp();
-        scene_ = writeTinyScene(path(""), {.animated = true}).string();
-    }
+    MovingScene() : RenderCommand({.animated = true}) {}
+
     bool exists(const std::string& file) const {
         return std::filesystem::exists(path(file));
-    }
-    void expectSame(const std::string& a, const std::string& b) const {
-        const Outcome same = run({"compare", a, b, "--max-error", "1e-4"});
-        EXPECT_EQ(same.exit, 0) << a << " and " << b << ": " << same.out << same.err;
-    }
-    void expectOther(const std::string& a, const std::string& b) const {
-        EXPECT_EQ(run({"compare", a, b, "--max-error", "1e-2"}).exit, 1) << a << " and " << b;
     }
 };
 

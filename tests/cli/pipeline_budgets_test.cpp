@@ -33,9 +33,7 @@ protected:
     }
     // Compiles the scene, whose tracing modules are compute shaders, and expects its pipelines within budget.
     void expectWithinBudget(const std::string& scene, std::vector<std::string> options) const {
-        std::vector<std::string> words{"compile", scene, "-o", "package", "--strategy", "uber,visibility"};
-        words.insert(words.end(), options.begin(), options.end());
-        must(run(words));
+        must(runWith({"compile", scene, "-o", "package", "--strategy", "uber,visibility"}, options));
         const Outcome inspected =
             must(inspect(std::string(GLINT_SOURCE_DIR) + "/tests/cli/pipeline_budgets.json"));
         EXPECT_TRUE(has(inspected.out, "RADV NAVI31")) << inspected.out;

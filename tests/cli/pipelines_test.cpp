@@ -36,9 +36,7 @@ class Pipelines : public CommandTest {
 protected:
     void compile(const std::string& scene, const std::string& package,
                  const std::vector<std::string>& options) const {
-        std::vector<std::string> line{"compile", scene, "-o", package};
-        line.insert(line.end(), options.begin(), options.end());
-        must(run(line));
+        must(runWith({"compile", scene, "-o", package}, options));
     }
     Json report(const std::vector<std::string>& options, const Variables& variables = {}) const {
         std::vector<std::string> line{"inspect", "package", "--pipelines", "--json"};
@@ -89,9 +87,7 @@ TEST_F(Pipelines, RefuseFilesThatAreNoReports) {
         {{"--compare", "none.json"}, "[file-open]"},
         {{"--budget", "budget.json"}, "budget.json#/budgets/0/spils: error"}};
     for (const auto& [options, message] : wrong) {
-        std::vector<std::string> line{"inspect", "package", "--pipelines"};
-        line.insert(line.end(), options.begin(), options.end());
-        const Outcome outcome = run(line);
+        const Outcome outcome = runWith({"inspect", "package", "--pipelines"}, options);
         EXPECT_EQ(outcome.exit, 1) << outcome.err;
         EXPECT_TRUE(has(outcome.err, message)) << outcome.err;
     }

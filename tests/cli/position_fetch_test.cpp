@@ -10,12 +10,8 @@
 namespace glint::testing {
 namespace {
 
-class PositionFetch : public CommandTest, public ::testing::WithParamInterface<const char*> {
+class PositionFetch : public TinySceneTest, public ::testing::WithParamInterface<const char*> {
 protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        scene_ = writeTinyScene(path("")).string();
-    }
     Outcome render(const std::string& image, bool fetches) {
         std::vector<std::string> arguments{"render", scene_,       "-o",     image,        "--size",
                                            "64x36",  "--validate", "--json", "--strategy", GetParam()};
@@ -24,7 +20,6 @@ protected:
         }
         return run(arguments);
     }
-    std::string scene_;
 };
 
 TEST_P(PositionFetch, GivesTheSameImage) {

@@ -18,12 +18,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-class Schemas : public CommandTest {
+class Schemas : public TinySceneTest {
 protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        writeTinyScene(path(""), {.unknownExtension = true, .variants = true});
-    }
+    Schemas() : TinySceneTest({.unknownExtension = true, .variants = true}) {}
+
     Json json(std::vector<std::string> arguments, int exit = 0) const {
         arguments.emplace_back("--json");
         const Outcome outcome = run(arguments);

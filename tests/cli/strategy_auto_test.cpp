@@ -41,12 +41,8 @@ Json plantedTable(double deferred, double half) {
               package("inline", 16, {module("ShadeCase", half)})}}};
 }
 
-class StrategyAuto : public CommandTest {
+class StrategyAuto : public TinySceneTest {
 protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        writeTinyScene(path(""));
-    }
     // Writes the file of a device on which only `strategy` is fast.
     std::string device(const std::string& strategy) const {
         const std::filesystem::path file = path(strategy + ".json");
@@ -269,10 +265,8 @@ TEST_F(StrategyAuto, RefusesBrokenTablesOfGpus) {
 // A table by itself changes what is compiled, and each setting that it decides is told with its reason.
 TEST_F(StrategyAuto, TablesDecideAboutShadowsAndPrecision) {
     const auto settingsWith = [&](const std::vector<std::string>& options, std::string& told) {
-        std::vector<std::string> line{"compile",   "scene.gltf", "-o",          "package",
-                                      "--shadows", "auto",       "--precision", "auto"};
-        line.insert(line.end(), options.begin(), options.end());
-        const Outcome outcome = must(run(line));
+        const Outcome outcome = must(runWith(
+            {"compile", "scene.gltf", "-o", "package", "--shadows", "auto", "--precision", "auto"}, options));
         told = outcome.err;
         const Json settings = manifest().at("settings");
         return std::pair(settings.at("shadows").get<std::string>(), settings.at("precision").get<int>());

@@ -140,9 +140,7 @@ TEST_F(Usage, MistakesExitWithTwoAndSayWhatToDo) {
 
 TEST_F(Usage, TheLastFormOfABooleanOptionCounts) {
     const auto refused = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> line{"explain", "none.gltf"};
-        line.insert(line.end(), more.begin(), more.end());
-        return run(line).exit;
+        return runWith({"explain", "none.gltf"}, more).exit;
     };
     EXPECT_EQ(refused({"--quiet", "--verbose"}), 2);
     EXPECT_EQ(refused({"-q", "-v"}), 2);
