@@ -93,19 +93,11 @@ public:
           slots_(slots),
           hasSet_(loaded.package().bindings().tlas != package::Bindings::kByAddress ||
                   !loaded.package().scene(0).textures.empty()) {
-        const VkDescriptorSetLayout empty = makeEmptyLayout();
-        const VkDescriptorSetLayout sets[] = {empty, empty, loaded.gpuScene().descriptorSetLayout()};
-        const VkPushConstantRange range{kStages, 0, 16 + RaySteps::kPushBytes};
-        VkPipelineLayoutCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-        info.setLayoutCount = hasSet_ ? 3 : 0;
-        info.pSetLayouts = sets;
-        info.pushConstantRangeCount = 1;
-        info.pPushConstantRanges = &range;
-        VkPipelineLayout layout = VK_NULL_HANDLE;
-        EXPECT_EQ(context_.vk.CreatePipelineLayout(context_.handles.device, &info, nullptr, &layout),
-                  VK_SUCCESS);
-        layout_ = UniquePipelineLayout(context_, layout);
+        empty_ = must(createSetLayout(context_, {}));
+        const VkDescriptorSetLayout sets[] = {empty_.get(), empty_.get(),
+                                              loaded.gpuScene().descriptorSetLayout()};
+        layout_ = must(createPipelineLayout(context_, std::span(sets).first(hasSet_ ? 3 : 0),
+                                            {kStages, 0, 16 + RaySteps::kPushBytes}));
         list_ = make(rays.size() * sizeof(EngineRay), MemoryUse::Upload);
         std::memcpy(list_.mapped, rays.data(), rays.size() * sizeof(EngineRay));
         count_ = make(sizeof(std::uint32_t), MemoryUse::Upload);
@@ -122,8 +114,7 @@ public:
         options.pushStages = kStages;
         options.maxRays = static_cast<std::uint32_t>(slots_);
         const auto scene = EngineScene::share(sharedContext(), loaded_.gpuScene());
-        const auto steps = RaySteps::create(sharedContext(), loaded_.package(), **scene, options);
-        EXPECT_TRUE(steps) << toString(steps.error());
+        const auto steps = must(RaySteps::create(sharedContext(), loaded_.package(), **scene, options));
         RayBatch batch;
         batch.rays = list_.address;
         batch.answers = answers_.address;
@@ -144,20 +135,19 @@ public:
         if (apart) {
             batch.rayCount = 0;
             batch.countBuffer = count_.handle.get();
-            EXPECT_TRUE((*steps)->begin(*commands, batch));
-            (*steps)->trace(*commands);
-            (*steps)->order(*commands);
-            (*steps)->shade(*commands);
+            must(steps->begin(*commands, batch));
+            steps->trace(*commands);
+            steps->order(*commands);
+            steps->shade(*commands);
         } else {
-            const Status status = (*steps)->record(*commands, batch);
-            EXPECT_TRUE(status) << toString(status.error());
+            must(steps->record(*commands, batch));
         }
         recordDependency(context_, *commands,
                          {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
                           VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
         EXPECT_TRUE(runner->submitAndWait());
         if (counters != nullptr) {
-            *counters = *(*steps)->counters();
+            *counters = *steps->counters();
         }
         std::vector<Answer> read(slots_);
         std::memcpy(read.data(), answers_.mapped, slots_ * sizeof(Answer));
@@ -170,22 +160,9 @@ public:
     static constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_ALL;
 
 private:
-    VkDescriptorSetLayout makeEmptyLayout() {
-        VkDescriptorSetLayoutCreateInfo info{};
-        info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
-        VkDescriptorSetLayout layout = VK_NULL_HANDLE;
-        EXPECT_EQ(context_.vk.CreateDescriptorSetLayout(context_.handles.device, &info, nullptr, &layout),
-                  VK_SUCCESS);
-        empty_ = UniqueSetLayout(context_, layout);
-        return layout;
-    }
-
     Buffer make(std::size_t bytes, MemoryUse use) {
-        Result<Buffer> buffer =
-            createBuffer(context_, pool_, std::max<std::size_t>(bytes, 16),
-                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT, use);
-        EXPECT_TRUE(buffer) << toString(buffer.error());
-        return std::move(*buffer);
+        return must(createBuffer(context_, pool_, std::max<std::size_t>(bytes, 16),
+                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT, use));
     }
 
     Context::State& context_;
