@@ -34,7 +34,7 @@ protected:
         EXPECT_GT(result.size(), 1U) << result;
     }
     Json compile(const std::string& package, const std::vector<std::string>& options) const {
-        std::vector<std::string> line{"compile", "scene.gltf", "-o", package, "--cache", "cache"};
+        std::vector<std::string> line{"compile", "scene.gltf", "-o", package};
         line.insert(line.end(), options.begin(), options.end());
         return json(line);
     }

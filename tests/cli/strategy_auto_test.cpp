@@ -96,7 +96,7 @@ TEST_F(StrategyAuto, JoinsNamedStrategies) {
 TEST_F(StrategyAuto, AnotherCalibrationIsAnotherPackage) {
     const std::string file = path("device.json").string();
     writeText(file, plantedDevice("uber").dump());
-    const std::vector<std::string> options{"--strategy", "auto", "--calibration", file, "--cache", "cache"};
+    const std::vector<std::string> options{"--strategy", "auto", "--calibration", file};
     compile(options);
     EXPECT_EQ(compile(options).at("upToDate"), true);
     writeText(file, plantedDevice("visibility").dump());

@@ -68,8 +68,8 @@ protected:
     }
 
     Outcome compile(const std::string& package, const std::string& trust) const {
-        return run({"compile", "scene.gltf", "-o", package, "--effects", "auto", "--cache", "cache",
-                    "--trust-textures=" + trust, "--depfile", package + ".d", "--json"});
+        return run({"compile", "scene.gltf", "-o", package, "--effects", "auto", "--trust-textures=" + trust,
+                    "--depfile", package + ".d", "--json"});
     }
 
     std::set<std::string> featuresOf(const std::string& package) const {
@@ -117,9 +117,9 @@ TEST_F(TrustTextures, LeavesOutWhatTexturesMakeNeedless) {
 }
 
 TEST_F(TrustTextures, IsTheDefaultUnlessTexturesMayChange) {
-    ASSERT_EQ(run({"compile", "scene.gltf", "-o", "plain", "--cache", "cache"}).exit, 0);
+    ASSERT_EQ(run({"compile", "scene.gltf", "-o", "plain"}).exit, 0);
     EXPECT_FALSE(featuresOf("plain").contains("clearcoat"));
-    ASSERT_EQ(run({"compile", "scene.gltf", "-o", "live", "--cache", "cache", "--fallback"}).exit, 0);
+    ASSERT_EQ(run({"compile", "scene.gltf", "-o", "live", "--fallback"}).exit, 0);
     EXPECT_TRUE(featuresOf("live").contains("clearcoat"));
     EXPECT_TRUE(featuresOf("live").contains("transmissionTexture"));
     const Outcome drawn =
