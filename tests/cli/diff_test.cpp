@@ -23,12 +23,11 @@ std::vector<Json> changesOf(const Json& list, const std::string& change) {
 
 class Diff : public TinySceneTest {
 protected:
-    // Returns how many modules were compiled and not taken from the test's cache, or -1.
-    int compile(const std::string& folder, std::vector<std::string> more) const {
-        more.insert(more.begin(), {"compile", scene_, "-o", folder, "--strategy", "visibility", "--cache",
-                                   "cache", "--json"});
-        const Outcome outcome = must(run(more));
-        return outcome.exit == 0 ? outcome.json().at("modules").at("compiled").get<int>() : -1;
+    // Returns how many modules were compiled and not taken from a cache.
+    int compile(const std::string& folder, const std::vector<std::string>& more) const {
+        const Outcome outcome =
+            must(runWith({"compile", scene_, "-o", folder, "--strategy", "visibility", "--json"}, more));
+        return outcome.json().at("modules").at("compiled").get<int>();
     }
     Json diff() const {
         const Outcome outcome = must(run({"diff", "a", "b", "--json"}));
@@ -173,13 +172,13 @@ TEST_F(Diff, FoldersThatAreNoPackagesAreRefused) {
 
 // A change of a pack's GLSL changes the modules that have it; a change of its values changes keys.
 TEST_F(Diff, PacksChangeTheirShadersAndNoOther) {
-    compile("plain", {"--merge", "none"});
+    compile("plain", {"--cache", "cache", "--merge", "none"});
     addMud(scene_, 0.5);
     writeMudPack(path("pack"), 0.25);
-    const int all = compile("a", {"--materials", "pack", "--merge", "none"});
+    const int all = compile("a", {"--cache", "cache", "--materials", "pack", "--merge", "none"});
     writeMudPack(path("pack"), 0.5);
     // The case of the floor, for first hits and for hits of rays.
-    EXPECT_EQ(compile("b", {"--materials", "pack", "--merge", "none"}), 2);
+    EXPECT_EQ(compile("b", {"--cache", "cache", "--materials", "pack", "--merge", "none"}), 2);
     EXPECT_GT(all, 2);
     const Json changed = diff();
     EXPECT_EQ(changed.at("differ"), true);
@@ -199,7 +198,7 @@ TEST_F(Diff, PacksChangeTheirShadersAndNoOther) {
     EXPECT_TRUE(has(run({"inspect", "plain"}).out, "packs                none\n"));
 
     addMud(scene_, 0.0);
-    compile("b", {"--materials", "pack", "--merge", "none"});
+    compile("b", {"--cache", "cache", "--materials", "pack", "--merge", "none"});
     EXPECT_FALSE(diff().at("shaders").empty());
 }
 
