@@ -23,6 +23,8 @@ compiler::CompileSettings settingsOf(package::Strategy strategy, package::Shadin
     compiler::CompileSettings settings;
     settings.strategies = strategy;
     settings.precision = precision;
+    // One case has every lobe, and compiles sooner than many.
+    settings.plan.merge = test::nightly() ? compiler::MergePolicy::Family : compiler::MergePolicy::All;
     settings.effects = {false, package::kEffectShadow | package::kEffectReflection |
                                    package::kEffectRefraction | package::kEffectIndirectDiffuse};
     return settings;

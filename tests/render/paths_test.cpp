@@ -33,8 +33,6 @@ using namespace glint::compiler;
 using namespace glint::testing;
 using package::ShadowPlacement;
 
-constexpr const char* kEffects[] = {"shadow", "reflection", "refraction", "indirect-diffuse"};
-
 compiler::CompileSettings pathSettings(std::uint32_t bounces,
                                        package::Strategy strategy = package::kStrategyVisibility) {
     compiler::CompileSettings settings;
@@ -42,12 +40,16 @@ compiler::CompileSettings pathSettings(std::uint32_t bounces,
     settings.maxBounces = bounces;
     settings.emissiveLights = compiler::EmissiveLights::Off;  // paths find emission by chance
     settings.skyLight = compiler::SkyLight::Off;              // and the sky
-    settings.effects = {false, 0};
-    for (const char* const effect : kEffects) {
-        settings.effects.named |= compiler::builtinEffects({effect});
-    }
+    settings.effects = {false, compiler::builtinEffects({"shadow", "reflection", "indirect-diffuse"})};
     settings.effects.maxReflectionRoughness = 1.0F;
     settings.plan.merge = compiler::MergePolicy::None;
+    return settings;
+}
+
+// The same for scenes with glass.
+compiler::CompileSettings glassSettings(std::uint32_t bounces) {
+    compiler::CompileSettings settings = pathSettings(bounces);
+    settings.effects.named |= compiler::builtinEffects({"refraction"});
     return settings;
 }
 
@@ -109,7 +111,6 @@ TEST(Paths, OrderingsBinningsAndBatchesGiveTheSamePicture) {
         compiler::CompileSettings settings = pathSettings(3);
         if (lights) {
             settings.strategies |= package::kStrategySortedUber;
-            settings.effects.named = compiler::builtinEffects({"shadow", "reflection", "indirect-diffuse"});
             settings.emissiveLights = compiler::EmissiveLights::On;
             settings.skyLight = compiler::SkyLight::On;
         }
@@ -400,7 +401,7 @@ TEST(Paths, WhiteSurfacesVanishInAUniformSky) {
     add(metal, {1, -1, -4}, {2, 0, 3}, {0, 3, 0});
     add(diffuse(1.0F, 0.0F), {-1, -1, -4}, {2, 0, 0}, {0, 3, 0});
     add(wall, {-0.8F, -0.9F, -2}, {1.6F, 0, 0}, {0, 1.2F, 0});
-    const LoadedScene loaded(scene, pathSettings(package::kMaxBounces), noLights);
+    const LoadedScene loaded(scene, glassSettings(package::kMaxBounces), noLights);
     RenderSetup setup = pathSetup(scene, 24, 24, 16);
     setup.frame.sky = uniformSky(1.0F);
     for (const std::uint32_t bounces : {1U, 2U, 4U, package::kMaxBounces}) {
@@ -434,7 +435,7 @@ double brightnessOfMirroredGlass(gltf::Float3 color, float roughness = 0.0F, boo
         glass["attenuationColor"] = gltf::Float3{1, 1, 1};
         addBox(scene, addMaterial(scene, glass), {4, 4, 1.75F}, {-4, -4, 1.25F}, scaling(1, 1, 1));
     }
-    const LoadedScene loaded(scene, pathSettings(32), noLights);
+    const LoadedScene loaded(scene, glassSettings(32), noLights);
     RenderSetup setup = pathSetup(scene, 16, 16, 64);
     setup.frame.sky = uniformSky(1.0F);
     FrameCounters counters;
