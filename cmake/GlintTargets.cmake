@@ -36,31 +36,3 @@ function(glint_configure target)
     target_precompile_headers(${target} PRIVATE "${PROJECT_SOURCE_DIR}/cmake/precompiled.h")
   endif()
 endfunction()
-
-# glint_precompile(TARGET HEADER…): reads these headers once, for the target and for those that glint_share_headers() gives
-# them. It is for programs of little code without optimisation, which take longest to read headers. Like sources that are
-# compiled together, it hides missing includes. Clang would want the same definitions for all of these targets.
-set(glint_shares_headers OFF)
-if(GLINT_UNITY AND NOT GLINT_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  set(glint_shares_headers ON)
-endif()
-function(glint_precompile target)
-  if(glint_shares_headers)
-    target_precompile_headers(${target} PRIVATE ${ARGN})
-    glint_cache_precompiled(${target})
-  endif()
-endfunction()
-function(glint_share_headers target from)
-  if(glint_shares_headers)
-    target_precompile_headers(${target} REUSE_FROM ${from})
-    glint_cache_precompiled(${target})
-  endif()
-endfunction()
-# ccache stores nothing of such targets unless it is told that headers have no time and no definitions of their own.
-function(glint_cache_precompiled target)
-  target_compile_options(${target} PRIVATE -fpch-preprocess)
-  if(GLINT_CCACHE)
-    set_target_properties(${target} PROPERTIES CXX_COMPILER_LAUNCHER
-                          "${CMAKE_COMMAND};-E;env;CCACHE_SLOPPINESS=pch_defines,time_macros;${GLINT_CCACHE}")
-  endif()
-endfunction()
