@@ -7,6 +7,7 @@
 #include "render/scene_builder.h"
 #include "scene/scene_store.h"
 #include "support/halved_tree.h"
+#include "support/must.h"
 
 #include <glint/session/camera.h>
 #include <glint/session/scene_view.h>

@@ -5,6 +5,7 @@
 #include "render/light_pictures.h"
 #include "render/scene_builder.h"
 #include "render/ways.h"
+#include "support/must.h"
 #include "support/nightly.h"
 #include "support/temporary_folder.h"
 
@@ -284,7 +285,6 @@ TEST(SkyLight, AHostsOwnSkyIsNoLight) {
     const test::TemporaryFolder folder;
     constexpr const char* kText = R"(// A sky of one half.
 #include "host/resources.glsl"
-#include "support/must.h"
 vec3 hostSky(vec3 direction) { return vec3(0.5); }
 vec3 hostSkyAround(vec3 direction, float roughness) { return vec3(0.5); }
 vec3 hostSkyIrradianceOverPi(vec3 normal) { return vec3(0.5); }
