@@ -1,6 +1,7 @@
 // Tests a package as C++ source: a program must get from it the same as from the package's folder.
 #include "emit/package/header.h"
 #include "sample_scene.h"
+#include "support/must.h"
 
 #include <glint/package.h>
 
@@ -19,7 +20,6 @@ namespace fs = std::filesystem;
 // Writes every file below the given folder.
 constexpr const char* kDump = R"(
 #include "sample_package.h"
-#include "support/must.h"
 
 #include <fstream>
 #include <string>
