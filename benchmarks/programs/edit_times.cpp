@@ -3,20 +3,18 @@
 #include "base/clock.h"
 #include "context/commands.h"
 #include "gltf/scene.h"
+#include "program.h"
 
 #include <glint/scene.h>
 #include <glint/session/session.h>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
-#include <exception>
 #include <functional>
 #include <span>
 #include <string>
@@ -108,10 +106,9 @@ Status measureEdit(Context& context, SceneEditor& editor, const std::string& nam
         GLINT_TRY_DO(runner.submitAndWait());
         editor.complete(frame);
     }
-    std::ranges::sort(times);
-    std::ranges::sort(bytes);
-    fmt::print("| {} | {:.3f} | {:.3f} to {:.3f} | {} |\n", name, times[times.size() / 2], times.front(),
-               times.back(), bytes[bytes.size() / 2]);
+    const auto part = [&](double share) { return benchmarks::quantile(times, share); };
+    fmt::print("| {} | {:.3f} | {:.3f} to {:.3f} | {} |\n", name, part(0.5), part(0.0), part(1.0),
+               benchmarks::quantile(bytes, 0.5));
     return okStatus();
 }
 
@@ -211,18 +208,6 @@ int main(int count, char** words) {
     app.add_option("--triangles", arguments.triangles, "triangles of each")
         ->check(CLI::Range(2, 1'000'000))
         ->capture_default_str();
-    app.add_option("--rounds", arguments.rounds, "edits of each kind")
-        ->check(CLI::Range(1, 10'000))
-        ->capture_default_str();
-    CLI11_PARSE(app, count, words);
-    try {
-        if (const glint::Status status = glint::measureEdits(arguments); !status) {
-            fmt::print(stderr, "{}\n", glint::toString(status.error()));
-            return 1;
-        }
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "glint_edit_times: {}\n", error.what());
-        return 1;
-    }
-    return 0;
+    glint::benchmarks::addRoundsOption(app, arguments.rounds, "edits of each kind");
+    return glint::benchmarks::runProgram(app, count, words, [&] { return glint::measureEdits(arguments); });
 }

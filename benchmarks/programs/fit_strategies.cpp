@@ -2,42 +2,33 @@
 // benchmarks/fit_strategy_costs.py, and for changes of the model in plan/strategy_cost.h.
 #include "base/files.h"
 #include "cli/bench/bench.h"
+#include "program.h"
 
 #include <glint/measure/device_file.h>
 
 #include <fmt/format.h>
 
-#include <cstdio>
-#include <exception>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace glint {
 
 namespace {
 
-int fail(const Diagnostic& error) {
-    fmt::print(stderr, "{}\n", toString(error));
-    return 1;
-}
-
-int fitFile(const char* points, const char* device) {
-    Result<measure::CalibrationPoints> read = measure::readCalibrationPoints(points);
-    if (!read) {
-        return fail(read.error());
-    }
+Status fitFile(const std::string& points, const std::string& device) {
+    GLINT_TRY(auto read, measure::readCalibrationPoints(points));
     std::vector<Diagnostic> notes;
-    const Result<measure::DeviceFile> fitted =
-        measure::fitDevice(std::move(read->device), read->points, notes);
+    const Result<measure::DeviceFile> fitted = measure::fitDevice(std::move(read.device), read.points, notes);
     for (const Diagnostic& note : notes) {
         fmt::print(stderr, "{}\n", toString(note));
     }
     if (!fitted) {
-        return fail(fitted.error());
+        return fitted.error();
     }
-    if (Status written = base::writeFile(device, toText(*fitted)); !written) {
-        return fail(written.error());
-    }
+    GLINT_TRY_DO(base::writeFile(device, toText(*fitted)));
     fmt::print("{}", cli::describe(*fitted));
-    return 0;
+    return okStatus();
 }
 
 }  // namespace
@@ -45,14 +36,10 @@ int fitFile(const char* points, const char* device) {
 }  // namespace glint
 
 int main(int count, char** words) {
-    if (count != 3) {
-        fmt::print(stderr, "usage: glint_fit_strategies FOLDER/calibration.json DEVICE.json\n");
-        return 2;
-    }
-    try {
-        return glint::fitFile(words[1], words[2]);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "glint_fit_strategies: {}\n", error.what());
-        return 1;
-    }
+    std::string points;
+    std::string device;
+    CLI::App app{"Fits a device file again to the measurements of `glint bench --calibrate`."};
+    app.add_option("points", points, "the calibration.json of the measurements")->required();
+    app.add_option("device", device, "the device file to write")->required();
+    return glint::benchmarks::runProgram(app, count, words, [&] { return glint::fitFile(points, device); });
 }

@@ -5,12 +5,12 @@
 #include "base/json.h"
 #include "gltf/import.h"
 #include "materials/declarations.h"
+#include "program.h"
 
 #include <glint/package.h>
 #include <glint/session/camera.h>
 #include <glint/session/session.h>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,10 +18,8 @@
 #include <chrono>
 #include <csignal>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <ctime>
-#include <exception>
 #include <fcntl.h>
 #include <filesystem>
 #include <memory>
@@ -49,8 +47,7 @@ struct Arguments {
     std::string from;
     std::string folder;
     std::string strategy = "visibility";
-    std::uint32_t width = 320;
-    std::uint32_t height = 180;
+    benchmarks::Size size{320, 180};
     int rounds = 5;
     bool noFallback = false;
     std::string json;
@@ -264,9 +261,8 @@ void printTable(const std::vector<Times>& rows) {
         for (const Times& row : rows) {
             values.push_back(row[part]);
         }
-        std::ranges::sort(values);
-        fmt::print("| {} | {:.0f} | {:.0f} | {:.0f} |\n", kParts[part], values[values.size() / 2],
-                   values.front(), values.back());
+        fmt::print("| {} | {:.0f} | {:.0f} | {:.0f} |\n", kParts[part], benchmarks::quantile(values, 0.5),
+                   benchmarks::quantile(values, 0.0), benchmarks::quantile(values, 1.0));
     }
 }
 
@@ -281,8 +277,8 @@ Status report(const Arguments& arguments, const std::string& device, const std::
         return okStatus();
     }
     const base::Json all = {{"device", device},
-                            {"width", arguments.width},
-                            {"height", arguments.height},
+                            {"width", arguments.size.width},
+                            {"height", arguments.size.height},
                             {"strategy", arguments.strategy},
                             {"fallback", !arguments.noFallback},
                             {"edits", std::move(list)}};
@@ -300,8 +296,8 @@ Status measure(const Arguments& arguments) {
     GLINT_TRY(const auto scene, gltf::importScene(arguments.scene, import));
     RendererOptions options;
     options.strategy = package::findStrategy(arguments.strategy)->strategy;
-    options.width = arguments.width;
-    options.height = arguments.height;
+    options.width = arguments.size.width;
+    options.height = arguments.size.height;
     options.backgroundPipelines = !arguments.noFallback;
     const bool queries = (context->handles().tracers & package::kTracerRayQuery) != 0;
     const Compiler compiler(arguments, settings.package, queries ? "ray-query" : "ray-pipeline");
@@ -312,9 +308,8 @@ Status measure(const Arguments& arguments) {
               session::DeviceScene::upload(*context, std::move(first), session::makeSceneView(scene)));
     GLINT_TRY(const auto renderer, uploaded.makeRenderer(*context, options));
     renderer->waitForPipelines();
-    const double aspect = static_cast<double>(arguments.width) / arguments.height;
     FrameOptions frame;
-    frame.camera = session::framingCamera(session::worldBounds(uploaded.data), aspect);
+    frame.camera = session::framingCamera(session::worldBounds(uploaded.data), arguments.size.aspect());
     GLINT_TRY_DO(renderer->renderSamples(frame, 1));
     GLINT_TRY(const auto bytes, base::readFile(arguments.file));
     const std::string original(base::asText(bytes));
@@ -343,8 +338,8 @@ Status measure(const Arguments& arguments) {
     static_cast<void>(base::writeFile(arguments.file, original));
     GLINT_TRY_DO(result);
     fmt::print("\n{} cases; pipelines: {} made, {} kept; {} x {}, {} edits\n\n",
-               uploaded.package->caseCount(), replaced.pipelinesMade, replaced.pipelinesKept, arguments.width,
-               arguments.height, arguments.rounds);
+               uploaded.package->caseCount(), replaced.pipelinesMade, replaced.pipelinesKept,
+               arguments.size.width, arguments.size.height, arguments.rounds);
     return report(arguments, context->deviceName(), edits);
 }
 
@@ -362,21 +357,10 @@ int main(int count, char** words) {
     app.add_option("--from", arguments.from, "a number in that file, which the edits multiply")->required();
     app.add_option("--folder", arguments.folder, "an existing folder for the package")->required();
     app.add_option("--strategy", arguments.strategy, "name of the strategy")->capture_default_str();
-    app.add_option("--width", arguments.width, "pixels")->capture_default_str();
-    app.add_option("--height", arguments.height, "pixels")->capture_default_str();
-    app.add_option("--rounds", arguments.rounds, "edits")->capture_default_str();
+    glint::benchmarks::addSizeOptions(app, arguments.size);
+    glint::benchmarks::addRoundsOption(app, arguments.rounds, "edits");
     app.add_flag("--no-fallback", arguments.noFallback,
                  "compile no fallback, and make pipelines in replacePackage()");
     app.add_option("--json", arguments.json, "a file for every edit's times");
-    CLI11_PARSE(app, count, words);
-    try {
-        if (const glint::Status status = glint::measure(arguments); !status) {
-            fmt::print(stderr, "{}\n", toString(status.error()));
-            return 1;
-        }
-        return 0;
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "glint_live_edit: {}\n", error.what());
-        return 1;
-    }
+    return glint::benchmarks::runProgram(app, count, words, [&] { return glint::measure(arguments); });
 }

@@ -2,15 +2,13 @@
 // them first, and when it edits or adds one.
 #include "base/clock.h"
 #include "emit/material_compiler.h"
+#include "program.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdio>
 #include <ctime>
-#include <exception>
 #include <map>
 #include <string>
 #include <utility>
@@ -151,19 +149,9 @@ int main(int count, char** words) {
     app.add_option("--cases", arguments.cases, "of these materials")->capture_default_str();
     app.add_option("--strategy", arguments.strategy, "name of the strategy")->capture_default_str();
     app.add_option("--cache", arguments.cache, "folder of compiled shaders; without it, memory alone");
-    app.add_option("--rounds", arguments.rounds, "edits of each kind")->capture_default_str();
+    glint::benchmarks::addRoundsOption(app, arguments.rounds, "edits of each kind");
     app.add_option("--jobs", arguments.jobs, "threads; 0: one for each core")->capture_default_str();
     app.add_flag("--steps", arguments.steps, "for rays of an engine's own, without a frame");
     app.add_flag("--fallback", arguments.fallback, "compile a fallback, too");
-    CLI11_PARSE(app, count, words);
-    try {
-        if (const glint::Status status = glint::measure(arguments); !status) {
-            fmt::print(stderr, "{}\n", toString(status.error()));
-            return 1;
-        }
-        return 0;
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "glint_material_sets: {}\n", error.what());
-        return 1;
-    }
+    return glint::benchmarks::runProgram(app, count, words, [&] { return glint::measure(arguments); });
 }

@@ -4,18 +4,16 @@
 #include "base/clock.h"
 #include "context/commands.h"
 #include "gltf/import.h"
+#include "program.h"
 
 #include <glint/session/camera.h>
 #include <glint/session/session.h>
 #include <glint/session/textures.h>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
-#include <exception>
 #include <memory>
 #include <span>
 #include <string>
@@ -31,8 +29,7 @@ enum class Way { Blocking, Recorded, Streamed };
 struct Arguments {
     std::string scene;
     int rounds = 5;
-    std::uint32_t width = 320;
-    std::uint32_t height = 180;
+    benchmarks::Size size{320, 180};
 };
 
 // Everything that is there before the upload.
@@ -66,8 +63,8 @@ Result<std::unique_ptr<Ready>> prepare(const Arguments& arguments, const compile
     GLINT_TRY(auto textures, session::loadTextures(ready->scene, options));
     ready->data = session::sceneView(settings, ready->scene);
     session::usePackage(*ready->package, ready->scene, std::move(textures), ready->data);
-    const double aspect = static_cast<double>(arguments.width) / arguments.height;
-    GLINT_TRY(const auto camera, session::chooseCamera(ready->scene, ready->data, "", aspect));
+    GLINT_TRY(const auto camera,
+              session::chooseCamera(ready->scene, ready->data, "", arguments.size.aspect()));
     ready->frame.camera = camera.view;
     return ready;
 }
@@ -87,8 +84,8 @@ Status bringLevels(GpuScene& scene, Renderer& renderer, const FrameOptions& fram
 Result<Times> measureOnce(const Ready& ready, Way way, const Arguments& arguments) {
     RendererOptions options;
     options.strategy = package::kStrategyUber;
-    options.width = arguments.width;
-    options.height = arguments.height;
+    options.width = arguments.size.width;
+    options.height = arguments.size.height;
     SceneView view = ready.data.view();
     view.streamsTextures = way == Way::Streamed;
     GLINT_TRY(auto runner, CommandRunner::create(ready.context->state()));
@@ -117,17 +114,8 @@ std::string spread(std::vector<Times>& all, double Times::*time) {
                        all.back().*time);
 }
 
-int fail(const Diagnostic& error) {
-    fmt::print(stderr, "{}\n", toString(error));
-    return 1;
-}
-
-int run(const Arguments& arguments) {
-    const compiler::Settings settings;
-    const Result<std::unique_ptr<Ready>> ready = prepare(arguments, settings);
-    if (!ready) {
-        return fail(ready.error());
-    }
+Status run(const Arguments& arguments) {
+    GLINT_TRY(const auto ready, prepare(arguments, {}));
     constexpr std::pair<Way, const char*> kWays[] = {{Way::Blocking, "`upload()`"},
                                                      {Way::Recorded, "`record()`"},
                                                      {Way::Streamed, "`record()`, streamed"}};
@@ -135,23 +123,20 @@ int run(const Arguments& arguments) {
     // The driver's caches are warm after the first round, which does not count.
     for (int round = 0; round <= arguments.rounds; ++round) {
         for (std::size_t i = 0; i < std::size(kWays); ++i) {
-            const Result<Times> measured = measureOnce(**ready, kWays[i].first, arguments);
-            if (!measured) {
-                return fail(measured.error());
-            }
+            GLINT_TRY(const auto measured, measureOnce(*ready, kWays[i].first, arguments));
             if (round > 0) {
-                times[i].push_back(*measured);
+                times[i].push_back(measured);
             }
         }
     }
     fmt::print("{}: {}, {} rounds; medians in ms, with the least and the most\n\n", arguments.scene,
-               (*ready)->context->deviceName(), arguments.rounds);
+               ready->context->deviceName(), arguments.rounds);
     fmt::print("| way | the call returns | first frame | all levels |\n|---|--:|--:|--:|\n");
     for (std::size_t i = 0; i < std::size(kWays); ++i) {
         fmt::print("| {} | {} | {} | {} |\n", kWays[i].second, spread(times[i], &Times::returned),
                    spread(times[i], &Times::firstFrame), spread(times[i], &Times::allLevels));
     }
-    return 0;
+    return okStatus();
 }
 
 }  // namespace
@@ -162,15 +147,7 @@ int main(int count, char** words) {
     glint::Arguments arguments;
     CLI::App app{"Measures how long a scene takes to its first frame, by the way in which it is uploaded."};
     app.add_option("scene", arguments.scene, "glTF file")->required();
-    app.add_option("--rounds", arguments.rounds, "rounds of each way, which alternate")
-        ->check(CLI::Range(1, 1000));
-    app.add_option("--width", arguments.width, "pixels")->capture_default_str();
-    app.add_option("--height", arguments.height, "pixels")->capture_default_str();
-    CLI11_PARSE(app, count, words);
-    try {
-        return glint::run(arguments);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "glint_scene_load: {}\n", error.what());
-        return 1;
-    }
+    glint::benchmarks::addRoundsOption(app, arguments.rounds, "rounds of each way, which alternate");
+    glint::benchmarks::addSizeOptions(app, arguments.size);
+    return glint::benchmarks::runProgram(app, count, words, [&] { return glint::run(arguments); });
 }

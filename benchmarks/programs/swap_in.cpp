@@ -4,18 +4,17 @@
 #include "base/clock.h"
 #include "emit/compile.h"
 #include "emit/package/compiled_package.h"
+#include "program.h"
 #include "synthetic/cases_scene.h"
 
 #include <glint/session/camera.h>
 #include <glint/session/session.h>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <memory>
 #include <string>
 #include <utility>
@@ -30,8 +29,7 @@ struct Arguments {
     bool cheap = false;
     bool incoherent = false;
     std::vector<std::string> strategies{"uber", "visibility", "sorted-uber", "hit-shaders"};
-    std::uint32_t width = 640;
-    std::uint32_t height = 320;
+    benchmarks::Size size{640, 320};
     std::uint32_t threads = 0;
     std::uint32_t after = 100;
     bool skipsAllFirst = false;
@@ -69,7 +67,7 @@ Result<Bed> makeBed(const Arguments& arguments) {
     options.coherence =
         arguments.incoherent ? synthetic::Coherence::Incoherent : synthetic::Coherence::Coherent;
     options.lights = 1;
-    options.aspect = static_cast<double>(arguments.width) / arguments.height;
+    options.aspect = arguments.size.aspect();
     const gltf::Scene scene = synthetic::makeCasesScene(options);
     compiler::CompileSettings settings;
     settings.strategies = 0;
@@ -98,10 +96,7 @@ Result<Bed> makeBed(const Arguments& arguments) {
     return bed;
 }
 
-double quantile(std::vector<double> values, double share) {
-    std::ranges::sort(values);
-    return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
+using benchmarks::quantile;
 
 // The events until every pipeline was in use. Milliseconds of wall clock.
 struct Course {
@@ -221,13 +216,10 @@ void print(const std::string& strategy, const char* way, const Course& course) {
     std::fflush(stdout);
 }
 
-int run(const Arguments& arguments) {
-    const Result<Bed> bed = makeBed(arguments);
-    if (!bed) {
-        fmt::print(stderr, "{}\n", toString(bed.error()));
-        return 1;
-    }
-    fmt::print("{} cases, {} x {}\n\n", bed->scene.package->caseCount(), arguments.width, arguments.height);
+Status run(const Arguments& arguments) {
+    GLINT_TRY(const auto bed, makeBed(arguments));
+    fmt::print("{} cases, {} x {}\n\n", bed.scene.package->caseCount(), arguments.size.width,
+               arguments.size.height);
     fmt::print(
         "| strategy | pipelines | created, ms | first frame, ms | no draft, ms | all used, ms | frames until "
         "then | median, "
@@ -237,8 +229,8 @@ int run(const Arguments& arguments) {
     for (const std::string& name : arguments.strategies) {
         RendererOptions options;
         options.strategy = package::findStrategy(name)->strategy;
-        options.width = arguments.width;
-        options.height = arguments.height;
+        options.width = arguments.size.width;
+        options.height = arguments.size.height;
         options.pipelineThreads = arguments.threads;
         // In the background first: afterwards the driver may know the shaders.
         for (const bool background : {true, false}) {
@@ -247,18 +239,18 @@ int run(const Arguments& arguments) {
             }
             options.backgroundPipelines = background;
             options.draft = !arguments.noDraft;
-            const Result<Course> course = follow(*bed, options, arguments.after);
+            const Result<Course> course = follow(bed, options, arguments.after);
             if (!course) {
                 fmt::print(stderr, "{}: {}\n", name, toString(course.error()));
                 continue;
             }
             print(name, background ? "background" : "first", *course);
-            if (background && bed->other && course->before.size() > 1 && !course->after.empty()) {
+            if (background && bed.other && course->before.size() > 1 && !course->after.empty()) {
                 printHistograms(*course);
             }
         }
     }
-    return 0;
+    return okStatus();
 }
 
 }  // namespace
@@ -275,8 +267,7 @@ int main(int count, char** words) {
     app.add_flag("--cheap", arguments.cheap, "cheap materials instead of expensive ones");
     app.add_flag("--incoherent", arguments.incoherent, "rays in all directions instead of a mirror's");
     app.add_option("--strategies", arguments.strategies, "strategies, by name")->capture_default_str();
-    app.add_option("--width", arguments.width, "pixels")->capture_default_str();
-    app.add_option("--height", arguments.height, "pixels")->capture_default_str();
+    glint::benchmarks::addSizeOptions(app, arguments.size);
     app.add_option("--threads", arguments.threads, "threads that make pipelines; 0: one for each core");
     app.add_option("--after", arguments.after, "frames after the last pipeline")->capture_default_str();
     app.add_flag("--no-draft", arguments.noDraft, "wait for the fixed passes and the fallback");
@@ -286,11 +277,5 @@ int main(int count, char** words) {
     app.add_flag(
         "--replace", arguments.replaces,
         "then replace the package by one without energy compensation, and print histograms of the frames");
-    CLI11_PARSE(app, count, words);
-    try {
-        return glint::run(arguments);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "glint_swap_in: {}\n", error.what());
-        return 1;
-    }
+    return glint::benchmarks::runProgram(app, count, words, [&] { return glint::run(arguments); });
 }

@@ -4,15 +4,13 @@
 #include "gltf/import.h"
 #include "gltf/texels/levels.h"
 #include "image/image_file.h"
+#include "program.h"
 
 #include <glint/session/textures.h>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -100,26 +98,16 @@ Status writePngs(const std::string& file, const std::filesystem::path& folder) {
     return okStatus();
 }
 
-int fail(const Diagnostic& error) {
-    std::fprintf(stderr, "%s\n", toString(error).c_str());
-    return 1;
-}
-
-int run(const Arguments& arguments) {
+Status run(const Arguments& arguments) {
     if (!arguments.png.empty()) {
-        const Status written = writePngs(arguments.scenes.front(), arguments.png);
-        return written ? 0 : fail(written.error());
+        return writePngs(arguments.scenes.front(), arguments.png);
     }
     std::vector<std::vector<double>> times(arguments.scenes.size());
     std::vector<Round> last(arguments.scenes.size());
     for (int round = 0; round < arguments.rounds; ++round) {
         for (std::size_t i = 0; i < arguments.scenes.size(); ++i) {
-            Result<Round> measured = load(arguments.scenes[i], arguments);
-            if (!measured) {
-                return fail(measured.error());
-            }
-            times[i].push_back(measured->processorMs);
-            last[i] = std::move(*measured);
+            GLINT_TRY(last[i], load(arguments.scenes[i], arguments));
+            times[i].push_back(last[i].processorMs);
         }
     }
     for (std::size_t i = 0; i < arguments.scenes.size(); ++i) {
@@ -136,35 +124,21 @@ int run(const Arguments& arguments) {
                 static_cast<double>(std::max<std::uint64_t>(last[i].texels, 1)),
             formats);
     }
-    return 0;
-}
-
-int parseAndRun(int argc, char** argv) {
-    Arguments arguments;
-    CLI::App app("Measures how long the images of scenes take to load, and their size on a desktop device.");
-    app.add_option("scenes", arguments.scenes, "glTF files")->required();
-    app.add_option("--rounds", arguments.rounds, "rounds of each scene")->check(CLI::Range(1, 1000));
-    app.add_flag("--compress", arguments.compress, "compress PNG, JPEG and WebP, without a cache");
-    app.add_flag("--unpack", arguments.unpack, "as for a device without block formats");
-    app.add_option("--png", arguments.png,
-                   "write the first scene's images to this folder, and measure nothing");
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error);
-    }
-    return run(arguments);
+    return okStatus();
 }
 
 }  // namespace
 
 }  // namespace glint
 
-int main(int argc, char** argv) {
-    try {
-        return glint::parseAndRun(argc, argv);
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "glint_texture_load: %s\n", error.what());
-        return 1;
-    }
+int main(int count, char** words) {
+    glint::Arguments arguments;
+    CLI::App app("Measures how long the images of scenes take to load, and their size on a desktop device.");
+    app.add_option("scenes", arguments.scenes, "glTF files")->required();
+    glint::benchmarks::addRoundsOption(app, arguments.rounds, "rounds of each scene");
+    app.add_flag("--compress", arguments.compress, "compress PNG, JPEG and WebP, without a cache");
+    app.add_flag("--unpack", arguments.unpack, "as for a device without block formats");
+    app.add_option("--png", arguments.png,
+                   "write the first scene's images to this folder, and measure nothing");
+    return glint::benchmarks::runProgram(app, count, words, [&] { return glint::run(arguments); });
 }

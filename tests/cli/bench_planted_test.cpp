@@ -4,6 +4,7 @@
 #include "cli/planted.h"
 #include "cli/tiny_scene.h"
 #include "image/image_file.h"
+#include "support/must.h"
 
 #include <array>
 #include <map>
@@ -56,17 +57,13 @@ protected:
             image.pixels.push_back(isLight ? std::array<std::uint8_t, 3>{250, 250, 250}
                                            : std::array<std::uint8_t, 3>{20, 20, 20});
         }
-        const Status written = writeImage(path("checkerboard.png"), image);
-        ASSERT_TRUE(written.ok());
+        must(writeImage(path("checkerboard.png"), image));
     }
 
     // Compiles a package with that name.
     void compile(const std::string& name) const {
-        std::vector<std::string> arguments{"compile",    "scene.gltf", "-o",     name,
-                                           "--strategy", "visibility", "--emit", "glsl"};
-        arguments.insert(arguments.end(), kExactPackage.begin(), kExactPackage.end());
-        const Outcome outcome = run(arguments);
-        ASSERT_EQ(outcome.exit, 0) << outcome.err;
+        must(runWith({"compile", "scene.gltf", "-o", name, "--strategy", "visibility", "--emit", "glsl"},
+                     kExactPackage));
     }
     // Returns the points of the packages, by name.
     std::map<std::string, Json> measure(const std::vector<std::string>& packages) const {
@@ -79,8 +76,7 @@ protected:
             arguments.emplace_back("--candidate");
             arguments.emplace_back(name).append("=").append(name);
         }
-        const Outcome outcome = run(arguments);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome = must(run(arguments));
         const Json report = outcome.json();
         std::map<std::string, Json> points;
         for (const Json& point : report.at("points")) {

@@ -15,11 +15,9 @@ using Json = nlohmann::json;
 class Bench : public RenderCommand {
 protected:
     Outcome bench(const std::vector<std::string>& more) const {
-        std::vector<std::string> arguments{"bench",  scene_,  "-o",    "out", "--quick",
-                                           "--size", "32x18", "--spp", "2",   "--reference-error",
-                                           "0.1",    "--json"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run(arguments);
+        return runWith({"bench", scene_, "-o", "out", "--quick", "--size", "32x18", "--spp", "2",
+                        "--reference-error", "0.1", "--json"},
+                       more);
     }
     static const Json* point(const Json& report, const std::string& name) {
         for (const Json& candidate : report.at("points")) {
@@ -36,8 +34,7 @@ protected:
 TEST_F(Bench, MeasuresPacks) {
     addMud(scene_, 0.5);
     writeMudPack(path("pack"), 0.25);
-    const Outcome outcome = bench({"--only", "strategy", "--max-error", "1000", "--materials", "pack"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(bench({"--only", "strategy", "--max-error", "1000", "--materials", "pack"}));
     const Json report = outcome.json();
     for (const char* const strategy : {"uber", "sorted-uber"}) {
         const Json* const one = point(report, std::string("strategy ") + strategy);
@@ -71,8 +68,7 @@ TEST_F(Bench, MeasuresTheFilterOfTheExample) {
 }
 
 TEST_F(Bench, WritesWhatItMeasured) {
-    const Outcome outcome = bench({"--only", "spp,strategy,max-roughness,ssr", "--max-error", "1000"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(bench({"--only", "spp,strategy,max-roughness,ssr", "--max-error", "1000"}));
     const Json report = outcome.json();
     expectFits("bench", report);
     Json file = Json::parse(readText(path("out/bench.json")));
@@ -124,8 +120,7 @@ TEST_F(Bench, WritesWhatItMeasured) {
     EXPECT_TRUE(has(page, "strategy hit-shaders"));
     const Json settings = Json::parse(readText(path("out/settings.json")));
     EXPECT_EQ(settings.at("format"), "glint-settings");
-    const Outcome again = render("advised.exr", {"--settings", "out/settings.json", "--json"});
-    ASSERT_EQ(again.exit, 0) << again.err;
+    const Outcome again = must(render("advised.exr", {"--settings", "out/settings.json", "--json"}));
     const Json& advice = report.at("advice");
     EXPECT_EQ(std::to_string(again.json().at("spp").get<int>()), advice.at("render").at("spp"));
     EXPECT_EQ(again.json().at("strategy"), advice.at("compile").at("strategy"));
@@ -191,8 +186,7 @@ TEST_F(Bench, TellsACommandThatMakesThePicture) {
     ASSERT_NE(one, nullptr);
     const std::string command = one->at("command");
     ASSERT_TRUE(command.starts_with("glint ")) << command;
-    const Outcome rendered = runProgram({"sh", "-c", commandPath() + command.substr(5)});
-    ASSERT_EQ(rendered.exit, 0) << rendered.err;
+    must(runProgram({"sh", "-c", commandPath() + command.substr(5)}));
     const std::string image = "out/" + one->at("image").get<std::string>();
     EXPECT_EQ(readText(path("picture.png")), readText(path(image)));
 }
@@ -215,15 +209,10 @@ TEST_F(Bench, RepeatsItsErrorsAndKeepsItsReference) {
     // A reference that must be more accurate continues from what is stored.
     other = options;
     other[1] = "spp";
-    std::vector<std::string> arguments{"bench",   scene_,
-                                       "-o",      "more",
-                                       "--quick", "--size",
-                                       "32x18",   "--spp",
-                                       "2",       "--reference-error",
-                                       "1e-9",    "--reference-spp",
-                                       "512",     "--json"};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const Json third = run(arguments).json();
+    const Json third = runWith({"bench", scene_, "-o", "more", "--quick", "--size", "32x18", "--spp", "2",
+                                "--reference-error", "1e-9", "--reference-spp", "512", "--json"},
+                               options)
+                           .json();
     EXPECT_TRUE(third.at("reference").at("cached").get<bool>());
     EXPECT_EQ(third.at("reference").at("samples"), 512);
     EXPECT_FALSE(third.at("reference").at("reached").get<bool>());
@@ -260,15 +249,14 @@ TEST_F(Bench, RefusesLinesThatMakeNoSense) {
              {"--budget-ms", "0"}, {"--candidate", "name"}, {"--only", "sp"}, {"--metric", "psnr"}}) {
         EXPECT_EQ(bench(more).exit, 2) << more[0];
     }
-    const Outcome missing = bench({"--only", "spp", "--depth", "singles", "--candidate", "mine=nowhere"});
-    EXPECT_EQ(missing.exit, 0) << missing.err;
+    const Outcome missing =
+        must(bench({"--only", "spp", "--depth", "singles", "--candidate", "mine=nowhere"}));
     EXPECT_TRUE(has(missing.err, "[bench-point]")) << missing.err;
 }
 
 TEST_F(Bench, IsCleanUnderValidation) {
-    const Outcome outcome = bench(
-        {"--only", "spp,texture-lod,hit-record,merge", "--depth", "singles", "--rounds", "2", "--validate"});
-    EXPECT_EQ(outcome.exit, 0) << outcome.err;
+    must(bench(
+        {"--only", "spp,texture-lod,hit-record,merge", "--depth", "singles", "--rounds", "2", "--validate"}));
 }
 
 }  // namespace

@@ -18,10 +18,8 @@ using Json = nlohmann::json;
 class Calibrate : public CommandTest {
 protected:
     Outcome calibrate(const std::vector<std::string>& more) const {
-        std::vector<std::string> arguments{"bench", "--calibrate",      "-o",  "out", "--rounds",
-                                           "2",     "--calibrate-rays", "1024"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run(arguments);
+        return runWith({"bench", "--calibrate", "-o", "out", "--rounds", "2", "--calibrate-rays", "1024"},
+                       more);
     }
     void expectRefused(const std::vector<std::string>& arguments, const std::string& text) const {
         const Outcome outcome = run(arguments);
@@ -32,9 +30,8 @@ protected:
 };
 
 TEST_F(Calibrate, WritesWhatItMeasured) {
-    const Outcome outcome = calibrate(
-        {"--calibrate-cases", "1,3", "--calibrate-cost", "cheap", "--pictures", "pictures", "--json"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(calibrate(
+        {"--calibrate-cases", "1,3", "--calibrate-cost", "cheap", "--pictures", "pictures", "--json"}));
     const Json report = outcome.json();
     expectFits("calibration", report);
     Json file = Json::parse(readText(path("out/calibration.json")));
@@ -82,10 +79,9 @@ TEST_F(Calibrate, WritesWhatItMeasured) {
 
 TEST_F(Calibrate, ShadesWithLightsAndTheirShadows) {
     const Outcome outcome =
-        calibrate({"--calibrate-cases", "2", "--calibrate-cost", "expensive", "--calibrate-coherence",
-                   "incoherent", "--calibrate-lights", "2", "--calibrate-shadows", "--shadows", "deferred",
-                   "--calibrate-shares", "zipf", "--json"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+        must(calibrate({"--calibrate-cases", "2", "--calibrate-cost", "expensive", "--calibrate-coherence",
+                        "incoherent", "--calibrate-lights", "2", "--calibrate-shadows", "--shadows",
+                        "deferred", "--calibrate-shares", "zipf", "--json"}));
     const Json report = outcome.json();
     expectFits("calibration", report);
     ASSERT_EQ(report.at("points").size(), 1U);
@@ -101,9 +97,9 @@ TEST_F(Calibrate, ShadesWithLightsAndTheirShadows) {
 }
 
 TEST_F(Calibrate, SaysWhatItFoundAsATable) {
-    const Outcome outcome = calibrate({"--calibrate-cases", "1", "--calibrate-cost", "cheap",
-                                       "--calibrate-coherence", "coherent", "--tracer", "ray-pipeline"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome =
+        must(calibrate({"--calibrate-cases", "1", "--calibrate-cost", "cheap", "--calibrate-coherence",
+                        "coherent", "--tracer", "ray-pipeline"}));
     EXPECT_TRUE(has(outcome.out, "| cases | cost  | hits "));
     EXPECT_TRUE(has(outcome.out, "hit-shaders / uber"));
     EXPECT_TRUE(has(outcome.out, "out/calibration.json"));
@@ -141,9 +137,8 @@ TEST_F(Calibrate, ReportsTheDeviceWithoutNamesOfPeople) {
                                 {{"USER", "somebody"}, {"LOGNAME", "somebody"}});
     ASSERT_EQ(outcome.exit, 2) << "sizes of pictures are fixed";
     const Outcome made =
-        run({"bench", "secret/scene.gltf", "--device-report", "report.json", "--quick", "--json"},
-            {{"USER", "somebody"}, {"LOGNAME", "somebody"}});
-    ASSERT_EQ(made.exit, 0) << made.err;
+        must(run({"bench", "secret/scene.gltf", "--device-report", "report.json", "--quick", "--json"},
+                 {{"USER", "somebody"}, {"LOGNAME", "somebody"}}));
     Json report = made.json();
     expectFits("device-report", report);
     const std::string text = readText(path("report.json"));

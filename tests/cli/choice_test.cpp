@@ -70,10 +70,8 @@ TEST_F(Choice, RaysTestAlphaMasksWhereASceneHasThem) {
     // Compiles, and returns the policy that the manifest names.
     const auto policy = [&](const TinyScene& scene, const std::vector<std::string>& options, bool notes) {
         writeTinyScene(path(""), scene);
-        std::vector<std::string> line{"compile", "scene.gltf", "-o", "package", "--strategy", "uber"};
-        line.insert(line.end(), options.begin(), options.end());
-        const Outcome outcome = run(line);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome =
+            must(runWith({"compile", "scene.gltf", "-o", "package", "--strategy", "uber"}, options));
         EXPECT_EQ(outcome.err.find("[alpha-tested]") != std::string::npos, notes) << outcome.err;
         for (const auto& [note, asks] : {std::pair{"BLEND is drawn opaque: Floor [alpha-blend]", "tested"},
                                          std::pair{"[alpha-stochastic]", ""}}) {

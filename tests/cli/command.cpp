@@ -10,6 +10,7 @@
 #include <fstream>
 #include <regex>
 #include <sstream>
+#include <stdexcept>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -95,6 +96,14 @@ nlohmann::json Outcome::json() const {
     nlohmann::json parsed = nlohmann::json::parse(out, nullptr, false);
     EXPECT_FALSE(parsed.is_discarded()) << out << err;
     return parsed;
+}
+
+Outcome must(Outcome outcome) {
+    if (outcome.exit != 0) {
+        throw std::runtime_error("exit code " + std::to_string(outcome.exit) + "\n" + outcome.out +
+                                 outcome.err);
+    }
+    return outcome;
 }
 
 std::string commandPath() {

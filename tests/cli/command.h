@@ -21,6 +21,10 @@ struct Outcome {
     nlohmann::json json() const;
 };
 
+// Returns the outcome of a command that has to succeed. Otherwise it throws what the command has said, which
+// GoogleTest reports as the failure of the case.
+Outcome must(Outcome outcome);
+
 // Gives each test an empty folder, which is removed at the end.
 class CommandTest : public ::testing::Test {
 protected:
@@ -34,6 +38,10 @@ protected:
     // build's own. Fails the test if a diagnostic has an id or a severity that the table lacks.
     Outcome run(const std::vector<std::string>& arguments,
                 const std::vector<std::pair<std::string, std::string>>& variables = {}) const;
+    Outcome runWith(std::vector<std::string> arguments, const std::vector<std::string>& more) const {
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run(arguments);
+    }
     // Does the same with a terminal as standard error; Outcome::err is what the terminal received, with
     // "\r\n".
     Outcome runOnTerminal(const std::vector<std::string>& arguments,

@@ -7,24 +7,11 @@
 namespace glint::testing {
 namespace {
 
-class CompileCommand : public CommandTest {
-protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        scene_ = writeTinyScene(path(""));
-    }
-    std::string scene() const {
-        return scene_.string();
-    }
-
-private:
-    std::filesystem::path scene_;
-};
+class CompileCommand : public TinySceneTest {};
 
 TEST_F(CompileCommand, DryRunPlansAndWritesNothing) {
     const std::vector<std::string> before = filesBelow(path(""));
-    const Outcome outcome = run({"compile", scene(), "--dry-run", "--json", "-o", "package"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(run({"compile", scene_, "--dry-run", "--json", "-o", "package"}));
     const nlohmann::json json = outcome.json();
     EXPECT_EQ(json.at("counts").at("materials"), 3);
     EXPECT_EQ(json.at("counts").at("keysPresent"), 2);
@@ -36,11 +23,11 @@ TEST_F(CompileCommand, DryRunPlansAndWritesNothing) {
 }
 
 TEST_F(CompileCommand, DryRunHonoursTheLimitOfShaders) {
-    EXPECT_EQ(run({"compile", scene(), "--dry-run", "--max-shaders", "2"}).exit, 0);
-    const Outcome refused = run({"compile", scene(), "--dry-run", "--max-shaders", "1"});
+    EXPECT_EQ(run({"compile", scene_, "--dry-run", "--max-shaders", "2"}).exit, 0);
+    const Outcome refused = run({"compile", scene_, "--dry-run", "--max-shaders", "1"});
     EXPECT_EQ(refused.exit, 1);
     EXPECT_NE(refused.err.find("[max-shaders]"), std::string::npos) << refused.err;
-    EXPECT_EQ(run({"compile", scene(), "--dry-run", "--max-shaders", "1", "--merge", "all"}).exit, 0);
+    EXPECT_EQ(run({"compile", scene_, "--dry-run", "--max-shaders", "1", "--merge", "all"}).exit, 0);
 }
 
 TEST_F(CompileCommand, DryRunRefusesWhatIsRefusedWithoutIt) {
@@ -55,7 +42,7 @@ TEST_F(CompileCommand, DryRunRefusesWhatIsRefusedWithoutIt) {
         {"-o", "precious"},
         {"--embed", "precious/file/a.cpp"}};
     for (const std::vector<std::string>& more : lines) {
-        std::vector<std::string> line{"compile", scene()};
+        std::vector<std::string> line{"compile", scene_};
         line.insert(line.end(), more.begin(), more.end());
         const Outcome whole = run(line);
         line.emplace_back("--dry-run");
@@ -68,19 +55,16 @@ TEST_F(CompileCommand, DryRunRefusesWhatIsRefusedWithoutIt) {
 }
 
 TEST_F(CompileCommand, ExplainWarnsOfSettingsThatChangeNothing) {
-    const Outcome outcome = run({"explain", scene(), "--no-trust-textures"});
-    EXPECT_EQ(outcome.exit, 0);
+    const Outcome outcome = must(run({"explain", scene_, "--no-trust-textures"}));
     EXPECT_TRUE(has(outcome.err, "--no-trust-textures changes nothing: there are no textures"))
         << outcome.err;
-    EXPECT_FALSE(has(run({"explain", scene()}).err, "setting-idle"));
+    EXPECT_FALSE(has(run({"explain", scene_}).err, "setting-idle"));
 }
 
 TEST_F(CompileCommand, SettingsThatChangeNothingAreWarnedOf) {
     const auto warnings = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> line{"compile", scene(), "--dry-run", "--json"};
-        line.insert(line.end(), more.begin(), more.end());
         std::vector<std::string> found;
-        const nlohmann::json report = run(line).json();
+        const nlohmann::json report = runWith({"compile", scene_, "--dry-run", "--json"}, more).json();
         for (const nlohmann::json& diagnostic : report.at("diagnostics")) {
             if (diagnostic.at("id") == "setting-idle") {
                 found.push_back(diagnostic.at("message"));
@@ -110,8 +94,7 @@ TEST_F(CompileCommand, SettingsThatChangeNothingAreWarnedOf) {
 }
 
 TEST_F(CompileCommand, JsonHasWhatIsPromised) {
-    const Outcome outcome = run({"compile", scene(), "-o", "package", "--json"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(run({"compile", scene_, "-o", "package", "--json"}));
     const nlohmann::json json = outcome.json();
     for (const char* name : {"materials", "keysPossible", "keysPresent", "cases", "uniqueSpirv"}) {
         EXPECT_TRUE(json.at("counts").at(name).is_number_integer()) << name;
@@ -135,9 +118,8 @@ TEST_F(CompileCommand, JsonHasWhatIsPromised) {
 }
 
 TEST_F(CompileCommand, JsonHasTheStagesOfTheManifest) {
-    const Outcome outcome = run({"compile", scene(), "-o", "package", "--json", "--strategy", "all",
-                                 "--tracer", "all", "--effects", "all"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(run({"compile", scene_, "-o", "package", "--json", "--strategy", "all",
+                                      "--tracer", "all", "--effects", "all"}));
     const nlohmann::json shaders = outcome.json().at("shaders");
     const nlohmann::json manifest = nlohmann::json::parse(readText(path("package/manifest.json")));
     ASSERT_EQ(shaders.size(), 2U);
@@ -156,7 +138,7 @@ TEST_F(CompileCommand, JsonHasTheStagesOfTheManifest) {
 }
 
 TEST_F(CompileCommand, HitShadersAloneAreOfThePipelineTracer) {
-    ASSERT_EQ(run({"compile", scene(), "-o", "package", "--strategy", "hit-shaders"}).exit, 0);
+    ASSERT_EQ(run({"compile", scene_, "-o", "package", "--strategy", "hit-shaders"}).exit, 0);
     const nlohmann::json expected{"ray-pipeline"};
     EXPECT_EQ(nlohmann::json::parse(readText(path("package/manifest.json"))).at("tracers"), expected);
     EXPECT_EQ(run({"inspect", "package", "--json"}).json().at("tracers"), expected);
@@ -165,7 +147,7 @@ TEST_F(CompileCommand, HitShadersAloneAreOfThePipelineTracer) {
 TEST_F(CompileCommand, ManifestHoldsSettingsAndVariant) {
     writeTinyScene(path(""), {.variants = true});
     ASSERT_EQ(
-        run({"compile", scene(), "-o", "package", "--strategy", "uber", "--variant", "Day", "--hit-lobes",
+        run({"compile", scene_, "-o", "package", "--strategy", "uber", "--variant", "Day", "--hit-lobes",
              "base", "--no-energy-compensation", "--texture-lod", "mip0", "--precision", "16"})
             .exit,
         0);
@@ -182,14 +164,13 @@ TEST_F(CompileCommand, ManifestHoldsSettingsAndVariant) {
 }
 
 TEST_F(CompileCommand, EmitChoosesWhatElseIsWritten) {
-    ASSERT_EQ(run({"compile", scene(), "-o", "package", "--emit", "glsl"}).exit, 0);
+    ASSERT_EQ(run({"compile", scene_, "-o", "package", "--emit", "glsl"}).exit, 0);
     EXPECT_TRUE(std::filesystem::is_directory(path("package/glsl")));
     EXPECT_FALSE(std::filesystem::exists(path("package/glint_tables.h")));
 }
 
 TEST_F(CompileCommand, TextSummaryNamesWhatItDid) {
-    const Outcome outcome = run({"compile", scene(), "-o", "package"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(run({"compile", scene_, "-o", "package"}));
     EXPECT_TRUE(outcome.err.empty()) << outcome.err;
     for (const char* label : {"materials", "keys present", "cases", "unique SPIR-V", "package bytes"}) {
         EXPECT_NE(outcome.out.find(label), std::string::npos) << label;
@@ -198,25 +179,24 @@ TEST_F(CompileCommand, TextSummaryNamesWhatItDid) {
 
 TEST_F(CompileCommand, WerrorRefusesBeforeAnythingIsWritten) {
     writeTinyScene(path(""), {.unknownExtension = true});
-    const Outcome refused = run({"compile", scene(), "-o", "package", "--werror"});
+    const Outcome refused = run({"compile", scene_, "-o", "package", "--werror"});
     EXPECT_EQ(refused.exit, 1);
     EXPECT_NE(refused.err.find("error: the extension EXT_not_known_to_anyone"), std::string::npos)
         << refused.err;
     EXPECT_NE(refused.err.find("[werror]"), std::string::npos) << refused.err;
     EXPECT_FALSE(std::filesystem::exists(path("package")));
 
-    const Outcome accepted = run({"compile", scene(), "--dry-run", "--json"});
-    EXPECT_EQ(accepted.exit, 0);
+    const Outcome accepted = must(run({"compile", scene_, "--dry-run", "--json"}));
     EXPECT_EQ(accepted.json().at("diagnostics").size(), 1U);
     EXPECT_NE(accepted.err.find("EXT_not_known_to_anyone"), std::string::npos) << accepted.err;
 }
 
 TEST_F(CompileCommand, FailureLeavesTheOldPackage) {
-    ASSERT_EQ(run({"compile", scene(), "-o", "package"}).exit, 0);
+    ASSERT_EQ(run({"compile", scene_, "-o", "package"}).exit, 0);
     const std::vector<std::string> files = filesBelow(path("package"));
     const std::string tables = readText(path("package/tables.bin"));
-    writeText(scene(), "{ not JSON");
-    const Outcome outcome = run({"compile", scene(), "-o", "package"});
+    writeText(scene_, "{ not JSON");
+    const Outcome outcome = run({"compile", scene_, "-o", "package"});
     EXPECT_EQ(outcome.exit, 1);
     EXPECT_FALSE(outcome.err.empty());
     EXPECT_EQ(filesBelow(path("package")), files);
@@ -226,16 +206,15 @@ TEST_F(CompileCommand, FailureLeavesTheOldPackage) {
 TEST_F(CompileCommand, RefusesAFolderOfSomethingElse) {
     std::filesystem::create_directories(path("precious"));
     writeText(path("precious/thesis.tex"), "years of work");
-    const Outcome outcome = run({"compile", scene(), "-o", "precious"});
+    const Outcome outcome = run({"compile", scene_, "-o", "precious"});
     EXPECT_EQ(outcome.exit, 1);
     EXPECT_NE(outcome.err.find("precious"), std::string::npos) << outcome.err;
     EXPECT_EQ(filesBelow(path("precious")), std::vector<std::string>{"thesis.tex"});
 }
 
 TEST_F(CompileCommand, InspectShowsThePackage) {
-    ASSERT_EQ(run({"compile", scene(), "-o", "package", "--merge", "none"}).exit, 0);
-    const Outcome outcome = run({"inspect", "package", "--json"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    ASSERT_EQ(run({"compile", scene_, "-o", "package", "--merge", "none"}).exit, 0);
+    const Outcome outcome = must(run({"inspect", "package", "--json"}));
     const nlohmann::json json = outcome.json();
     EXPECT_EQ(json.at("merge"), "none");
     EXPECT_EQ(json.at("alpha"), "opaque");
@@ -253,13 +232,12 @@ TEST_F(CompileCommand, InspectShowsThePackage) {
     for (const nlohmann::json& module : json.at("modules")) {
         EXPECT_GT(module.at("instructions").get<int>(), 0) << module;
     }
-    const Outcome text = run({"inspect", "package"});
-    EXPECT_EQ(text.exit, 0);
+    const Outcome text = must(run({"inspect", "package"}));
     EXPECT_NE(text.out.find("uber, visibility"), std::string::npos) << text.out;
 }
 
 TEST_F(CompileCommand, InspectRefusesADamagedPackage) {
-    ASSERT_EQ(run({"compile", scene(), "-o", "package"}).exit, 0);
+    ASSERT_EQ(run({"compile", scene_, "-o", "package"}).exit, 0);
     const std::string tables = readText(path("package/tables.bin"));
     writeText(path("package/tables.bin"), tables.substr(0, tables.size() / 2));
     const Outcome cut = run({"inspect", "package"});

@@ -19,8 +19,7 @@ protected:
     void SetUp() override {
         CommandTest::SetUp();
         for (const char* shell : {"bash", "zsh", "fish"}) {
-            const Outcome outcome = run({"completion", shell});
-            ASSERT_EQ(outcome.exit, 0) << outcome.err;
+            const Outcome outcome = must(run({"completion", shell}));
             writeText(path(std::string("glint.") + shell), outcome.out);
         }
     }
@@ -38,8 +37,7 @@ protected:
             script += " '" + word + "'";
         }
         script += ")\nCOMP_CWORD=" + std::to_string(words.size()) + "\n_glint\necho \"${COMPREPLY[*]}\"\n";
-        const Outcome outcome = shell("bash", script);
-        EXPECT_EQ(outcome.exit, 0) << outcome.out;
+        const Outcome outcome = must(shell("bash", script));
         return outcome.out.substr(0, outcome.out.find('\n'));
     }
 };

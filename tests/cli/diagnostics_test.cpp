@@ -10,12 +10,10 @@ namespace glint::testing {
 namespace {
 
 // The scene causes one warning, "extension-ignored".
-class Diagnostics : public CommandTest {
+class Diagnostics : public TinySceneTest {
 protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        writeTinyScene(path(""), {.unknownExtension = true});
-    }
+    Diagnostics() : TinySceneTest({.unknownExtension = true}) {}
+
     static std::vector<std::string> dryRun(const std::vector<std::string>& options) {
         std::vector<std::string> line{"compile", "scene.gltf", "--dry-run"};
         line.insert(line.end(), options.begin(), options.end());
@@ -35,8 +33,7 @@ protected:
 constexpr const char* kColor = "\x1b[1;33mwarning\x1b[0m: ";
 
 TEST_F(Diagnostics, AreReportedOnStandardErrorAndInJson) {
-    const Outcome outcome = plan({"--json"});
-    EXPECT_EQ(outcome.exit, 0);
+    const Outcome outcome = must(plan({"--json"}));
     EXPECT_TRUE(outcome.err.starts_with("scene.gltf#/extensionsUsed")) << outcome.err;
     EXPECT_TRUE(outcome.err.ends_with(" [extension-ignored]\n")) << outcome.err;
     const nlohmann::json list = outcome.json().at("diagnostics");
@@ -57,8 +54,7 @@ TEST_F(Diagnostics, AreInTheJsonOfACommandThatFails) {
 }
 
 TEST_F(Diagnostics, WnoLeavesThemOut) {
-    const Outcome outcome = plan({"-Wno-extension-ignored", "--json"});
-    EXPECT_EQ(outcome.exit, 0);
+    const Outcome outcome = must(plan({"-Wno-extension-ignored", "--json"}));
     EXPECT_EQ(outcome.err, "");
     EXPECT_TRUE(outcome.json().at("diagnostics").empty());
     EXPECT_EQ(plan({"-W", "no-extension-ignored"}).err, "");
@@ -124,8 +120,7 @@ TEST_F(Diagnostics, MisspeltIdsAreSuggested) {
 }
 
 TEST_F(Diagnostics, QuietLeavesErrorsAndJson) {
-    const Outcome quiet = plan({"--quiet"});
-    EXPECT_EQ(quiet.exit, 0);
+    const Outcome quiet = must(plan({"--quiet"}));
     EXPECT_EQ(quiet.out, "");
     EXPECT_EQ(quiet.err, "");
     EXPECT_EQ(plan({"--quiet", "--json"}).json().at("counts").at("materials"), 3);
@@ -136,8 +131,8 @@ TEST_F(Diagnostics, QuietLeavesErrorsAndJson) {
 }
 
 TEST_F(Diagnostics, VerboseSaysWhatIsDoneAndWhen) {
-    const Outcome outcome = run({"compile", "scene.gltf", "-o", "package", "--verbose", "--cache", "none"});
-    EXPECT_EQ(outcome.exit, 0);
+    const Outcome outcome =
+        must(run({"compile", "scene.gltf", "-o", "package", "--verbose", "--cache", "none"}));
     for (const char* step : {"reading scene.gltf", "compiling scene.gltf", "writing package"}) {
         EXPECT_TRUE(
             std::regex_search(outcome.err, std::regex(R"((^|\n) *\d+\.\d{3} s  )" + std::string(step))))

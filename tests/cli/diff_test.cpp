@@ -21,26 +21,18 @@ std::vector<Json> changesOf(const Json& list, const std::string& change) {
     return found;
 }
 
-class Diff : public CommandTest {
+class Diff : public TinySceneTest {
 protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        scene_ = writeTinyScene(path("")).string();
-    }
-    // Returns how many modules were compiled and not taken from the test's cache, or -1.
-    int compile(const std::string& folder, std::vector<std::string> more) const {
-        more.insert(more.begin(), {"compile", scene_, "-o", folder, "--strategy", "visibility", "--cache",
-                                   "cache", "--json"});
-        const Outcome outcome = run(more);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
-        return outcome.exit == 0 ? outcome.json().at("modules").at("compiled").get<int>() : -1;
+    // Returns how many modules were compiled and not taken from a cache.
+    int compile(const std::string& folder, const std::vector<std::string>& more) const {
+        const Outcome outcome =
+            must(runWith({"compile", scene_, "-o", folder, "--strategy", "visibility", "--json"}, more));
+        return outcome.json().at("modules").at("compiled").get<int>();
     }
     Json diff() const {
-        const Outcome outcome = run({"diff", "a", "b", "--json"});
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome = must(run({"diff", "a", "b", "--json"}));
         return outcome.json();
     }
-    std::string scene_;
 };
 
 TEST_F(Diff, EqualPackagesAreTheSame) {
@@ -51,8 +43,7 @@ TEST_F(Diff, EqualPackagesAreTheSame) {
     EXPECT_EQ(same.at("same").at("shaders"), 2);
     EXPECT_EQ(same.at("same").at("materials"), 2);
     EXPECT_EQ(same.at("same").at("modules"), run({"inspect", "a", "--json"}).json().at("modules").size());
-    const Outcome outcome = run({"diff", "a", "b", "--exit-code"});
-    EXPECT_EQ(outcome.exit, 0) << outcome.out;
+    const Outcome outcome = must(run({"diff", "a", "b", "--exit-code"}));
     EXPECT_TRUE(outcome.out.starts_with("the same: 2 shaders, ")) << outcome.out;
 }
 
@@ -181,13 +172,13 @@ TEST_F(Diff, FoldersThatAreNoPackagesAreRefused) {
 
 // A change of a pack's GLSL changes the modules that have it; a change of its values changes keys.
 TEST_F(Diff, PacksChangeTheirShadersAndNoOther) {
-    compile("plain", {"--merge", "none"});
+    compile("plain", {"--cache", "cache", "--merge", "none"});
     addMud(scene_, 0.5);
     writeMudPack(path("pack"), 0.25);
-    const int all = compile("a", {"--materials", "pack", "--merge", "none"});
+    const int all = compile("a", {"--cache", "cache", "--materials", "pack", "--merge", "none"});
     writeMudPack(path("pack"), 0.5);
     // The case of the floor, for first hits and for hits of rays.
-    EXPECT_EQ(compile("b", {"--materials", "pack", "--merge", "none"}), 2);
+    EXPECT_EQ(compile("b", {"--cache", "cache", "--materials", "pack", "--merge", "none"}), 2);
     EXPECT_GT(all, 2);
     const Json changed = diff();
     EXPECT_EQ(changed.at("differ"), true);
@@ -207,7 +198,7 @@ TEST_F(Diff, PacksChangeTheirShadersAndNoOther) {
     EXPECT_TRUE(has(run({"inspect", "plain"}).out, "packs                none\n"));
 
     addMud(scene_, 0.0);
-    compile("b", {"--materials", "pack", "--merge", "none"});
+    compile("b", {"--cache", "cache", "--materials", "pack", "--merge", "none"});
     EXPECT_FALSE(diff().at("shaders").empty());
 }
 

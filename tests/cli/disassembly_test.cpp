@@ -10,18 +10,15 @@
 namespace glint::testing {
 namespace {
 
-class Disassembly : public CommandTest {
+class Disassembly : public TinySceneTest {
 protected:
     void SetUp() override {
-        CommandTest::SetUp();
-        writeTinyScene(path(""));
-        const Outcome made = run({"compile", "scene.gltf", "-o", "package", "--strategy",
-                                  "uber,visibility,hit-shaders", "--tracer", "all", "--effects", "all"});
-        ASSERT_EQ(made.exit, 0) << made.err;
+        TinySceneTest::SetUp();
+        must(run({"compile", "scene.gltf", "-o", "package", "--strategy", "uber,visibility,hit-shaders",
+                  "--tracer", "all", "--effects", "all"}));
     }
     nlohmann::json disassemble(const std::string& what) const {
-        const Outcome outcome = run({"inspect", "package", "--disassemble", what, "--json"});
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome = must(run({"inspect", "package", "--disassemble", what, "--json"}));
         return outcome.json().at("disassembly");
     }
 };
@@ -55,16 +52,14 @@ TEST_F(Disassembly, OfARoleOrAFile) {
 }
 
 TEST_F(Disassembly, AsTextIsAssemblyOfTheSameModule) {
-    const Outcome text = run({"inspect", "package", "--disassemble", "gbuffer.frag.spv"});
-    ASSERT_EQ(text.exit, 0) << text.err;
+    const Outcome text = must(run({"inspect", "package", "--disassemble", "gbuffer.frag.spv"}));
     EXPECT_TRUE(text.out.starts_with("; gbuffer.frag.spv: GBufferFragment\n")) << text.out.substr(0, 80);
     if (!hasProgram("spirv-as")) {
         GTEST_SKIP() << "spirv-as is not installed";
     }
     writeText(path("text.spvasm"), text.out);
-    const Outcome assembled =
-        runShell(path(""), "spirv-as --preserve-numeric-ids --target-env vulkan1.2 text.spvasm -o again.spv");
-    ASSERT_EQ(assembled.exit, 0) << assembled.out;
+    must(runShell(path(""),
+                  "spirv-as --preserve-numeric-ids --target-env vulkan1.2 text.spvasm -o again.spv"));
     // The first five words name the assembler, so they are left out.
     constexpr std::size_t kHeaderBytes = 20;
     EXPECT_EQ(readText(path("again.spv")).substr(kHeaderBytes),

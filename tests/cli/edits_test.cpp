@@ -29,17 +29,7 @@ protected:
     // Renders another file of the same folder, in which the edits are made already.
     void renderBaked(const std::string& image, const Json& gltf, std::vector<std::string> more) const {
         writeText(path("baked.gltf"), gltf.dump());
-        std::vector<std::string> words{"render", "baked.gltf", "-o", image, "--size", "64x36"};
-        words.insert(words.end(), more.begin(), more.end());
-        const Outcome outcome = run(words);
-        ASSERT_EQ(outcome.exit, 0) << outcome.err;
-    }
-    void expectSame(const std::string& a, const std::string& b) const {
-        const Outcome same = run({"compare", a, b, "--max-error", "1e-4"});
-        EXPECT_EQ(same.exit, 0) << a << " and " << b << ": " << same.out << same.err;
-    }
-    void expectOther(const std::string& a, const std::string& b) const {
-        EXPECT_EQ(run({"compare", a, b, "--max-error", "1e-2"}).exit, 1) << a << " and " << b;
+        must(runWith({"render", "baked.gltf", "-o", image, "--size", "64x36"}, more));
     }
 };
 
@@ -113,8 +103,7 @@ TEST_F(Edits, EqualAFileThatHasThem) {
     });
     const std::vector<std::string> picture{"--sky", "1"};
     const Outcome outcome =
-        render("out.exr", {"--frames", "0:3", "--edits", edits, "--sky", "1", "--validate", "--json"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+        must(render("out.exr", {"--frames", "0:3", "--edits", edits, "--sky", "1", "--validate", "--json"}));
     expectFits("render", outcome.json());
     EXPECT_EQ(outcome.json()["frames"][2]["edits"], 4);
 
@@ -186,9 +175,7 @@ TEST_F(Edits, ChooseAVariantWhileTheSceneIsDrawn) {
         {{"frame", 1}, {"edit", "variant"}, {"variant", "Day"}},
         {{"frame", 2}, {"edit", "variant"}},
     });
-    const Outcome outcome =
-        render("out.exr", {"--frames", "0:2", "--edits", edits, "--sky", "1", "--validate"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    must(render("out.exr", {"--frames", "0:2", "--edits", edits, "--sky", "1", "--validate"}));
     ASSERT_EQ(render("day.exr", {"--variant", "Day", "--sky", "1"}).exit, 0);
     expectSame("out.0001.exr", "day.exr");
     expectSame("out.0000.exr", "out.0002.exr");
@@ -239,8 +226,8 @@ TEST_F(Edits, SayWhatAGivenPackageLacks) {
                     {{"frame", 9}, {"edit", "hide"}, {"node", "1"}}});
     // The floor's key is among those of the package; the wall has the same attributes.
     ASSERT_EQ(run({"compile", scene_, "-o", "plain", "--no-trust-textures"}).exit, 0);
-    const Outcome known = render("out.exr", {"--frames", "0:1", "--edits", edits, "--package", "plain"});
-    EXPECT_EQ(known.exit, 0) << known.err;
+    const Outcome known =
+        must(render("out.exr", {"--frames", "0:1", "--edits", edits, "--package", "plain"}));
     EXPECT_TRUE(has(known.err, "1 of 2 edits come after the last frame, 1")) << known.err;
     // A trusting package may rely on what its primitives show.
     ASSERT_EQ(run({"compile", scene_, "-o", "trusting"}).exit, 0);
@@ -251,8 +238,8 @@ TEST_F(Edits, SayWhatAGivenPackageLacks) {
     const std::string spare =
         writeEdits({{{"frame", 0}, {"edit", "material"}, {"node", "0"}, {"material", "Spare"}}});
     ASSERT_EQ(run({"compile", scene_, "-o", "package", "--fallback"}).exit, 0);
-    const Outcome fallback = render("spare.exr", {"--edits", spare, "--package", "package", "--sky", "1"});
-    EXPECT_EQ(fallback.exit, 0) << fallback.err;
+    const Outcome fallback =
+        must(render("spare.exr", {"--edits", spare, "--package", "package", "--sky", "1"}));
     EXPECT_TRUE(has(fallback.err, "[edit-fallback]")) << fallback.err;
     ASSERT_EQ(render("compiled.exr", {"--edits", spare, "--sky", "1"}).exit, 0);
     expectSame("spare.exr", "compiled.exr");

@@ -8,18 +8,11 @@
 namespace glint::testing {
 namespace {
 
-class Embed : public CommandTest {
-protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        writeTinyScene(path("."));
-    }
-};
+class Embed : public TinySceneTest {};
 
 TEST_F(Embed, AloneWritesASourceAndItsHeader) {
-    const Outcome outcome = run(
-        {"compile", "scene.gltf", "--embed", "made/scene_package.cpp", "--strategy", "visibility", "--json"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(run({"compile", "scene.gltf", "--embed", "made/scene_package.cpp",
+                                      "--strategy", "visibility", "--json"}));
     EXPECT_TRUE(outcome.json().at("output").is_null());
     EXPECT_EQ(outcome.json().at("embedded"), "made/scene_package.cpp");
     EXPECT_EQ(filesBelow(path("made")), (std::vector<std::string>{"scene_package.cpp", "scene_package.h"}));

@@ -2,6 +2,7 @@
 #include "cli/tiny_scene.h"
 #include "image/image_file.h"
 #include "support/hdr_writer.h"
+#include "support/must.h"
 
 #include <cmath>
 #include <limits>
@@ -11,20 +12,16 @@
 namespace glint::testing {
 namespace {
 
-class EnvironmentCommand : public CommandTest {
+class EnvironmentCommand : public TinySceneTest {
 protected:
     void SetUp() override {
-        CommandTest::SetUp();
-        scene_ = writeTinyScene(path("")).string();
+        TinySceneTest::SetUp();
         const std::vector<std::array<float, 3>> pixels(64 * 32, {0.5F, 2.0F, 0.25F});
         const std::vector<std::uint8_t> bytes = encodeHdr(64, 32, pixels, HdrEncoding::Flat);
         writeText(path("sky.hdr"), std::string(bytes.begin(), bytes.end()));
     }
     Outcome render(const std::string& image, const std::vector<std::string>& more) const {
-        std::vector<std::string> arguments{"render", scene_,  "-o",      image,
-                                           "--size", "64x36", "--merge", "all"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run(arguments);
+        return runWith({"render", scene_, "-o", image, "--size", "64x36", "--merge", "all"}, more);
     }
     // Writes a map with the value 1 in all pixels except one.
     void writeExr(const std::string& name, std::uint32_t width, std::uint32_t height, float odd) const {
@@ -33,26 +30,22 @@ protected:
         image.pixels[width + 2][1] = odd;
         ASSERT_TRUE(image::writeImage(path(name), image, 0.0));
     }
-    std::string scene_;
 };
 
 TEST_F(EnvironmentCommand, LightsTheScene) {
-    const Outcome outcome = render("a.exr", {"--environment", "sky.hdr", "--environment-intensity", "2",
-                                             "--environment-rotation", "-90", "--json", "--validate"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(render("a.exr", {"--environment", "sky.hdr", "--environment-intensity", "2",
+                                                  "--environment-rotation", "-90", "--json", "--validate"}));
     const nlohmann::json map = outcome.json().at("environment");
     EXPECT_EQ(map.at("file"), "sky.hdr");
     EXPECT_EQ(map.at("width"), 256);
     EXPECT_EQ(map.at("levels"), 4);
     EXPECT_NE(outcome.err.find("note: is 64 x 32, and resampled to 256 x 128"), std::string::npos)
         << outcome.err;
-    const Result<LinearImage> image = image::readImage(path("a.exr"));
-    ASSERT_TRUE(image);
+    const LinearImage image = must(image::readImage(path("a.exr")));
     // The top left shows the sky.
-    EXPECT_NEAR(image->pixels[0][0], 1.0F, 1e-3F);
-    EXPECT_NEAR(image->pixels[0][1], 4.0F, 1e-3F);
-    const Outcome none = render("b.png", {"--json"});
-    ASSERT_EQ(none.exit, 0) << none.err;
+    EXPECT_NEAR(image.pixels[0][0], 1.0F, 1e-3F);
+    EXPECT_NEAR(image.pixels[0][1], 4.0F, 1e-3F);
+    const Outcome none = must(render("b.png", {"--json"}));
     EXPECT_TRUE(none.json().at("environment").is_null());
 }
 
@@ -91,8 +84,7 @@ TEST_F(EnvironmentCommand, SaysWhatIsWrongWithAMap) {
     EXPECT_FALSE(std::filesystem::exists(path("a.png")));
 
     writeExr("odd.exr", 8, 8, -1.0F);
-    const Outcome odd = render("a.png", {"--environment", "odd.exr"});
-    EXPECT_EQ(odd.exit, 0) << odd.err;
+    const Outcome odd = must(render("a.png", {"--environment", "odd.exr"}));
     EXPECT_NE(odd.err.find("[environment-aspect]"), std::string::npos) << odd.err;
     EXPECT_NE(odd.err.find("1 pixels have negative radiance"), std::string::npos) << odd.err;
 }

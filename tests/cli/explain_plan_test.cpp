@@ -10,23 +10,15 @@ namespace {
 
 using Json = nlohmann::json;
 
-class ExplainPlan : public CommandTest {
+class ExplainPlan : public TinySceneTest {
 protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        scene_ = writeTinyScene(path("")).string();
-    }
     Outcome explain(const std::vector<std::string>& more) const {
-        std::vector<std::string> arguments{"explain", scene_, "--plan"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run(arguments);
+        return runWith({"explain", scene_, "--plan"}, more);
     }
-    std::string scene_;
 };
 
 TEST_F(ExplainPlan, JsonHasEveryCaseAndItsCost) {
-    const Outcome outcome = explain({"--merge", "all", "--json"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(explain({"--merge", "all", "--json"}));
     EXPECT_EQ(outcome.json().at("merge"), "all");
     EXPECT_FALSE(outcome.json().contains("materials"));
     const Json plan = outcome.json().at("plan");
@@ -84,9 +76,8 @@ TEST_F(ExplainPlan, ComparesOtherCases) {
 TEST_F(ExplainPlan, EstimatesAreNearWhatIsCompiled) {
     for (const char* merge : {"none", "all"}) {
         const Json cases = explain({"--merge", merge, "--json"}).json().at("plan").at("cases");
-        const Outcome compiled =
-            run({"compile", scene_, "-o", "package", "--merge", merge, "--strategy", "visibility", "--json"});
-        ASSERT_EQ(compiled.exit, 0) << compiled.err;
+        const Outcome compiled = must(run(
+            {"compile", scene_, "-o", "package", "--merge", merge, "--strategy", "visibility", "--json"}));
         for (std::size_t i = 0; i < cases.size(); ++i) {
             const Json code = compiled.json().at("shaders")[i].at("stages").at("visibility");
             const Json estimate = cases[i].at("estimate");
@@ -99,8 +90,7 @@ TEST_F(ExplainPlan, EstimatesAreNearWhatIsCompiled) {
 }
 
 TEST_F(ExplainPlan, TextSaysWhatEachCaseCostsAndWhy) {
-    const Outcome apart = explain({"--merge", "none"});
-    ASSERT_EQ(apart.exit, 0) << apart.err;
+    const Outcome apart = must(explain({"--merge", "none"}));
     EXPECT_NE(apart.out.find("scene.gltf: 2 keys in 2 cases, --merge none; hits expected from areas"),
               std::string::npos)
         << apart.out;

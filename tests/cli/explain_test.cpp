@@ -4,18 +4,10 @@
 namespace glint::testing {
 namespace {
 
-class Explain : public CommandTest {
-protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        scene_ = writeTinyScene(path("")).string();
-    }
-    std::string scene_;
-};
+class Explain : public TinySceneTest {};
 
 TEST_F(Explain, EveryMaterialIsThere) {
-    const Outcome outcome = run({"explain", scene_, "--json"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(run({"explain", scene_, "--json"}));
     const nlohmann::json materials = outcome.json().at("materials");
     ASSERT_EQ(materials.size(), 3U);
     EXPECT_EQ(materials[0].at("name"), "Floor");
@@ -128,8 +120,7 @@ TEST_F(ScenesOfAFile, AnUnknownOneFailsAndAnEmptyOneIsWarnedOf) {
                   std::string::npos)
             << outcome.err;
     }
-    const Outcome empty = run({"compile", scene_, "--dry-run", "--scene", "2"});
-    EXPECT_EQ(empty.exit, 0) << empty.err;
+    const Outcome empty = must(run({"compile", scene_, "--dry-run", "--scene", "2"}));
     EXPECT_NE(empty.err.find("it has no nodes; choose the scene 0 by --scene 0 [nothing-drawn]"),
               std::string::npos)
         << empty.err;
@@ -174,8 +165,7 @@ TEST_F(Explain, KeepsLobesOfPacksForHits) {
                     "--hit-lobes", lobes, "--json"});
     };
     const auto keyOf = [&](const std::string& lobes) {
-        const Outcome outcome = explained(lobes);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome = must(explained(lobes));
         return outcome.json().at("materials").at(0).at("keys").at(0).dump();
     };
     EXPECT_TRUE(has(keyOf("all"), "\"fibre\""));

@@ -41,8 +41,7 @@ protected:
         int packages = -1;
     };
     Work work(const std::string& plan = "plan") const {
-        const Outcome outcome = ninja(plan);
-        EXPECT_EQ(outcome.exit, 0) << outcome.out << outcome.err;
+        const Outcome outcome = must(ninja(plan));
         return outcome.exit == 0 ? Work{count(outcome.out, "MODULE "), count(outcome.out, "PACKAGE ")}
                                  : Work{};
     }
@@ -92,9 +91,8 @@ TEST_F(Farm, PathsMayHaveWhatNinjaAndShellsTakeForTheirOwn) {
     writeManyKeys(path("a b$c#d:e(f)"));
     const std::string scene = "a b$c#d:e(f)/scene.gltf";
     ASSERT_EQ(compile({scene}, {"-o", "whole", "--cache", "none", "--strategy", "uber"}).exit, 0);
-    const Outcome planned = compile(
-        {scene}, {"-o", "x y$z", "--plan-only", "p$l a:n", "--embed", "e e.cpp", "--strategy", "uber"});
-    ASSERT_EQ(planned.exit, 0) << planned.err;
+    const Outcome planned = must(compile(
+        {scene}, {"-o", "x y$z", "--plan-only", "p$l a:n", "--embed", "e e.cpp", "--strategy", "uber"}));
     EXPECT_TRUE(has(planned.out, "ninja -f 'p$l a:n/build.ninja'")) << planned.out;
     EXPECT_GT(work("p$l a:n").modules, 0);
     EXPECT_TRUE(contentsOf(path("whole")) == contentsOf(path("x y$z")));
@@ -139,8 +137,7 @@ TEST_F(Farm, PlanningAgainTouchesNothing) {
     }
     Words asJson = options;
     asJson.emplace_back("--json");
-    const Outcome again = compile({"scene.gltf"}, asJson);
-    ASSERT_EQ(again.exit, 0) << again.err;
+    const Outcome again = must(compile({"scene.gltf"}, asJson));
     EXPECT_EQ(again.json().at("plan").at("ninja"), "plan/build.ninja");
     EXPECT_EQ(again.json().at("plan").at("modules"), filesOf("plan", ".glsl").size());
     for (const std::string& file : filesBelow(path("plan"))) {
@@ -159,9 +156,8 @@ TEST_F(Farm, CompilingAModuleReadsOneFileAndWritesOne) {
     const std::string input = filesOf("plan", ".glsl").front();
     fs::create_directory(path("elsewhere"));
     fs::copy(path("plan") / input, path("elsewhere/other name.glsl"));
-    const Outcome alone = runProgram({"env", "-i", "-C", path("elsewhere").string(), commandPath(),
-                                      "compile-module", "other name.glsl", "-o", "out"});
-    ASSERT_EQ(alone.exit, 0) << alone.err;
+    const Outcome alone = must(runProgram({"env", "-i", "-C", path("elsewhere").string(), commandPath(),
+                                           "compile-module", "other name.glsl", "-o", "out"}));
     EXPECT_TRUE(alone.out.empty()) << alone.out;
     EXPECT_EQ(filesBelow(path("elsewhere")), (Words{"other name.glsl", "out"}));
     const fs::path compiled = (path("plan") / input).replace_extension(".module");

@@ -56,8 +56,7 @@ protected:
     // Returns how many calls a fault can strike. The command must do all its work.
     int countCalls(const std::vector<std::string>& arguments, const std::string& kind,
                    const std::string& folder = "work") const {
-        const Outcome outcome = runWithFault(arguments, kind, 0, folder);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        must(runWithFault(arguments, kind, 0, folder));
         const int calls = std::atoi(readText(path("count")).c_str());
         std::printf("%s, %s: %d calls\n", kind.c_str(), folder.c_str(), calls);
         return calls;
@@ -103,14 +102,12 @@ protected:
         Faults::SetUp();
         fs::create_directories(path("scenes"));
         writeTinyScene(path("scenes"));
-        const Outcome first = run(command("first.o"));
-        ASSERT_EQ(first.exit, 0) << first.err;
+        must(run(command("first.o")));
         old_ = contents();
         keep("old");
         // A clearcoat gives another shader, and another key for the lock file.
         writeTinyScene(path("scenes"), {.variants = true});
-        const Outcome second = run(command("second.o"));
-        ASSERT_EQ(second.exit, 0) << second.err;
+        must(run(command("second.o")));
         new_ = contents();
         for (const char* name : {"ids.lock", "list.d", "embedded.cpp", "package/tables.bin"}) {
             ASSERT_NE(old_.at(name), new_.at(name)) << name;
@@ -172,8 +169,7 @@ protected:
         EXPECT_TRUE(isOldPackage || isNewPackage);
     }
     void expectLoadable() const {
-        const Outcome inspected = run({"inspect", "work/package"});
-        EXPECT_EQ(inspected.exit, 0) << inspected.err;
+        must(run({"inspect", "work/package"}));
     }
 
     Contents old_;
@@ -250,8 +246,7 @@ TEST_F(CompileFaults, KilledRunLeavesFilesWholeAndTheNextOneCleansUp) {
         ASSERT_EQ(runWithFault(command(), "kill", at).exit, -1) << at;
         expectWhole();
         expectLoadable();
-        const Outcome next = run(command());
-        EXPECT_EQ(next.exit, 0) << next.err;
+        must(run(command()));
         EXPECT_TRUE(isNew()) << difference(new_, contents());
         ASSERT_FALSE(HasFailure()) << at;
     }

@@ -17,9 +17,8 @@ TEST_P(EmittedGlsl, CompilesOnItsOwn) {
         GTEST_SKIP() << "glslangValidator is not installed";
     }
     writeTinyScene(path(""), {.variants = true});
-    const Outcome made = run({"compile", "scene.gltf", "-o", "package", "--emit", "glsl", "--merge", "none",
-                              "--strategy", GetParam(), "--tracer", "all"});
-    ASSERT_EQ(made.exit, 0) << made.err;
+    must(run({"compile", "scene.gltf", "-o", "package", "--emit", "glsl", "--merge", "none", "--strategy",
+              GetParam(), "--tracer", "all"}));
     // Only the sources are kept, because they must not need anything else.
     std::filesystem::rename(path("package/glsl"), path("alone"));
     std::filesystem::remove_all(path("package"));

@@ -18,18 +18,16 @@ constexpr const char* kSky =
     "vec3 hostSkyAround(vec3 direction, float roughness) {\n    return vec3(0.25);\n}\n"
     "vec3 hostSkyIrradianceOverPi(vec3 normal) {\n    return vec3(0.25);\n}\n";
 
-class HostCommand : public CommandTest {
+class HostCommand : public TinySceneTest {
 protected:
     void SetUp() override {
-        CommandTest::SetUp();
-        writeTinyScene(path(""));
+        TinySceneTest::SetUp();
         fs::create_directories(path("host"));
     }
     Outcome compile(std::vector<std::string> options) const {
-        std::vector<std::string> words{"compile", "scene.gltf", "-o",    "package", "--strategy",
-                                       "uber",    "--cache",    "cache", "--json"};
-        words.insert(words.end(), options.begin(), options.end());
-        return run(words);
+        return runWith(
+            {"compile", "scene.gltf", "-o", "package", "--strategy", "uber", "--cache", "cache", "--json"},
+            options);
     }
     void expectError(const std::string& id, const std::string& part) const {
         const Outcome outcome = compile({"--host", "host"});
@@ -45,8 +43,7 @@ TEST_F(HostCommand, IsAnInputOfThePackage) {
     writeText(path(kSkyFile), kSky);
     writeText(path("host/README.md"), "Notes are no part of a host.\n");
     const std::vector<std::string> options{"--host", "host", "--depfile", "package.d"};
-    const Outcome first = compile(options);
-    ASSERT_EQ(first.exit, 0) << first.err;
+    must(compile(options));
     EXPECT_TRUE(has(readText(path("package.d")), kSkyFile));
     const nlohmann::json manifest = nlohmann::json::parse(readText(path("package/manifest.json")));
     EXPECT_EQ(manifest.at("host"), nlohmann::json::array({"sky.glsl"}));
@@ -93,8 +90,7 @@ TEST_F(HostCommand, ErrorsOfGlslNameTheFileAndTheLine) {
 }
 
 TEST_F(HostCommand, TheLibraryIsPartOfThePackage) {
-    const Outcome outcome = compile({"--emit", "library,linkable", "--merge", "none"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(compile({"--emit", "library,linkable", "--merge", "none"}));
     const std::vector<std::string> files = filesBelow(path("package"));
     for (const char* const name : {"glint_host.glsl", "glint_library.glsl", "glint_library.spv"}) {
         EXPECT_TRUE(std::ranges::find(files, std::string("library/") + name) != files.end()) << name;

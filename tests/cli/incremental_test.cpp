@@ -22,19 +22,24 @@ protected:
         CommandTest::SetUp();
         writeManyKeys(path("scene"));
     }
-    // Runs once with a cache of the test's own.
+    // Runs once, with a cache of the test's own.
     Outcome compile(const Words& options = {}) const {
+        Words words = options;
+        if (std::ranges::find(options, "--cache") == options.end()) {
+            words.insert(words.end(), {"--cache", "cache"});
+        }
+        return compileShared(words);
+    }
+    // The same with the cache of all tests, for those that do not count what is compiled at first.
+    Outcome compileShared(const Words& options = {}) const {
         Words words{"compile", "scene/scene.gltf", "--merge", "none", "--json"};
-        words.insert(words.end(), options.begin(), options.end());
-        const Words defaults{"--strategy", "uber,visibility", "-o", "package", "--cache", "cache"};
+        const Words defaults{"--strategy", "uber,visibility", "-o", "package"};
         for (std::size_t i = 0; i < defaults.size(); i += 2) {
             if (std::ranges::find(options, defaults[i]) == options.end()) {
                 words.insert(words.end(), {defaults[i], defaults[i + 1]});
             }
         }
-        Outcome outcome = run(words);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
-        return outcome;
+        return must(runWith(words, options));
     }
     // Gives every file of the package an old time stamp, so that a written file shows.
     void age() const {
@@ -93,42 +98,42 @@ TEST_F(Incremental, AColdRunCompilesAndAWarmOneDoesNothing) {
 
 // A package has no pixels, because renderers read the scene's images.
 TEST_F(Incremental, ATexturesPixelsAreInNoPackage) {
-    compile();
+    compileShared();
     age();
     writeBaseTexture(path("scene"), 10);
     // It has to look at them.
-    const Outcome changed = compile();
+    const Outcome changed = compileShared();
     EXPECT_FALSE(isUpToDate(changed));
     EXPECT_EQ(compiled(changed), 0);
     // The manifest lists the files that were read, with their hashes.
     EXPECT_EQ(writtenFiles(), std::set<std::string>{"manifest.json"});
-    EXPECT_TRUE(isUpToDate(compile()));
+    EXPECT_TRUE(isUpToDate(compileShared()));
     // It does not, if it may not conclude anything from them.
-    compile({"--no-trust-textures"});
+    compileShared({"--no-trust-textures"});
     writeBaseTexture(path("scene"), 11);
-    EXPECT_TRUE(isUpToDate(compile({"--no-trust-textures"})));
+    EXPECT_TRUE(isUpToDate(compileShared({"--no-trust-textures"})));
 }
 
 TEST_F(Incremental, AnotherTextureIsInTheTablesAlone) {
     writeManyKeys(path("scene"), {{"textured"}, {"clearcoat", "textured"}});
-    compile();
+    compileShared();
     age();
     nlohmann::json scene = nlohmann::json::parse(readText(path("scene/scene.gltf")));
     scene["images"].push_back({{"uri", "other.png"}});
     scene["textures"].push_back({{"source", 1}});
     scene["materials"][1]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 1;
     writeText(path("scene/scene.gltf"), scene.dump());
-    const Outcome changed = compile();
+    const Outcome changed = compileShared();
     EXPECT_FALSE(isUpToDate(changed));
     EXPECT_EQ(compiled(changed), 0);
     EXPECT_EQ(writtenFiles(), (std::set<std::string>{"manifest.json", "tables.bin"}));
 }
 
 TEST_F(Incremental, AValueIsInTheTablesAlone) {
-    compile();
+    compileShared();
     age();
     writeManyKeys(path("scene"), kFourLobes, 0.25);
-    const Outcome changed = compile();
+    const Outcome changed = compileShared();
     EXPECT_FALSE(isUpToDate(changed));
     EXPECT_EQ(compiled(changed), 0);
     EXPECT_EQ(writtenFiles(), (std::set<std::string>{"manifest.json", "tables.bin"}));
@@ -161,9 +166,10 @@ TEST_F(Incremental, StrategiesAndTracersShareTheParts) {
 }
 
 TEST_F(Incremental, WithoutACacheEverythingIsCompiledAndNothingRewritten) {
-    const int all = compiled(compile({"--cache", "none"}));
+    const Words options{"--cache", "none", "--strategy", "visibility"};
+    const int all = compiled(compile(options));
     age();
-    const Outcome again = compile({"--cache", "none"});
+    const Outcome again = compile(options);
     EXPECT_EQ(compiled(again), all);
     EXPECT_FALSE(isUpToDate(again));
     EXPECT_EQ(writtenFiles(), std::set<std::string>{});
@@ -195,24 +201,24 @@ TEST_F(Incremental, TornEntriesOfTheCacheAreCompiledAgain) {
 
 TEST_F(Incremental, ProcessesShareACache) {
     const std::string script =
-        "\"$0\" compile scene/scene.gltf --cache cache -o a --quiet & first=$!\n"
-        "\"$0\" compile scene/scene.gltf --cache cache -o b --quiet & second=$!\n"
+        "\"$0\" compile scene/scene.gltf --cache cache --strategy visibility -o a --quiet & first=$!\n"
+        "\"$0\" compile scene/scene.gltf --cache cache --strategy visibility -o b --quiet & second=$!\n"
         "wait $first && wait $second";
-    const Outcome both = runProgram({"sh", "-c", script, commandPath()});
-    ASSERT_EQ(both.exit, 0) << both.err;
+    const Outcome both = must(runProgram({"sh", "-c", script, commandPath()}));
     EXPECT_EQ(both.err, "");
     EXPECT_FALSE(contentsOf(path("a")).empty());
     EXPECT_TRUE(contentsOf(path("a")) == contentsOf(path("b")));
     for (const std::string& file : filesBelow(path("cache"))) {
         EXPECT_EQ(file.find(".tmp"), std::string::npos) << file;
     }
-    const Outcome third = run({"compile", "scene/scene.gltf", "--cache", "cache", "-o", "c", "--json"});
+    const Outcome third = run(
+        {"compile", "scene/scene.gltf", "--cache", "cache", "--strategy", "visibility", "-o", "c", "--json"});
     EXPECT_EQ(compiled(third), 0);
 }
 
 TEST_F(Incremental, JobsChangeNoByte) {
-    compile({"--cache", "none", "--jobs", "1", "-o", "one"});
-    compile({"--cache", "none", "--jobs", "2", "-o", "two"});
+    compile({"--cache", "none", "--strategy", "visibility", "--jobs", "1", "-o", "one"});
+    compile({"--cache", "none", "--strategy", "visibility", "--jobs", "2", "-o", "two"});
     EXPECT_FALSE(contentsOf(path("one")).empty());
     EXPECT_TRUE(contentsOf(path("one")) == contentsOf(path("two")));
 }
@@ -223,9 +229,7 @@ protected:
     void SetUp() override {
         Incremental::SetUp();
         writeManyKeys(path(folder_));
-        const Outcome outcome = run({"compile", folder_ + "/scene.gltf", "-o", "pack age", "--cache", "cache",
-                                     "--depfile", "list.d"});
-        ASSERT_EQ(outcome.exit, 0) << outcome.err;
+        must(run({"compile", folder_ + "/scene.gltf", "-o", "pack age", "--depfile", "list.d"}));
     }
     // Makes a file newer than the package.
     void touch(const std::string& name) const {

@@ -96,8 +96,7 @@ TEST_F(LintCommand, OwnPackagesAreClean) {
         run({"compile", scene, "-o", "package", "--strategy", "all", "--merge", "none", "--effects", "all"})
             .exit,
         0);
-    const Outcome outcome = runWithout({"lint", "package", "--json", "--werror"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(runWithout({"lint", "package", "--json", "--werror"}));
     const nlohmann::json json = outcome.json();
     EXPECT_EQ(json.at("errors"), 0);
     EXPECT_EQ(json.at("warnings"), 0) << outcome.err;
@@ -120,8 +119,7 @@ TEST_F(LintCommand, OwnPackagesAreClean) {
 TEST_F(LintCommand, LoopsOfAlphaTestsAreWarnings) {
     const std::string scene = writeTinyScene(path("")).string();
     ASSERT_EQ(run({"compile", scene, "-o", "package", "--strategy", "uber", "--alpha", "tested"}).exit, 0);
-    const Outcome outcome = runWithout({"lint", "package"});
-    EXPECT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(runWithout({"lint", "package"}));
     EXPECT_TRUE(has(outcome.err, "uber.spv: warning: ")) << outcome.err;
     EXPECT_TRUE(has(outcome.err, "[query-proceed-loop]")) << outcome.err;
     EXPECT_FALSE(has(outcome.err, "[query-flags]")) << outcome.err;
@@ -204,8 +202,7 @@ TEST_F(LintCommand, ManyClosestHitShadersAreAWarning) {
     }
     EXPECT_EQ(runWithout({"lint", "pipeline", "--werror"}).exit, 0);
     writeText(path("pipeline/eleventh.spv"), emptyModule(kClosestHit));
-    const Outcome outcome = runWithout({"lint", "pipeline", "--json"});
-    EXPECT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(runWithout({"lint", "pipeline", "--json"}));
     const nlohmann::json findings = outcome.json().at("findings");
     ASSERT_EQ(findings.size(), 1U) << outcome.err;
     EXPECT_EQ(findings.at(0).at("id"), "ray-pipeline-shaders");
@@ -221,8 +218,7 @@ TEST_F(LintCommand, MaliocEstimatesComputeShaders) {
     const std::vector<std::string> arguments{"lint", "compute.spv", "hit.spv", "--core", "Mali-G710"};
     std::vector<std::string> asJson = arguments;
     asJson.emplace_back("--json");
-    const Outcome outcome = run(asJson, {{"PATH", variable}});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(run(asJson, {{"PATH", variable}}));
     const nlohmann::json json = outcome.json();
     EXPECT_EQ(json.at("malioc"), path("bin/malioc").string());
     const nlohmann::json& estimate = json.at("modules").at(0).at("malioc");
@@ -251,10 +247,9 @@ TEST_F(LintCommand, MaliocThatFailsIsAWarning) {
     const auto lintWith = [&](const std::string& script) {
         return run({"lint", "compute.spv"}, {{"PATH", writeMalioc(script)}});
     };
-    const Outcome error = lintWith(R"(#!/bin/sh
+    const Outcome error = must(lintWith(R"(#!/bin/sh
 echo '{"shaders": [{"errors": ["no such core"]}]}'; exit 1
-)");
-    EXPECT_EQ(error.exit, 0);
+)"));
     EXPECT_TRUE(has(error.err, "compute.spv: warning: malioc: no such core")) << error.err;
     EXPECT_TRUE(has(lintWith("#!/bin/sh\necho Segmentation fault\n").err, "no report: Segmentation fault"));
     EXPECT_TRUE(has(lintWith("#!/bin/sh\n").err, "[malioc]"));

@@ -20,8 +20,7 @@ TEST_F(LockRender, GapsChangeNoPixel) {
     ASSERT_EQ(run(plain).exit, 0);
     std::vector<std::string> gaps = compile;
     gaps.insert(gaps.end(), {"gaps", "--lock", "glint.lock"});
-    const Outcome compiled = run(gaps);
-    ASSERT_EQ(compiled.exit, 0) << compiled.err;
+    must(run(gaps));
     const nlohmann::json inspected = run({"inspect", "gaps", "--json"}).json();
     EXPECT_EQ(inspected.at("counts").at("cases"), 2);
     EXPECT_EQ(inspected.at("counts").at("buckets"), 8);
@@ -37,8 +36,7 @@ TEST_F(LockRender, GapsChangeNoPixel) {
                         choice[0], "--tracer", choice[1], "--size", "32x18", "--validate", "--json"});
         };
         ASSERT_EQ(render("plain").exit, 0);
-        const Outcome rendered = render("gaps");
-        ASSERT_EQ(rendered.exit, 0) << rendered.err;
+        const Outcome rendered = must(render("gaps"));
         const nlohmann::json counters = rendered.json().at("counters");
         EXPECT_EQ(counters.at("unknownShader"), 0);
         EXPECT_EQ(counters.at("orderErrors"), 0);

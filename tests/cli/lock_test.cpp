@@ -13,12 +13,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 // The scene has two keys: "unlit" for the wall, and "normals" for the floor.
-class Lock : public CommandTest {
+class Lock : public TinySceneTest {
 protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        scene_ = writeTinyScene(path("")).string();
-    }
     void coatTheFloor() const {
         writeTinyScene(path(""), {.variants = true});
     }
@@ -36,12 +32,10 @@ protected:
         const std::string text = readText(path("glint.lock"));
         return text.substr(std::min(text.find("version"), text.size()));
     }
-    std::string scene_;
 };
 
 TEST_F(Lock, IsMadeAndThenLeftAlone) {
-    const Outcome outcome = compile({"--lock", "glint.lock"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(compile({"--lock", "glint.lock"}));
     EXPECT_TRUE(outcome.err.empty()) << outcome.err;
     EXPECT_EQ(lock(), "version 1\n1 normals\n0 unlit\n");
     EXPECT_TRUE(readText(path("glint.lock")).starts_with("# "));
@@ -54,8 +48,7 @@ TEST_F(Lock, IsMadeAndThenLeftAlone) {
 TEST_F(Lock, KeysKeepTheirIdsAndComeBackToThem) {
     ASSERT_EQ(compile({"--lock", "glint.lock"}).exit, 0);
     coatTheFloor();
-    const Outcome coated = compile({"--lock", "glint.lock"});
-    ASSERT_EQ(coated.exit, 0) << coated.err;
+    const Outcome coated = must(compile({"--lock", "glint.lock"}));
     EXPECT_EQ(lock(), "version 1\n2 clearcoat normals\n1 normals\n0 unlit\n");
     EXPECT_TRUE(has(coated.err, "glint.lock: note: keeps 1 key that no scene has: 1 normals; --lock-prune"))
         << coated.err;
@@ -70,8 +63,7 @@ TEST_F(Lock, KeysKeepTheirIdsAndComeBackToThem) {
     writeTinyScene(path(""));
     ASSERT_EQ(compile({"--lock", "glint.lock"}).exit, 0);
     EXPECT_EQ(lock(), "version 1\n2 clearcoat normals\n1 normals\n0 unlit\n");
-    const Outcome pruned = compile({"--lock", "glint.lock", "--lock-prune"});
-    ASSERT_EQ(pruned.exit, 0);
+    const Outcome pruned = must(compile({"--lock", "glint.lock", "--lock-prune"}));
     EXPECT_TRUE(has(pruned.err, "note: loses 1 key that no scene has: 2 clearcoat normals [lock-stale]"))
         << pruned.err;
     EXPECT_EQ(lock(), "version 1\n1 normals\n0 unlit\n");
@@ -101,15 +93,13 @@ TEST_F(Lock, ClashingKeysAreSettledWithAWarning) {
     EXPECT_EQ(strict.exit, 1);
     EXPECT_FALSE(fs::exists(path("package")));
     EXPECT_EQ(lock(), "version 1\n4 normals\n4 unlit\n");
-    const Outcome outcome = compile({"--lock", "glint.lock"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(compile({"--lock", "glint.lock"}));
     EXPECT_TRUE(has(outcome.err, ", 4 -> 0")) << outcome.err;
     EXPECT_TRUE(has(outcome.err, "[lock-conflict]")) << outcome.err;
     // The floor is larger than the wall.
     EXPECT_EQ(lock(), "version 1\n4 normals\n0 unlit\n");
     writeLock("4 normals\n4 unlit\n2 normals\n");
-    const Outcome repeated = compile({"--lock", "glint.lock"});
-    ASSERT_EQ(repeated.exit, 0) << repeated.err;
+    const Outcome repeated = must(compile({"--lock", "glint.lock"}));
     EXPECT_TRUE(
         has(repeated.err, "glint.lock:4: warning: gives normals (Floor) a second shader ID; 2 counts"))
         << repeated.err;
@@ -120,9 +110,8 @@ TEST_F(Lock, MergedKeysTakeOneId) {
     writeLock("4 normals\n2 unlit\n");
     const Outcome outcome = compile({"--lock", "glint.lock", "--merge", "all"});
     ASSERT_EQ(outcome.exit, 2) << "two --merge";
-    const Outcome merged = run({"compile", scene_, "-o", "package", "--merge", "all", "--strategy",
-                                "visibility", "--lock", "glint.lock"});
-    ASSERT_EQ(merged.exit, 0) << merged.err;
+    const Outcome merged = must(run({"compile", scene_, "-o", "package", "--merge", "all", "--strategy",
+                                     "visibility", "--lock", "glint.lock"}));
     EXPECT_TRUE(has(merged.err, "normals (Floor), 4 -> 2")) << merged.err;
     EXPECT_TRUE(has(merged.err, "[lock-moved]")) << merged.err;
     EXPECT_EQ(lock(), "version 1\n2 normals\n2 unlit\n");
@@ -164,8 +153,7 @@ TEST_F(Lock, ExplainReadsIt) {
     const std::vector<std::string> explain{"explain", scene_, "--merge", "none", "--json", "--lock"};
     std::vector<std::string> arguments = explain;
     arguments.emplace_back("glint.lock");
-    const Outcome outcome = run(arguments);
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(run(arguments));
     const Json materials = outcome.json().at("materials");
     EXPECT_EQ(materials[0].at("keys")[0].at("case").at("id"), 4);
     EXPECT_EQ(materials[1].at("keys")[0].at("case").at("id"), 0);

@@ -2,6 +2,7 @@
 
 #include "cli/command.h"
 #include "image/image_file.h"
+#include "support/must.h"
 
 #include <gtest/gtest.h>
 
@@ -93,8 +94,7 @@ fs::path writeManyKeys(const fs::path& folder, const Lobes& lobes, double red) {
 
 void writeBaseTexture(const fs::path& folder, std::uint8_t red) {
     const image::DisplayImage image{2, 1, {{red, 100, 50}, {0, 30, 200}}};
-    const Status written = writeImage(folder / "base.png", image);
-    ASSERT_TRUE(written) << toString(written.error());
+    must(writeImage(folder / "base.png", image));
 }
 
 std::vector<std::pair<std::string, std::string>> contentsOf(const fs::path& folder) {

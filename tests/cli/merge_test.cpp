@@ -27,16 +27,10 @@ Json makeProfileJson(int unlitHits, int normalHits) {
               {{"features", {"normals"}}, {"materials", {"Floor"}}, {"hits", normalHits}}}}};
 }
 
-class Merge : public CommandTest {
+class Merge : public TinySceneTest {
 protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        scene_ = writeTinyScene(path("")).string();
-    }
     Outcome plan(const std::vector<std::string>& more) const {
-        std::vector<std::string> arguments{"compile", scene_, "--dry-run", "--json"};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run(arguments);
+        return runWith({"compile", scene_, "--dry-run", "--json"}, more);
     }
     Outcome planWith(const Json& profile, const std::vector<std::string>& more = {}) const {
         writeText(path("hits.json"), profile.dump());
@@ -47,16 +41,13 @@ protected:
         arguments.insert(arguments.end(), more.begin(), more.end());
         return plan(arguments);
     }
-    std::string scene_;
 };
 
 TEST_F(Merge, AutoKeepsToTheLimit) {
-    const Outcome two = plan({"--merge", "auto"});
-    ASSERT_EQ(two.exit, 0) << two.err;
+    const Outcome two = must(plan({"--merge", "auto"}));
     EXPECT_EQ(two.json().at("counts").at("cases"), 2);
     EXPECT_EQ(two.json().at("shaders")[0].at("reason"), "own");
-    const Outcome one = plan({"--merge", "auto", "--max-shaders", "1"});
-    ASSERT_EQ(one.exit, 0) << one.err;
+    const Outcome one = must(plan({"--merge", "auto", "--max-shaders", "1"}));
     EXPECT_EQ(one.json().at("counts").at("cases"), 1);
     EXPECT_EQ(one.json().at("shaders")[0].at("reason"), "budget");
     EXPECT_EQ(one.json().at("shaders")[0].at("share"), 1.0);
@@ -66,14 +57,13 @@ TEST_F(Merge, AutoKeepsToTheLimit) {
 }
 
 TEST_F(Merge, ProfileTellsHotFromNeverHit) {
-    const Outcome outcome = planWith(makeProfileJson(0, 30));
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(planWith(makeProfileJson(0, 30)));
     EXPECT_EQ(outcome.json().at("shaders")[0].at("reason"), "never-hit");
     EXPECT_EQ(outcome.json().at("shaders")[1].at("reason"), "hot");
     EXPECT_EQ(outcome.json().at("shaders")[1].at("share"), 1.0);
     EXPECT_TRUE(outcome.json().at("diagnostics").empty());
-    const Outcome explained = run({"explain", scene_, "--merge", "profile:hits.json", "--material", "Wall"});
-    ASSERT_EQ(explained.exit, 0) << explained.err;
+    const Outcome explained =
+        must(run({"explain", scene_, "--merge", "profile:hits.json", "--material", "Wall"}));
     EXPECT_NE(explained.out.find("never-hit: no hit of the profile has its key"), std::string::npos)
         << explained.out;
     EXPECT_NE(explained.out.find("counted by the profile"), std::string::npos) << explained.out;
@@ -85,11 +75,9 @@ TEST_F(Merge, AutoTakesTheHitsOfAProfile) {
         const Json shaders = outcome.json().at("shaders");
         return std::pair(shaders[0].at("share").get<double>(), shaders[1].at("share").get<double>());
     };
-    const Outcome counted = planWith(makeProfileJson(30, 10), {"--merge", "auto"});
-    ASSERT_EQ(counted.exit, 0) << counted.err;
+    const Outcome counted = must(planWith(makeProfileJson(30, 10), {"--merge", "auto"}));
     EXPECT_EQ(sharesOf(counted), std::pair(0.75, 0.25));
-    const Outcome named = plan({"--merge", "auto:hits.json"});
-    ASSERT_EQ(named.exit, 0) << named.err;
+    const Outcome named = must(plan({"--merge", "auto:hits.json"}));
     EXPECT_EQ(sharesOf(named), std::pair(0.75, 0.25));
     EXPECT_NE(sharesOf(plan({"--merge", "auto"})), std::pair(0.75, 0.25));
     const Outcome explained = run({"explain", scene_, "--merge", "auto:hits.json"});
@@ -99,8 +87,7 @@ TEST_F(Merge, AutoTakesTheHitsOfAProfile) {
 
 // If the profile has no hit, the expectation by areas is better than nothing.
 TEST_F(Merge, AutoDoesWithoutAProfileThatHasNoHits) {
-    const Outcome outcome = planWith(makeProfileJson(0, 0), {"--merge", "auto"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(planWith(makeProfileJson(0, 0), {"--merge", "auto"}));
     EXPECT_NE(outcome.err.find("hits are expected from areas"), std::string::npos) << outcome.err;
     EXPECT_EQ(outcome.json().at("shaders"), plan({"--merge", "auto"}).json().at("shaders"));
 }
@@ -109,8 +96,7 @@ TEST_F(Merge, ProfilesOfOtherKeysAreWarnedOf) {
     Json profile = makeProfileJson(10, 30);
     profile["keys"][0]["features"] = {"normals", "clearcoat"};
     profile["keys"][0]["materials"] = {"Varnish"};
-    const Outcome outcome = planWith(profile);
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(planWith(profile));
     EXPECT_NE(outcome.err.find("warning: has no count for 1 of the scene's 2 keys"), std::string::npos)
         << outcome.err;
     EXPECT_NE(outcome.err.find("Wall (unlit)"), std::string::npos) << outcome.err;
@@ -124,8 +110,7 @@ TEST_F(Merge, ProfilesOfOtherKeysAreWarnedOf) {
 TEST_F(Merge, ProfilesOfOtherSettingsAreWarnedOf) {
     Json profile = makeProfileJson(10, 30);
     profile["alpha"] = "tested";
-    const Outcome outcome = planWith(profile);
-    EXPECT_EQ(outcome.exit, 0);
+    const Outcome outcome = must(planWith(profile));
     EXPECT_NE(outcome.err.find("was counted with --alpha tested, but this is opaque"), std::string::npos)
         << outcome.err;
     EXPECT_NE(planWith(makeProfileJson(1, 1), {"--hit-lobes", "base"}).err.find("--hit-lobes"),

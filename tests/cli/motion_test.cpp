@@ -34,25 +34,16 @@ TEST(MotionOptions, NumberFiles) {
 
 class MovingScene : public RenderCommand {
 protected:
-    void SetUp() override {
-        RenderCommand::SetUp();
-        scene_ = writeTinyScene(path(""), {.animated = true}).string();
-    }
+    MovingScene() : RenderCommand({.animated = true}) {}
+
     bool exists(const std::string& file) const {
         return std::filesystem::exists(path(file));
-    }
-    void expectSame(const std::string& a, const std::string& b) const {
-        const Outcome same = run({"compare", a, b, "--max-error", "1e-4"});
-        EXPECT_EQ(same.exit, 0) << a << " and " << b << ": " << same.out << same.err;
-    }
-    void expectOther(const std::string& a, const std::string& b) const {
-        EXPECT_EQ(run({"compare", a, b, "--max-error", "1e-2"}).exit, 1) << a << " and " << b;
     }
 };
 
 TEST_F(MovingScene, WritesASequence) {
-    const Outcome outcome = render("out.exr", {"--frames", "1:3", "--fps", "4", "--json", "--validate"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome =
+        must(render("out.exr", {"--frames", "1:3", "--fps", "4", "--json", "--validate"}));
     EXPECT_FALSE(exists("out.exr"));
     EXPECT_FALSE(exists("out.0000.exr"));
     EXPECT_FALSE(exists("out.0004.exr"));
@@ -75,15 +66,14 @@ TEST_F(MovingScene, WritesASequence) {
 }
 
 TEST_F(MovingScene, NamesTheFilesOfASequence) {
-    const Outcome outcome = render("out.png", {"--frames", "0:1"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(render("out.png", {"--frames", "0:1"}));
     EXPECT_NE(outcome.out.find("out.0000.png to out.0001.png"), std::string::npos) << outcome.out;
 }
 
 TEST_F(MovingScene, RefitsOrRebuildsToTheSamePicture) {
     ASSERT_EQ(render("a.exr", {"--frames", "0:1", "--fps", "2", "--refit", "always"}).exit, 0);
-    const Outcome outcome = render("b.exr", {"--frames", "0:1", "--fps", "2", "--refit", "never", "--json"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome =
+        must(render("b.exr", {"--frames", "0:1", "--fps", "2", "--refit", "never", "--json"}));
     EXPECT_EQ(outcome.json().at("frames")[1].at("rebuilds"), 1);
     EXPECT_EQ(outcome.json().at("frames")[1].at("topLevel"), "rebuilt");
     expectSame("a.0001.exr", "b.0001.exr");
@@ -92,9 +82,8 @@ TEST_F(MovingScene, RefitsOrRebuildsToTheSamePicture) {
 TEST_F(MovingScene, IsTheSameToEveryStrategyAndTracer) {
     ASSERT_EQ(render("query.exr", {"--frames", "0:1", "--fps", "2"}).exit, 0);
     for (const char* strategy : {"uber", "hit-shaders"}) {
-        const Outcome outcome = render("pipeline.exr", {"--frames", "0:1", "--fps", "2", "--strategy",
-                                                        strategy, "--tracer", "ray-pipeline", "--validate"});
-        ASSERT_EQ(outcome.exit, 0) << outcome.err;
+        must(render("pipeline.exr", {"--frames", "0:1", "--fps", "2", "--strategy", strategy, "--tracer",
+                                     "ray-pipeline", "--validate"}));
         expectSame("query.0001.exr", "pipeline.0001.exr");
     }
 }
@@ -129,8 +118,7 @@ TEST_F(MovingScene, AnAutomaticCameraFramesAllOfIt) {
 
 TEST_F(MovingScene, UsesPackagesThatCanDeform) {
     ASSERT_EQ(run({"compile", scene_, "-o", "package"}).exit, 0);
-    const Outcome outcome = render("out.exr", {"--frames", "0:1", "--package", "package"});
-    EXPECT_EQ(outcome.exit, 0) << outcome.err;
+    must(render("out.exr", {"--frames", "0:1", "--package", "package"}));
     EXPECT_NE(run({"inspect", "package"}).out.find("deform.spv"), std::string::npos);
     // A package of the same scene without its morph target lacks the pass.
     const std::string still = writeTinyScene(path("")).string();
@@ -143,8 +131,7 @@ TEST_F(MovingScene, UsesPackagesThatCanDeform) {
 }
 
 TEST_F(MovingScene, IsExplained) {
-    const Outcome outcome = run({"explain", scene_, "--json"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(run({"explain", scene_, "--json"}));
     expectFits("explain", outcome.json());
     const Json motion = outcome.json().at("motion");
     ASSERT_EQ(motion.at("animations").size(), 2U);
@@ -194,8 +181,7 @@ TEST_F(MovingScene, PointersArePlannedFor) {
         animation["channels"].push_back(channel);
     }
     writeText(scene_, gltf.dump());
-    const Outcome outcome = run({"explain", scene_, "--json"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(run({"explain", scene_, "--json"}));
     const Json moving = outcome.json();
     expectFits("explain", moving);
     EXPECT_EQ(chosenEffects(moving), (std::set<std::string>{"shadow", "reflection", "refraction"}));

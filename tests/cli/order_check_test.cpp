@@ -1,4 +1,5 @@
 #include "cli/render/report.h"
+#include "support/must.h"
 
 #include <gtest/gtest.h>
 
@@ -10,12 +11,11 @@ TEST(OrderCheck, AnyErrorFailsAndIsCounted) {
     report.scene = "room.gltf";
     EXPECT_TRUE(checkOrder(report).ok());
     report.counters.orderErrors = 3;
-    const Status failed = checkOrder(report);
-    ASSERT_FALSE(failed.ok());
-    EXPECT_EQ(failed.error().id, "order-check");
-    EXPECT_EQ(failed.error().severity, Severity::Error);
-    EXPECT_EQ(failed.error().where, "room.gltf");
-    EXPECT_EQ(failed.error().message.substr(0, 7), "3 hits ");
+    const Diagnostic failed = mustFail(checkOrder(report));
+    EXPECT_EQ(failed.id, "order-check");
+    EXPECT_EQ(failed.severity, Severity::Error);
+    EXPECT_EQ(failed.where, "room.gltf");
+    EXPECT_EQ(failed.message.substr(0, 7), "3 hits ");
 }
 
 }  // namespace

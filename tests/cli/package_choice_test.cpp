@@ -10,10 +10,7 @@ namespace {
 class PackageChoice : public RenderCommand {
 protected:
     void compile(const std::vector<std::string>& options) const {
-        std::vector<std::string> line{"compile", scene_, "-o", "package"};
-        line.insert(line.end(), options.begin(), options.end());
-        const Outcome outcome = run(line);
-        ASSERT_EQ(outcome.exit, 0) << outcome.err;
+        must(runWith({"compile", scene_, "-o", "package"}, options));
     }
     void expectRefused(const std::vector<std::string>& options, const std::string& message) const {
         std::vector<std::string> line{"--package", "package"};

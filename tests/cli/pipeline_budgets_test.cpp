@@ -33,12 +33,9 @@ protected:
     }
     // Compiles the scene, whose tracing modules are compute shaders, and expects its pipelines within budget.
     void expectWithinBudget(const std::string& scene, std::vector<std::string> options) const {
-        std::vector<std::string> words{"compile", scene, "-o", "package", "--strategy", "uber,visibility"};
-        words.insert(words.end(), options.begin(), options.end());
-        const Outcome compiled = run(words);
-        ASSERT_EQ(compiled.exit, 0) << compiled.err;
-        const Outcome inspected = inspect(std::string(GLINT_SOURCE_DIR) + "/tests/cli/pipeline_budgets.json");
-        EXPECT_EQ(inspected.exit, 0) << inspected.err;
+        must(runWith({"compile", scene, "-o", "package", "--strategy", "uber,visibility"}, options));
+        const Outcome inspected =
+            must(inspect(std::string(GLINT_SOURCE_DIR) + "/tests/cli/pipeline_budgets.json"));
         EXPECT_TRUE(has(inspected.out, "RADV NAVI31")) << inspected.out;
     }
 };

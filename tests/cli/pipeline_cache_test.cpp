@@ -18,8 +18,7 @@ protected:
     nlohmann::json renderWith(const std::string& cache, const std::vector<std::string>& more = {}) const {
         std::vector<std::string> words{"--json", "--pipeline-cache", cache};
         words.insert(words.end(), more.begin(), more.end());
-        const Outcome outcome = render("a.png", words);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome = must(render("a.png", words));
         return outcome.json();
     }
 
@@ -96,19 +95,16 @@ TEST_F(PipelineCacheFolder, IsSharedByRunsAtTheSameTime) {
         "  \"$0\" render \"$1\" -o $i.png --size 8x8 --pipeline-cache shared & pids=\"$pids $!\"\n"
         "done\n"
         "for pid in $pids; do wait $pid || exit 1; done";
-    const Outcome outcome = runProgram({"sh", "-c", script, commandPath(), scene_});
-    EXPECT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(runProgram({"sh", "-c", script, commandPath(), scene_}));
     EXPECT_EQ(outcome.err, "");
     EXPECT_EQ(std::distance(fs::directory_iterator(path("shared")), fs::directory_iterator()), 1);
     EXPECT_FALSE(notes(renderWith("shared"), "pipeline-cache"));
 }
 
 TEST_F(RenderCommand, ThreadsOfPipelinesAndTheStartAreReported) {
-    const Outcome one = render("a.png", {"--json", "--pipeline-threads", "1"});
-    ASSERT_EQ(one.exit, 0) << one.err;
+    const Outcome one = must(render("a.png", {"--json", "--pipeline-threads", "1"}));
     EXPECT_EQ(one.json().at("pipelineThreads"), 1);
-    const Outcome three = render("b.png", {"--json", "--pipeline-threads", "3"});
-    ASSERT_EQ(three.exit, 0) << three.err;
+    const Outcome three = must(render("b.png", {"--json", "--pipeline-threads", "3"}));
     EXPECT_EQ(three.json().at("pipelineThreads"), 3);
     EXPECT_EQ(readText(path("a.png")), readText(path("b.png")));
     const nlohmann::json start = three.json().at("start");
@@ -123,8 +119,7 @@ TEST_F(RenderCommand, ThreadsOfPipelinesAndTheStartAreReported) {
 
 // A driver that reports statistics of its pipelines gives a list; another driver gives a note.
 TEST_F(RenderCommand, PipelineStatisticsAreListedOrANoteSaysWhyNot) {
-    const Outcome outcome = render("a.png", {"--json", "--pipeline-statistics"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(render("a.png", {"--json", "--pipeline-statistics"}));
     const nlohmann::json report = outcome.json();
     const nlohmann::json& list = report.at("pipelineStatistics");
     const bool isNoted = has(report.at("diagnostics").dump(), "pipeline-statistics");

@@ -36,16 +36,12 @@ class Pipelines : public CommandTest {
 protected:
     void compile(const std::string& scene, const std::string& package,
                  const std::vector<std::string>& options) const {
-        std::vector<std::string> line{"compile", scene, "-o", package};
-        line.insert(line.end(), options.begin(), options.end());
-        const Outcome made = run(line);
-        ASSERT_EQ(made.exit, 0) << made.err;
+        must(runWith({"compile", scene, "-o", package}, options));
     }
     Json report(const std::vector<std::string>& options, const Variables& variables = {}) const {
         std::vector<std::string> line{"inspect", "package", "--pipelines", "--json"};
         line.insert(line.end(), options.begin(), options.end());
-        const Outcome outcome = run(line, variables);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome = must(run(line, variables));
         Json printed = outcome.json();
         expectFits("inspect", printed);
         return printed;
@@ -91,9 +87,7 @@ TEST_F(Pipelines, RefuseFilesThatAreNoReports) {
         {{"--compare", "none.json"}, "[file-open]"},
         {{"--budget", "budget.json"}, "budget.json#/budgets/0/spils: error"}};
     for (const auto& [options, message] : wrong) {
-        std::vector<std::string> line{"inspect", "package", "--pipelines"};
-        line.insert(line.end(), options.begin(), options.end());
-        const Outcome outcome = run(line);
+        const Outcome outcome = runWith({"inspect", "package", "--pipelines"}, options);
         EXPECT_EQ(outcome.exit, 1) << outcome.err;
         EXPECT_TRUE(has(outcome.err, message)) << outcome.err;
     }
@@ -118,8 +112,7 @@ protected:
         return run({"inspect", "package", "--pipelines", "--budget", "budget.json", "--werror"}, radeon_);
     }
     void expectWithin(const Json& rules) const {
-        const Outcome outcome = check(rules);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err << outcome.out;
+        must(check(rules));
     }
 
     Variables radeon_;
@@ -186,8 +179,8 @@ TEST_F(PipelineBudgets, AndReportsOfTwoDevicesSideBySide) {
     const Json both = report({"--compare", "before.json"}, radeon_);
     EXPECT_EQ(both.at("compared").at("device").at("name"), device.at("name"));
     EXPECT_NE(both.at("device").at("name"), device.at("name"));
-    const Outcome text = run({"inspect", "package", "--pipelines", "--compare", "before.json"}, radeon_);
-    EXPECT_EQ(text.exit, 0) << text.err;
+    const Outcome text =
+        must(run({"inspect", "package", "--pipelines", "--compare", "before.json"}, radeon_));
     EXPECT_TRUE(has(text.out, " → ")) << text.out;
 }
 

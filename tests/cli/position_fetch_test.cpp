@@ -10,12 +10,8 @@
 namespace glint::testing {
 namespace {
 
-class PositionFetch : public CommandTest, public ::testing::WithParamInterface<const char*> {
+class PositionFetch : public TinySceneTest, public ::testing::WithParamInterface<const char*> {
 protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        scene_ = writeTinyScene(path("")).string();
-    }
     Outcome render(const std::string& image, bool fetches) {
         std::vector<std::string> arguments{"render", scene_,       "-o",     image,        "--size",
                                            "64x36",  "--validate", "--json", "--strategy", GetParam()};
@@ -24,7 +20,6 @@ protected:
         }
         return run(arguments);
     }
-    std::string scene_;
 };
 
 TEST_P(PositionFetch, GivesTheSameImage) {
@@ -39,8 +34,7 @@ TEST_P(PositionFetch, GivesTheSameImage) {
         GTEST_SKIP() << "the device has no position fetch";
     }
     ASSERT_EQ(fetched.exit, 0) << fetched.err;
-    const Outcome stored = render("stored.exr", false);
-    ASSERT_EQ(stored.exit, 0) << stored.err;
+    const Outcome stored = must(render("stored.exr", false));
     EXPECT_EQ(run({"compare", "fetched.exr", "stored.exr", "--max-error", "0"}).exit, 0);
 }
 

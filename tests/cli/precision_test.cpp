@@ -10,14 +10,7 @@
 namespace glint::testing {
 namespace {
 
-class PrecisionOption : public CommandTest {
-protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        scene_ = writeTinyScene(path("")).string();
-    }
-    std::string scene_;
-};
+class PrecisionOption : public TinySceneTest {};
 
 // Capabilities come first in a module, three words after the version: OpCapability Float16.
 bool computesHalf(const std::string& spirv) {

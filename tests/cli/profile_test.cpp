@@ -10,8 +10,7 @@ namespace {
 class RenderProfile : public RenderCommand {};
 
 TEST_F(RenderProfile, CountsTheHitsOfEveryKeyOverAllSamples) {
-    const Outcome one = render("one.exr", {"--profile", "one.json", "--json"});
-    ASSERT_EQ(one.exit, 0) << one.err;
+    const Outcome one = must(render("one.exr", {"--profile", "one.json", "--json"}));
     const nlohmann::json profile = nlohmann::json::parse(readText(path("one.json")));
     EXPECT_EQ(profile.at("format"), "glint-profile");
     EXPECT_EQ(profile.at("version"), 1);
@@ -28,8 +27,7 @@ TEST_F(RenderProfile, CountsTheHitsOfEveryKeyOverAllSamples) {
     EXPECT_GT(profile.at("keys")[0].at("hits").get<int>(), 0);
 
     // In this scene the random numbers of a sample only decide where in its pixel a ray starts.
-    const Outcome four = render("four.exr", {"--profile", "four.json", "--spp", "4"});
-    ASSERT_EQ(four.exit, 0) << four.err;
+    const Outcome four = must(render("four.exr", {"--profile", "four.json", "--spp", "4"}));
     const nlohmann::json more = nlohmann::json::parse(readText(path("four.json")));
     const double ratio =
         more.at("keys")[0].at("hits").get<double>() / profile.at("keys")[0].at("hits").get<double>();
@@ -38,9 +36,8 @@ TEST_F(RenderProfile, CountsTheHitsOfEveryKeyOverAllSamples) {
 
 TEST_F(RenderProfile, DecidesHowKeysAreMerged) {
     ASSERT_EQ(render("a.exr", {"--profile", "hits.json"}).exit, 0);
-    const Outcome compiled =
-        run({"compile", scene_, "-o", "package", "--merge", "profile", "--profile", "hits.json", "--json"});
-    ASSERT_EQ(compiled.exit, 0) << compiled.err;
+    const Outcome compiled = must(
+        run({"compile", scene_, "-o", "package", "--merge", "profile", "--profile", "hits.json", "--json"}));
     EXPECT_TRUE(compiled.json().at("diagnostics").empty()) << compiled.err;
     const nlohmann::json wall = compiled.json().at("shaders")[0];
     EXPECT_EQ(wall.at("always"), nlohmann::json({"unlit"}));
@@ -60,8 +57,7 @@ TEST_F(RenderProfile, DecidesHowKeysAreMerged) {
 }
 
 TEST_F(RenderProfile, WithoutHitsIsWarnedOf) {
-    const Outcome outcome = render("a.png", {"--profile", "hits.json", "--effects", "none"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(render("a.png", {"--profile", "hits.json", "--effects", "none"}));
     EXPECT_NE(outcome.err.find("[profile-empty]"), std::string::npos) << outcome.err;
 }
 

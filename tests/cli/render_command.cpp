@@ -1,18 +1,18 @@
 #include "cli/render_command.h"
 
-#include "cli/tiny_scene.h"
-
 namespace glint::testing {
 
-void RenderCommand::SetUp() {
-    CommandTest::SetUp();
-    scene_ = writeTinyScene(path("")).string();
+Outcome RenderCommand::render(const std::string& image, const std::vector<std::string>& more) const {
+    return runWith({"render", scene_, "-o", image, "--size", "64x36"}, more);
 }
 
-Outcome RenderCommand::render(const std::string& image, const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{"render", scene_, "-o", image, "--size", "64x36"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run(arguments);
+void RenderCommand::expectSame(const std::string& a, const std::string& b) const {
+    const Outcome same = run({"compare", a, b, "--max-error", "1e-4"});
+    EXPECT_EQ(same.exit, 0) << a << " and " << b << ": " << same.out << same.err;
+}
+
+void RenderCommand::expectOther(const std::string& a, const std::string& b) const {
+    EXPECT_EQ(run({"compare", a, b, "--max-error", "1e-2"}).exit, 1) << a << " and " << b;
 }
 
 }  // namespace glint::testing

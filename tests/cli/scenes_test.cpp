@@ -26,8 +26,7 @@ protected:
 TEST_F(Scenes, ShareTheirCases) {
     std::filesystem::copy(path("day"), path("dusk"), std::filesystem::copy_options::recursive);
     const Outcome one = run({"compile", "day/day.gltf", "-o", "one", "--json"});
-    const Outcome two = run({"compile", "day/day.gltf", "dusk/day.gltf", "-o", "two", "--json"});
-    ASSERT_EQ(two.exit, 0) << two.err;
+    const Outcome two = must(run({"compile", "day/day.gltf", "dusk/day.gltf", "-o", "two", "--json"}));
     EXPECT_EQ(two.json().at("counts").at("scenes"), 2);
     EXPECT_EQ(two.json().at("counts").at("materials"),
               2 * one.json().at("counts").at("materials").get<int>());
@@ -41,9 +40,7 @@ TEST_F(Scenes, ShareTheirCases) {
 
 // Only one of the scenes has the variant.
 TEST_F(Scenes, AVariantIsUsedWhereThereIsOne) {
-    const Outcome outcome =
-        run({"compile", "day/day.gltf", "night/night.gltf", "-o", "two", "--variant", "Day", "--json"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    must(run({"compile", "day/day.gltf", "night/night.gltf", "-o", "two", "--variant", "Day", "--json"}));
     const nlohmann::json scenes = run({"inspect", "two", "--json"}).json().at("scenes");
     EXPECT_TRUE(scenes[0].at("variant").is_null());
     EXPECT_EQ(scenes[1].at("variant"), "Day");
@@ -59,8 +56,7 @@ TEST_F(Scenes, LinksThatLeadOutAreAChoice) {
     std::filesystem::create_symlink(path("store.bin"), path("day") / "scene.bin");
     for (const std::vector<std::string>& command :
          {std::vector<std::string>{"compile", "day/day.gltf", "--dry-run"}, {"explain", "day/day.gltf"}}) {
-        const Outcome followed = run(command);
-        EXPECT_EQ(followed.exit, 0) << followed.err;
+        must(run(command));
         std::vector<std::string> strict = command;
         strict.emplace_back("--strict-paths");
         const Outcome refused = run(strict);
@@ -78,8 +74,7 @@ TEST_F(Scenes, RenderAsFromPackagesOfTheirOwn) {
         arguments.insert(arguments.end(), frame.begin(), frame.end());
         return run(arguments);
     };
-    const Outcome shared = render({"-o", "a.exr", "--package", "two"});
-    ASSERT_EQ(shared.exit, 0) << shared.err;
+    must(render({"-o", "a.exr", "--package", "two"}));
     ASSERT_EQ(render({"-o", "b.exr"}).exit, 0);
     EXPECT_EQ(run({"compare", "a.exr", "b.exr", "--max-error", "0"}).exit, 0);
 

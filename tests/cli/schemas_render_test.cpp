@@ -15,8 +15,7 @@ using Json = nlohmann::json;
 class RenderSchemas : public RenderCommand {};
 
 TEST_F(RenderSchemas, HoldRenderAndItsStatistics) {
-    const Outcome outcome = render("a.exr", {"--json", "--stats", "stats.json"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(render("a.exr", {"--json", "--stats", "stats.json"}));
     expectFits("render", outcome.json());
     EXPECT_GT(outcome.json().size(), 1U);
     Json statistics = Json::parse(readText(path("stats.json")));
@@ -56,15 +55,13 @@ TEST_F(RenderSchemas, HoldTheChecksOfMaterials) {
     EXPECT_EQ(report.at("pictures").size(), 4U);
 
     writeText(pack / "retroreflection.glsl", file);
-    const Outcome sound = run({"check-materials", "pack", "--combinations", "4"});
-    EXPECT_EQ(sound.exit, 0) << sound.err;
+    const Outcome sound = must(run({"check-materials", "pack", "--combinations", "4"}));
     expectFitsTerminal(sound.out);
 }
 
 TEST_F(RenderSchemas, HoldPackagesAndStrategiesWithoutOrder) {
     ASSERT_EQ(run({"compile", scene_, "-o", "package", "--strategy", "uber"}).exit, 0);
-    const Outcome outcome = render("a.exr", {"--json", "--package", "package", "--strategy", "uber"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(render("a.exr", {"--json", "--package", "package", "--strategy", "uber"}));
     expectFits("render", outcome.json());
 }
 
@@ -72,8 +69,7 @@ TEST_F(RenderSchemas, HoldEnvironments) {
     const std::vector<std::array<float, 3>> pixels(64 * 32, {0.5F, 2.0F, 0.25F});
     const std::vector<std::uint8_t> bytes = encodeHdr(64, 32, pixels, HdrEncoding::Flat);
     writeText(path("sky.hdr"), std::string(bytes.begin(), bytes.end()));
-    const Outcome outcome = render("a.exr", {"--json", "--environment", "sky.hdr"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(render("a.exr", {"--json", "--environment", "sky.hdr"}));
     expectFits("render", outcome.json());
     EXPECT_TRUE(outcome.json().at("environment").is_object());
 }

@@ -18,12 +18,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-class Schemas : public CommandTest {
+class Schemas : public TinySceneTest {
 protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        writeTinyScene(path(""), {.unknownExtension = true, .variants = true});
-    }
+    Schemas() : TinySceneTest({.unknownExtension = true, .variants = true}) {}
+
     Json json(std::vector<std::string> arguments, int exit = 0) const {
         arguments.emplace_back("--json");
         const Outcome outcome = run(arguments);
@@ -36,7 +34,7 @@ protected:
         EXPECT_GT(result.size(), 1U) << result;
     }
     Json compile(const std::string& package, const std::vector<std::string>& options) const {
-        std::vector<std::string> line{"compile", "scene.gltf", "-o", package, "--cache", "cache"};
+        std::vector<std::string> line{"compile", "scene.gltf", "-o", package};
         line.insert(line.end(), options.begin(), options.end());
         return json(line);
     }

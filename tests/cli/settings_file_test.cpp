@@ -29,8 +29,7 @@ protected:
 
 TEST_F(SettingsFile, GivesOptionsToCompile) {
     write({{"strategy", "uber"}, {"texture-lod", "mip0"}, {"merge", "none"}, {"spp", 16}, {"ssr", "8"}});
-    const Outcome outcome = run({"compile", scene_, "-o", "package", "--settings", "settings.json"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    must(run({"compile", scene_, "-o", "package", "--settings", "settings.json"}));
     const Json manifest = Json::parse(readText(path("package/manifest.json")));
     EXPECT_EQ(manifest.at("strategies"), Json({"uber"}));
     EXPECT_EQ(manifest.at("merge"), "none");
@@ -42,8 +41,7 @@ TEST_F(SettingsFile, YieldsToTheCommandLine) {
     for (const std::vector<std::string>& spp : {std::vector<std::string>{"--spp", "3"}, {"--spp=3"}}) {
         std::vector<std::string> more{"--settings", "settings.json", "--json"};
         more.insert(more.end(), spp.begin(), spp.end());
-        const Outcome outcome = render("a.exr", more);
-        ASSERT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome = must(render("a.exr", more));
         EXPECT_EQ(outcome.json().at("spp"), 3);
         EXPECT_EQ(outcome.json().at("strategy"), "uber");
         EXPECT_EQ(outcome.json().at("merge"), "none");
@@ -54,8 +52,7 @@ TEST_F(SettingsFile, LeavesToAPackageWhatThatHasDecided) {
     ASSERT_EQ(run({"compile", scene_, "-o", "package", "--strategy", "uber"}).exit, 0);
     write({{"strategy", "uber"}, {"texture-lod", "mip0"}, {"batch-effects", "on"}, {"spp", 2}});
     const Outcome outcome =
-        render("a.exr", {"--settings", "settings.json", "--package", "package", "--json"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+        must(render("a.exr", {"--settings", "settings.json", "--package", "package", "--json"}));
     EXPECT_EQ(outcome.json().at("spp"), 2);
 }
 

@@ -41,12 +41,8 @@ Json plantedTable(double deferred, double half) {
               package("inline", 16, {module("ShadeCase", half)})}}};
 }
 
-class StrategyAuto : public CommandTest {
+class StrategyAuto : public TinySceneTest {
 protected:
-    void SetUp() override {
-        CommandTest::SetUp();
-        writeTinyScene(path(""));
-    }
     // Writes the file of a device on which only `strategy` is fast.
     std::string device(const std::string& strategy) const {
         const std::filesystem::path file = path(strategy + ".json");
@@ -55,8 +51,7 @@ protected:
     }
     Json compile(std::vector<std::string> options) const {
         options.insert(options.begin(), {"compile", "scene.gltf", "-o", "package", "--json"});
-        const Outcome outcome = run(options);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome = must(run(options));
         return outcome.json();
     }
     Json manifest() const {
@@ -101,7 +96,7 @@ TEST_F(StrategyAuto, JoinsNamedStrategies) {
 TEST_F(StrategyAuto, AnotherCalibrationIsAnotherPackage) {
     const std::string file = path("device.json").string();
     writeText(file, plantedDevice("uber").dump());
-    const std::vector<std::string> options{"--strategy", "auto", "--calibration", file, "--cache", "cache"};
+    const std::vector<std::string> options{"--strategy", "auto", "--calibration", file};
     compile(options);
     EXPECT_EQ(compile(options).at("upToDate"), true);
     writeText(file, plantedDevice("visibility").dump());
@@ -120,8 +115,7 @@ TEST_F(StrategyAuto, VerboseSaysWhy) {
 
 TEST_F(StrategyAuto, ExplainListsWhatEachStrategyTakes) {
     const std::vector<std::string> line{"explain", "scene.gltf", "--calibration", device("sorted-uber")};
-    const Outcome text = run(line);
-    ASSERT_EQ(text.exit, 0) << text.err;
+    const Outcome text = must(run(line));
     EXPECT_NE(text.out.find("of the calibration of Planted"), std::string::npos) << text.out;
     EXPECT_NE(text.out.find("--strategy sorted-uber: "), std::string::npos) << text.out;
     std::vector<std::string> asJson = line;
@@ -271,11 +265,8 @@ TEST_F(StrategyAuto, RefusesBrokenTablesOfGpus) {
 // A table by itself changes what is compiled, and each setting that it decides is told with its reason.
 TEST_F(StrategyAuto, TablesDecideAboutShadowsAndPrecision) {
     const auto settingsWith = [&](const std::vector<std::string>& options, std::string& told) {
-        std::vector<std::string> line{"compile",   "scene.gltf", "-o",          "package",
-                                      "--shadows", "auto",       "--precision", "auto"};
-        line.insert(line.end(), options.begin(), options.end());
-        const Outcome outcome = run(line);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome = must(runWith(
+            {"compile", "scene.gltf", "-o", "package", "--shadows", "auto", "--precision", "auto"}, options));
         told = outcome.err;
         const Json settings = manifest().at("settings");
         return std::pair(settings.at("shadows").get<std::string>(), settings.at("precision").get<int>());

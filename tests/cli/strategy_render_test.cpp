@@ -3,6 +3,7 @@
 #include "cli/planted_device.h"
 #include "cli/render_command.h"
 #include "cli/schemas.h"
+#include "support/must.h"
 
 #include <glint/internal/package_modules.h>
 #include <glint/measure/device_file.h>
@@ -27,8 +28,7 @@ protected:
     }
     Json rendered(std::vector<std::string> options) const {
         options.insert(options.end(), {"--strategy", "auto", "--json"});
-        const Outcome outcome = render("a.png", options);
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        const Outcome outcome = must(render("a.png", options));
         Json report = outcome.json();
         expectFits("render", report);
         return report;
@@ -143,9 +143,7 @@ TEST_F(StrategyRender, DeviceFilesAreReadAsTheyAreWritten) {
     EXPECT_NE(cli::describe(*again).find("within 5 % at 100.0 %"), std::string::npos)
         << cli::describe(*again);
 
-    const Result<measure::DeviceFile> none = measure::fitDevice(read->device, {}, notes);
-    ASSERT_FALSE(none);
-    EXPECT_EQ(none.error().id, "calibration-points");
+    EXPECT_EQ(mustFail(measure::fitDevice(read->device, {}, notes)).id, "calibration-points");
 }
 
 TEST_F(StrategyRender, ConstantsAreOfTheStrategiesThatThereAre) {

@@ -1,7 +1,10 @@
 // A scene of a few triangles, written as .gltf and .bin.
 #pragma once
 
+#include "cli/command.h"
+
 #include <filesystem>
+#include <string>
 
 namespace glint::testing {
 
@@ -19,6 +22,22 @@ struct TinyScene {
 // Writes scene.gltf and scene.bin into `folder`, and returns the path of the former. The scene has a smooth
 // metal floor ("Floor"), an unlit wall ("Wall") and an unused material ("Spare").
 std::filesystem::path writeTinyScene(const std::filesystem::path& folder, const TinyScene& options = {});
+
+// Tests of commands with the scene in their folder.
+class TinySceneTest : public CommandTest {
+protected:
+    explicit TinySceneTest(const TinyScene& options = {}) : options_(options) {}
+
+    void SetUp() override {
+        CommandTest::SetUp();
+        scene_ = writeTinyScene(path(""), options_).string();
+    }
+
+    std::string scene_;  // its path
+
+private:
+    TinyScene options_;
+};
 
 // Writes a pack with one feature, "mud": the floor becomes as brown as `shade` times the material's
 // extras.mud, and as rough. Gives the floor of the scene so much of it.

@@ -68,8 +68,8 @@ protected:
     }
 
     Outcome compile(const std::string& package, const std::string& trust) const {
-        return run({"compile", "scene.gltf", "-o", package, "--effects", "auto", "--cache", "cache",
-                    "--trust-textures=" + trust, "--depfile", package + ".d", "--json"});
+        return run({"compile", "scene.gltf", "-o", package, "--effects", "auto", "--trust-textures=" + trust,
+                    "--depfile", package + ".d", "--json"});
     }
 
     std::set<std::string> featuresOf(const std::string& package) const {
@@ -117,9 +117,9 @@ TEST_F(TrustTextures, LeavesOutWhatTexturesMakeNeedless) {
 }
 
 TEST_F(TrustTextures, IsTheDefaultUnlessTexturesMayChange) {
-    ASSERT_EQ(run({"compile", "scene.gltf", "-o", "plain", "--cache", "cache"}).exit, 0);
+    ASSERT_EQ(run({"compile", "scene.gltf", "-o", "plain"}).exit, 0);
     EXPECT_FALSE(featuresOf("plain").contains("clearcoat"));
-    ASSERT_EQ(run({"compile", "scene.gltf", "-o", "live", "--cache", "cache", "--fallback"}).exit, 0);
+    ASSERT_EQ(run({"compile", "scene.gltf", "-o", "live", "--fallback"}).exit, 0);
     EXPECT_TRUE(featuresOf("live").contains("clearcoat"));
     EXPECT_TRUE(featuresOf("live").contains("transmissionTexture"));
     const Outcome drawn =
@@ -133,13 +133,12 @@ TEST_F(TrustTextures, IsTheDefaultUnlessTexturesMayChange) {
 // A bench reads the scene as each of its packages was made.
 TEST_F(TrustTextures, ABenchTakesPackagesThatTrustNone) {
     ASSERT_EQ(compile("blind", "off").exit, 0);
-    const Outcome outcome = run({"bench",      "scene.gltf",  "-o",          "out",
-                                 "--quick",    "--size",      "16x9",        "--spp",
-                                 "1",          "--only",      "spp",         "--depth",
-                                 "singles",    "--rounds",    "1",           "--reference-error",
-                                 "1",          "--candidate", "blind=blind", "--strategy",
-                                 "visibility", "--json"});
-    ASSERT_EQ(outcome.exit, 0) << outcome.err;
+    const Outcome outcome = must(run({"bench",      "scene.gltf",  "-o",          "out",
+                                      "--quick",    "--size",      "16x9",        "--spp",
+                                      "1",          "--only",      "spp",         "--depth",
+                                      "singles",    "--rounds",    "1",           "--reference-error",
+                                      "1",          "--candidate", "blind=blind", "--strategy",
+                                      "visibility", "--json"}));
     EXPECT_FALSE(has(outcome.err, "bench-point")) << outcome.err;
     const Json points = outcome.json().at("points");
     EXPECT_TRUE(std::ranges::any_of(points, [](const Json& point) { return point.at("name") == "blind"; }));
@@ -148,8 +147,7 @@ TEST_F(TrustTextures, ABenchTakesPackagesThatTrustNone) {
 TEST_F(TrustTextures, DoesWithoutAnImageThatCantBeRead) {
     writeText(path("uncoated.png"), "no image");
     std::filesystem::remove(path("closed.png"));
-    const Outcome outcome = compile("package", "on");
-    EXPECT_EQ(outcome.exit, 0);
+    const Outcome outcome = must(compile("package", "on"));
     EXPECT_TRUE(has(outcome.err, "texture-unknown")) << outcome.err;
     EXPECT_TRUE(featuresOf("package").contains("clearcoat"));
     EXPECT_TRUE(featuresOf("package").contains("transmission"));
@@ -166,10 +164,8 @@ TEST_F(TrustTextures, FollowsTheImage) {
 
 TEST_F(TrustTextures, ChangesNoPicture) {
     for (const char* const trust : {"off", "on"}) {
-        const Outcome outcome =
-            run({"render", "scene.gltf", "-o", std::string(trust) + ".exr", "--size", "48x16", "--spp", "2",
-                 "--effects", "auto", std::string("--trust-textures=") + trust});
-        ASSERT_EQ(outcome.exit, 0) << outcome.err;
+        must(run({"render", "scene.gltf", "-o", std::string(trust) + ".exr", "--size", "48x16", "--spp", "2",
+                  "--effects", "auto", std::string("--trust-textures=") + trust}));
     }
     const Json compared = run({"compare", "off.exr", "on.exr", "--json"}).json();
     EXPECT_EQ(compared.at("maxAbsolute").at("value"), 0.0) << compared;

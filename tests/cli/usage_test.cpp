@@ -16,8 +16,7 @@ const std::vector<std::string> kUsageCommands{"compile", "compile-module", "expl
                                               "diff",    "render",         "compare", "lint"};
 
 TEST_F(Usage, HelpNamesEveryCommand) {
-    const Outcome help = run({"--help"});
-    EXPECT_EQ(help.exit, 0);
+    const Outcome help = must(run({"--help"}));
     EXPECT_TRUE(help.err.empty()) << help.err;
     for (const std::string& command : kUsageCommands) {
         EXPECT_TRUE(has(help.out, "\n  " + command + " ")) << command;
@@ -59,8 +58,7 @@ TEST_F(Usage, ExamplesOfTheHelpAreValidCommandLines) {
 }
 
 TEST_F(Usage, VersionIsPrinted) {
-    const Outcome version = run({"--version"});
-    EXPECT_EQ(version.exit, 0);
+    const Outcome version = must(run({"--version"}));
     EXPECT_TRUE(version.out.starts_with("glint ")) << version.out;
     for (const char* const part :
          {", commit ", "package format ", "glslang ", "SPIRV-Tools v", "KTX2 textures "}) {
@@ -142,9 +140,7 @@ TEST_F(Usage, MistakesExitWithTwoAndSayWhatToDo) {
 
 TEST_F(Usage, TheLastFormOfABooleanOptionCounts) {
     const auto refused = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> line{"explain", "none.gltf"};
-        line.insert(line.end(), more.begin(), more.end());
-        return run(line).exit;
+        return runWith({"explain", "none.gltf"}, more).exit;
     };
     EXPECT_EQ(refused({"--quiet", "--verbose"}), 2);
     EXPECT_EQ(refused({"-q", "-v"}), 2);

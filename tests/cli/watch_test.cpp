@@ -2,6 +2,7 @@
 #include "cli/command.h"
 #include "cli/many_keys.h"
 #include "cli/tiny_scene.h"
+#include "support/must.h"
 
 #include <glint/internal/package_modules.h>
 #include <glint/package.h>
@@ -265,9 +266,7 @@ TEST_F(Watching, APackageThatCannotBeLoadedIsAnErrorAfterSomeTries) {
         ASSERT_TRUE(polled) << i;
         EXPECT_EQ(*polled, nullptr);
     }
-    const Result<std::shared_ptr<const Package>> polled = packages.poll();
-    ASSERT_FALSE(polled);
-    EXPECT_EQ(polled.error().id, "package-missing");
+    EXPECT_EQ(mustFail(packages.poll()).id, "package-missing");
     EXPECT_TRUE(packages.poll()) << "it is said once";
     writeText(path("package.stamp"), "no stamp");
     EXPECT_TRUE(packages.poll());

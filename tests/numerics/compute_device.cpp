@@ -45,11 +45,8 @@ Status createInstance(const GlobalTable& table, Context::State& state) {
     if (result != VK_SUCCESS) {
         return vulkanError("vkCreateInstance", result);
     }
-    Result<InstanceTable> functions = loadInstanceTable(table.GetInstanceProcAddr, state.handles.instance);
-    if (!functions) {
-        return functions.error();
-    }
-    state.instance = *functions;
+    GLINT_TRY(auto functions, loadInstanceTable(table.GetInstanceProcAddr, state.handles.instance));
+    state.instance = functions;
     state.ownsInstance = true;
     return okStatus();
 }
@@ -163,18 +160,12 @@ void queryLimits(Context::State& state) {
 
 Result<std::unique_ptr<Context::State>> createComputeDevice(const std::string& deviceName) {
     auto state = std::make_unique<Context::State>();
-    Result<std::shared_ptr<VulkanLibrary>> library = VulkanLibrary::open();
-    if (!library) {
-        return library.error();
-    }
-    state->library = *library;
+    GLINT_TRY(auto library, VulkanLibrary::open());
+    state->library = library;
     state->handles.getInstanceProcAddr = state->library->getInstanceProcAddr();
     state->handles.tracers = 0;
-    const Result<GlobalTable> table = loadGlobalTable(state->handles.getInstanceProcAddr);
-    if (!table) {
-        return table.error();
-    }
-    Status status = createInstance(*table, *state);
+    GLINT_TRY(const auto table, loadGlobalTable(state->handles.getInstanceProcAddr));
+    Status status = createInstance(table, *state);
     if (status) {
         status = chooseDevice(deviceName, *state);
     }

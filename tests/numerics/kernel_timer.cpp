@@ -53,11 +53,8 @@ Result<double> KernelTimer::milliseconds(const TimedKernel& kernel) {
 Status KernelTimer::calibrate(TimedKernel& kernel) {
     kernel.repeats = kernel.pipeline ? kLeastRepeats : 1;
     while (kernel.repeats < kMostRepeats) {
-        const Result<double> once = milliseconds(kernel);
-        if (!once) {
-            return once.error();
-        }
-        if (*once >= leastMilliseconds_) {
+        GLINT_TRY(const auto once, milliseconds(kernel));
+        if (once >= leastMilliseconds_) {
             break;
         }
         kernel.repeats *= 2;
@@ -67,9 +64,7 @@ Status KernelTimer::calibrate(TimedKernel& kernel) {
 
 Status KernelTimer::measure(std::span<TimedKernel* const> kernels, int rounds, std::uint64_t seed) {
     for (TimedKernel* kernel : kernels) {
-        if (Status status = calibrate(*kernel); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(calibrate(*kernel));
     }
     std::vector<TimedKernel*> order(kernels.begin(), kernels.end());
     std::mt19937_64 engine(seed);
@@ -77,13 +72,10 @@ Status KernelTimer::measure(std::span<TimedKernel* const> kernels, int rounds, s
         std::ranges::shuffle(order, engine);
         for (TimedKernel* kernel : order) {
             constexpr double kNanosecondsInOne = 1e6;
-            const Result<double> time = milliseconds(*kernel);
-            if (!time) {
-                return time.error();
-            }
+            GLINT_TRY(const auto time, milliseconds(*kernel));
             const double evaluations = static_cast<double>(kernel->pipeline ? threads() : kElements) *
                                        static_cast<double>(kernel->repeats);
-            kernel->nanoseconds.push_back(*time * kNanosecondsInOne / evaluations);
+            kernel->nanoseconds.push_back(time * kNanosecondsInOne / evaluations);
         }
     }
     return okStatus();

@@ -87,28 +87,21 @@ private:
 Status Climber::addRung(std::size_t row, RungKind kind) {
     const Probe& probe = ladder_.rows[row].probe;
     const ProbePrecision precision = precisionOf(kind);
-    Result<ProbePipeline> pipeline =
-        device_.compileTimed(probeOf(probe, kind), probe.inputs, probe.outputs, precision);
-    if (!pipeline) {
-        return pipeline.error();
-    }
+    GLINT_TRY(auto pipeline,
+              device_.compileTimed(probeOf(probe, kind), probe.inputs, probe.outputs, precision));
     // The kernel in half precision has its own loads and sums; the other kinds share them.
     const RungKind baseKind = kind == RungKind::Half ? RungKind::Half : RungKind::Single;
     if (findKernel(row, baseKind, true) == nullptr) {
-        Result<ProbePipeline> without =
-            device_.compileTimed({}, probe.inputs, probe.outputs, precisionOf(baseKind));
-        if (!without) {
-            return without.error();
-        }
-        climbing_.push_back({row, baseKind, true, {row, std::move(*without)}});
+        GLINT_TRY(auto without, device_.compileTimed({}, probe.inputs, probe.outputs, precisionOf(baseKind)));
+        climbing_.push_back({row, baseKind, true, {row, std::move(without)}});
     }
-    const Result<std::uint32_t> all = countInstructions(*pipeline);
+    const Result<std::uint32_t> all = countInstructions(pipeline);
     const Result<std::uint32_t> around = countInstructions(*findKernel(row, baseKind, true)->pipeline);
     if (!all || !around) {
         return all ? around.error() : all.error();
     }
     if (kind == RungKind::Mixed &&
-        pipeline->spirv == findKernel(row, RungKind::Single, false)->pipeline->spirv) {
+        pipeline.spirv == findKernel(row, RungKind::Single, false)->pipeline->spirv) {
         return okStatus();  // nothing of it is in 16 bits
     }
     // The base sums up inputs; the kernel sums up outputs.
@@ -118,7 +111,7 @@ Status Climber::addRung(std::size_t row, RungKind kind) {
     rung.kind = kind;
     rung.instructions = static_cast<std::uint32_t>(std::max(cost, 0));
     ladder_.rows[row].rungs.push_back(rung);
-    climbing_.push_back({row, kind, false, {row, std::move(*pipeline)}});
+    climbing_.push_back({row, kind, false, {row, std::move(pipeline)}});
     return okStatus();
 }
 
@@ -135,9 +128,7 @@ Status Climber::addRow(const Probe& probe) {
         kinds.push_back(RungKind::Half);
     }
     for (const RungKind kind : kinds) {
-        if (Status status = addRung(row, kind); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(addRung(row, kind));
     }
     const std::span<const ProbeFunction<double>> functions = probeFunctions<double>();
     const auto found = std::ranges::find(functions, probe.name, &ProbeFunction<double>::name);
@@ -164,19 +155,16 @@ Status Climber::addErrors(LadderRow& row) {
             fewer.push_back(precisionOf(rung.kind));
         }
     }
-    const Result<ProbeResult> measured = measure(device_, row.probe, {options_.inputs, options_.seed}, fewer);
-    if (!measured) {
-        return measured.error();
-    }
+    GLINT_TRY(const auto measured, measure(device_, row.probe, {options_.inputs, options_.seed}, fewer));
     for (Rung& rung : row.rungs) {
         if (rung.kind == RungKind::Textbook) {
-            rung.errors = errorsOf(*measured->textbook, 0, measured->inputs);
+            rung.errors = errorsOf(*measured.textbook, 0, measured.inputs);
         } else if (rung.kind == RungKind::Single) {
-            rung.errors = errorsOf(measured->device, measured->undecided, measured->inputs);
+            rung.errors = errorsOf(measured.device, measured.undecided, measured.inputs);
         }
-        for (const ProbeResult::Fewer& statistics : measured->fewer) {
+        for (const ProbeResult::Fewer& statistics : measured.fewer) {
             if (statistics.precision == precisionOf(rung.kind)) {
-                rung.errors = errorsOf(statistics.statistics, statistics.undecided, measured->inputs);
+                rung.errors = errorsOf(statistics.statistics, statistics.undecided, measured.inputs);
             }
         }
     }
@@ -231,18 +219,14 @@ Result<Ladder> Climber::climb() {
     ladder_.hasHalf = device_.hasHalf();
     for (const Probe& probe : ladderProbes()) {
         if (options_.function.empty() || probe.function == options_.function) {
-            if (Status status = addRow(probe); !status) {
-                return status.error();
-            }
+            GLINT_TRY_DO(addRow(probe));
         }
     }
     std::vector<TimedKernel*> kernels;
     for (Climbing& climbing : climbing_) {
         kernels.push_back(&climbing.kernel);
     }
-    if (Status status = timer_.measure(kernels, options_.rounds, options_.seed); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(timer_.measure(kernels, options_.rounds, options_.seed));
     for (std::size_t row = 0; row < ladder_.rows.size(); ++row) {
         summarise(row);
     }

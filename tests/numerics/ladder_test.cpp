@@ -3,6 +3,7 @@
 #include "ladder.h"
 
 #include "ladder_report.h"
+#include "support/must.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -87,10 +88,9 @@ TEST_P(LadderOf, HasEveryRungWithinItsBounds) {
     options.rounds = 2;
     options.leastMilliseconds = 0.0;
     options.function = GetParam();
-    const Result<Ladder> ladder = climb(**device, options);
-    ASSERT_TRUE(ladder) << toString(ladder.error());
-    ASSERT_EQ(ladder->rows.size(), 1U);
-    const LadderRow& row = ladder->rows.front();
+    const Ladder ladder = must(climb(**device, options));
+    ASSERT_EQ(ladder.rows.size(), 1U);
+    const LadderRow& row = ladder.rows.front();
     const Rung* const ours = row.find(RungKind::Single);
     const Rung* const twice = row.find(RungKind::Double);
     ASSERT_TRUE(ours != nullptr && twice != nullptr);
@@ -114,12 +114,11 @@ TEST_P(LadderOf, HasEveryRungWithinItsBounds) {
             EXPECT_LT(mixed->errors->median, half->errors->median + 1e-12);
         }
     }
-    const nlohmann::json json = nlohmann::json::parse(toJson(*ladder));
+    const nlohmann::json json = nlohmann::json::parse(toJson(ladder));
     EXPECT_EQ(json.at("functions").at(0).at("rungs").size(), row.rungs.size());
-    const std::string table = toMarkdown(*ladder);
-    const Result<Ladder> again = ladderFromJson(toJson(*ladder));
-    ASSERT_TRUE(again) << toString(again.error());
-    EXPECT_EQ(toMarkdown(*again), table);
+    const std::string table = toMarkdown(ladder);
+    const Ladder again = must(ladderFromJson(toJson(ladder)));
+    EXPECT_EQ(toMarkdown(again), table);
     EXPECT_EQ(static_cast<std::size_t>(std::ranges::count(table, '\n')), 4 + row.rungs.size()) << table;
 }
 

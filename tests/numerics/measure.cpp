@@ -184,33 +184,18 @@ std::vector<float> firstInputs(const Probe& probe, std::uint64_t seed, std::uint
 
 Result<ProbeResult> measure(ProbeDevice& device, const Probe& probe, const MeasureOptions& options,
                             std::span<const ProbePrecision> fewer) {
-    const Result<Calls> ours = findCalls(probe.name);
-    if (!ours) {
-        return ours.error();
-    }
+    GLINT_TRY(const auto ours, findCalls(probe.name));
     const bool hasTextbook = !probe.textbook.empty();
-    const Result<Calls> textbook = hasTextbook ? findCalls(probe.textbook) : Result<Calls>(Calls{});
-    if (!textbook) {
-        return textbook.error();
-    }
-    Result<ProbePipeline> pipeline = device.compile(probe.name, probe.inputs, probe.allOutputs());
-    if (!pipeline) {
-        return pipeline.error();
-    }
-    Result<ProbePipeline> textbookPipeline =
-        hasTextbook ? device.compile(probe.textbook, probe.inputs, probe.allOutputs())
-                    : Result<ProbePipeline>(ProbePipeline{});
-    if (!textbookPipeline) {
-        return textbookPipeline.error();
-    }
+    GLINT_TRY(const auto textbook, hasTextbook ? findCalls(probe.textbook) : Result<Calls>(Calls{}));
+    GLINT_TRY(auto pipeline, device.compile(probe.name, probe.inputs, probe.allOutputs()));
+    GLINT_TRY(auto textbookPipeline, hasTextbook
+                                         ? device.compile(probe.textbook, probe.inputs, probe.allOutputs())
+                                         : Result<ProbePipeline>(ProbePipeline{}));
 
     std::vector<ProbePipeline> fewerPipelines;
     for (const ProbePrecision precision : fewer) {
-        Result<ProbePipeline> made = device.compile(probe.name, probe.inputs, probe.allOutputs(), precision);
-        if (!made) {
-            return made.error();
-        }
-        fewerPipelines.push_back(std::move(*made));
+        GLINT_TRY(auto made, device.compile(probe.name, probe.inputs, probe.allOutputs(), precision));
+        fewerPipelines.push_back(std::move(made));
     }
 
     ProbeResult result;
@@ -229,23 +214,17 @@ Result<ProbeResult> measure(ProbeDevice& device, const Probe& probe, const Measu
             static_cast<std::uint32_t>(std::min<std::uint64_t>(ProbeDevice::kBatch, result.inputs - done));
         fillInputs(probe, options.seed, done / ProbeDevice::kBatch, count, batch.inputs);
         batch.device.resize(std::size_t{count} * probe.allOutputs());
-        if (Status status = device.run(*pipeline, batch.inputs, batch.device); !status) {
-            return status.error();
-        }
+        GLINT_TRY_DO(device.run(pipeline, batch.inputs, batch.device));
         if (hasTextbook) {
             batch.textbook.resize(batch.device.size());
-            if (Status status = device.run(*textbookPipeline, batch.inputs, batch.textbook); !status) {
-                return status.error();
-            }
+            GLINT_TRY_DO(device.run(textbookPipeline, batch.inputs, batch.textbook));
         }
         for (std::size_t k = 0; k < fewer.size(); ++k) {
             batch.fewer[k].resize(batch.device.size());
-            if (Status status = device.run(fewerPipelines[k], batch.inputs, batch.fewer[k]); !status) {
-                return status.error();
-            }
+            GLINT_TRY_DO(device.run(fewerPipelines[k], batch.inputs, batch.fewer[k]));
         }
-        const auto chunks = forChunks(
-            count, [&](Chunk chunk) { return compareChunk(probe, *ours, *textbook, batch, chunk); });
+        const auto chunks =
+            forChunks(count, [&](Chunk chunk) { return compareChunk(probe, ours, textbook, batch, chunk); });
         for (const ChunkResult& chunk : chunks) {
             result.device.merge(chunk.device);
             result.single.merge(chunk.single);

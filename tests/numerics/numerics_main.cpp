@@ -32,21 +32,14 @@ struct Settings {
 
 Result<numerics::Report> measureAll(const Settings& settings) {
     const numerics::MeasureOptions& options = settings.measure;
-    Result<std::unique_ptr<numerics::ProbeDevice>> device =
-        numerics::ProbeDevice::create({settings.device, true});
-    if (!device) {
-        return device.error();
-    }
-    numerics::Report report{(*device)->description(), options, {}};
+    GLINT_TRY(auto device, numerics::ProbeDevice::create({settings.device, true}));
+    numerics::Report report{device->description(), options, {}};
     for (const numerics::Probe& probe : numerics::allProbes()) {
         if (!settings.function.empty() && probe.function != settings.function) {
             continue;
         }
-        Result<numerics::ProbeResult> result = numerics::measure(**device, probe, options);
-        if (!result) {
-            return result.error();
-        }
-        report.rows.push_back({probe, std::move(*result)});
+        GLINT_TRY(auto result, numerics::measure(*device, probe, options));
+        report.rows.push_back({probe, std::move(result)});
         const numerics::ReportRow& row = report.rows.back();
         std::printf("%-36s worst %9.2e  median %9.2e  C++ %9.2e%s\n", std::string(probe.function).c_str(),
                     row.result.device.worst(), row.result.device.median(), row.result.single.worst(),
@@ -60,7 +53,7 @@ Result<numerics::Report> measureAll(const Settings& settings) {
         }
         std::fflush(stdout);
     }
-    const std::vector<std::string> messages = (*device)->messages();
+    const std::vector<std::string> messages = device->messages();
     return messages.empty() ? Result<numerics::Report>(std::move(report))
                             : makeError("validation", "", messages.front(), "");
 }
@@ -68,19 +61,14 @@ Result<numerics::Report> measureAll(const Settings& settings) {
 // Writes the report into the files that were asked for.
 Status writeReport(const Settings& settings, const std::string& json, const std::string& markdown) {
     if (!settings.json.empty()) {
-        if (Status status = base::writeFile(settings.json, json); !status) {
-            return status;
-        }
+        GLINT_TRY_DO(base::writeFile(settings.json, json));
     }
     if (settings.document.empty()) {
         return okStatus();
     }
-    const Result<base::Bytes> bytes = base::readFile(settings.document);
-    if (!bytes) {
-        return bytes.error();
-    }
+    GLINT_TRY(const auto bytes, base::readFile(settings.document));
     const Result<std::string> document =
-        numerics::replaceRegion({bytes->begin(), bytes->end()}, settings.marker, markdown);
+        numerics::replaceRegion({bytes.begin(), bytes.end()}, settings.marker, markdown);
     return document ? base::writeFile(settings.document, *document) : Status(document.error());
 }
 
@@ -95,11 +83,7 @@ Result<numerics::Ladder> measureLadder(const Settings& settings) {
         return bytes ? numerics::ladderFromJson({bytes->begin(), bytes->end()})
                      : Result<numerics::Ladder>(bytes.error());
     }
-    const Result<std::unique_ptr<numerics::ProbeDevice>> device =
-        numerics::ProbeDevice::create({settings.device, false});
-    if (!device) {
-        return device.error();
-    }
+    GLINT_TRY(const auto device, numerics::ProbeDevice::create({settings.device, false}));
     numerics::LadderOptions options;
     options.inputs = settings.measure.inputs;
     options.seed = settings.measure.seed;
@@ -111,7 +95,7 @@ Result<numerics::Ladder> measureLadder(const Settings& settings) {
         return makeError("ladder-function", "", options.function + " is not in the ladder",
                          "leave out --function to see which are");
     }
-    return numerics::climb(**device, options);
+    return numerics::climb(*device, options);
 }
 
 int runLadder(const Settings& settings) {

@@ -3,6 +3,7 @@
 #include "evaluate.h"
 #include "measure.h"
 #include "report.h"
+#include "support/must.h"
 
 #include <gtest/gtest.h>
 
@@ -27,18 +28,16 @@ TEST_P(Precision, IsWithinItsBounds) {
     if (!device) {
         GTEST_SKIP() << "no device to test on: " << toString(device.error());
     }
-    const Result<ProbeResult> result = measure(**device, probe, optionsFromEnvironment());
-    ASSERT_TRUE(result.ok()) << toString(result.error());
+    const ProbeResult result = must(measure(**device, probe, optionsFromEnvironment()));
 
-    EXPECT_EQ(result->device.notFinite(), 0U) << "device: " << describe(*result, result->device);
-    EXPECT_EQ(result->single.notFinite(), 0U) << "C++: " << describe(*result, result->single);
-    EXPECT_LE(result->device.worst(), probe.bounds.worst) << "device: " << describe(*result, result->device);
-    EXPECT_LE(result->single.worst(), probe.bounds.worst) << "C++: " << describe(*result, result->single);
-    EXPECT_LE(result->device.median(), probe.bounds.median)
-        << "device: " << describe(*result, result->device);
+    EXPECT_EQ(result.device.notFinite(), 0U) << "device: " << describe(result, result.device);
+    EXPECT_EQ(result.single.notFinite(), 0U) << "C++: " << describe(result, result.single);
+    EXPECT_LE(result.device.worst(), probe.bounds.worst) << "device: " << describe(result, result.device);
+    EXPECT_LE(result.single.worst(), probe.bounds.worst) << "C++: " << describe(result, result.single);
+    EXPECT_LE(result.device.median(), probe.bounds.median) << "device: " << describe(result, result.device);
     if (probe.decides()) {
-        EXPECT_LE(static_cast<double>(result->undecided),
-                  probe.undecidedShare * static_cast<double>(result->inputs));
+        EXPECT_LE(static_cast<double>(result.undecided),
+                  probe.undecidedShare * static_cast<double>(result.inputs));
     }
     for (const std::string& message : (*device)->messages()) {
         ADD_FAILURE() << message;

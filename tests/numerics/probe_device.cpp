@@ -31,21 +31,13 @@ Result<std::unique_ptr<ProbeDevice>> ProbeDevice::create(const ProbeDeviceOption
         HeadlessOptions headless;
         headless.validation = Validation::Synchronization;
         headless.deviceName = options.name;
-        Result<std::unique_ptr<Context>> context = Context::createHeadless(headless);
-        if (!context) {
-            return context.error();
-        }
-        device->context_ = std::move(*context);
+        GLINT_TRY(auto context, Context::createHeadless(headless));
+        device->context_ = std::move(context);
     } else {
-        Result<std::unique_ptr<Context::State>> bare = createComputeDevice(options.name);
-        if (!bare) {
-            return bare.error();
-        }
-        device->bare_ = std::move(*bare);
+        GLINT_TRY(auto bare, createComputeDevice(options.name));
+        device->bare_ = std::move(bare);
     }
-    if (Status status = device->initialise(); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(device->initialise());
     return device;
 }
 
@@ -61,11 +53,8 @@ Status ProbeDevice::initialise() {
                                           VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
                                           VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     const auto create = [&](Buffer& buffer, VkDeviceSize floats, MemoryUse use) -> Status {
-        Result<Buffer> made = createBuffer(state(), *pool_, sizeof(float) * floats, kUsage, use);
-        if (!made) {
-            return made.error();
-        }
-        buffer = std::move(*made);
+        GLINT_TRY(auto made, createBuffer(state(), *pool_, sizeof(float) * floats, kUsage, use));
+        buffer = std::move(made);
         return okStatus();
     };
     Status status = create(inputs_, VkDeviceSize{kMaxInputs} * kBatch, MemoryUse::Upload);
@@ -81,33 +70,15 @@ Status ProbeDevice::initialise() {
     if (!status) {
         return status;
     }
-    Result<CommandRunner> runner = CommandRunner::create(state());
-    if (!runner) {
-        return runner.error();
-    }
-    runner_ = std::make_unique<CommandRunner>(std::move(*runner));
-    Result<Timer> timer = Timer::create(state(), 1);
-    if (!timer) {
-        return timer.error();
-    }
-    timer_ = std::move(*timer);
+    GLINT_TRY(auto runner, CommandRunner::create(state()));
+    runner_ = std::make_unique<CommandRunner>(std::move(runner));
+    GLINT_TRY(auto timer, Timer::create(state(), 1));
+    timer_ = std::move(timer);
     return createLayout();
 }
 
 Status ProbeDevice::createLayout() {
-    VkPushConstantRange range{};
-    range.stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
-    range.size = sizeof(Pushed);
-    VkPipelineLayoutCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-    info.pushConstantRangeCount = 1;
-    info.pPushConstantRanges = &range;
-    VkPipelineLayout layout = VK_NULL_HANDLE;
-    const VkResult result = state().vk.CreatePipelineLayout(state().handles.device, &info, nullptr, &layout);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreatePipelineLayout", result);
-    }
-    layout_ = UniquePipelineLayout(state(), layout);
+    GLINT_TRY(layout_, createPipelineLayout(state(), {}, {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(Pushed)}));
     return okStatus();
 }
 
@@ -115,16 +86,10 @@ Result<ProbePipeline> ProbeDevice::make(std::string_view probe, const std::strin
                                         int outputs, ProbePrecision precision) {
     compiler::ShaderCompileOptions options;
     options.halvesAll = precision == ProbePrecision::Half;
-    Result<std::vector<std::uint32_t>> words =
-        compiler::compileShader({std::string(probe), compiler::ShaderStage::Compute, glsl, {}}, options);
-    if (!words) {
-        return words.error();
-    }
-    Result<UniquePipeline> pipeline = createComputePipeline(state(), *words, layout_.get());
-    if (!pipeline) {
-        return pipeline.error();
-    }
-    return ProbePipeline{std::move(*pipeline), inputs, outputs, std::move(*words)};
+    GLINT_TRY(auto words, compiler::compileShader(
+                              {std::string(probe), compiler::ShaderStage::Compute, glsl, {}}, options));
+    GLINT_TRY(auto pipeline, createComputePipeline(state(), words, layout_.get()));
+    return ProbePipeline{std::move(pipeline), inputs, outputs, std::move(words)};
 }
 
 Result<ProbePipeline> ProbeDevice::compile(std::string_view probe, int inputs, int outputs,
@@ -151,17 +116,12 @@ Status ProbeDevice::run(const ProbePipeline& pipeline, std::span<const float> in
     setInputs(inputs);
     const auto count =
         static_cast<std::uint32_t>(outputs.size()) / static_cast<std::uint32_t>(pipeline.outputs);
-    Result<VkCommandBuffer> commands = runner_->begin();
-    if (!commands) {
-        return commands.error();
-    }
-    dispatch(*commands, pipeline, inputs_, count, count, 1);
-    recordDependency(state(), *commands,
+    GLINT_TRY(auto commands, runner_->begin());
+    dispatch(commands, pipeline, inputs_, count, count, 1);
+    recordDependency(state(), commands,
                      {VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
-    if (Status status = runner_->submitAndWait(); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(runner_->submitAndWait());
     std::memcpy(outputs.data(), outputs_.mapped, outputs.size_bytes());
     return okStatus();
 }
@@ -172,24 +132,19 @@ void ProbeDevice::setInputs(std::span<const float> inputs) {
 
 Result<double> ProbeDevice::time(const ProbePipeline& pipeline, std::uint32_t count, std::uint32_t threads,
                                  std::uint32_t repeats) {
-    Result<VkCommandBuffer> commands = runner_->begin();
-    if (!commands) {
-        return commands.error();
-    }
+    GLINT_TRY(auto commands, runner_->begin());
     const DeviceTable& vk = state().vk;
     const VkBufferCopy copy{0, 0, sizeof(float) * count * static_cast<VkDeviceSize>(pipeline.inputs)};
-    vk.CmdCopyBuffer(*commands, inputs_.handle.get(), timedInputs_.handle.get(), 1, &copy);
-    vk.CmdFillBuffer(*commands, ones_.handle.get(), 0, VK_WHOLE_SIZE, std::bit_cast<std::uint32_t>(1.0F));
-    recordDependency(state(), *commands,
+    vk.CmdCopyBuffer(commands, inputs_.handle.get(), timedInputs_.handle.get(), 1, &copy);
+    vk.CmdFillBuffer(commands, ones_.handle.get(), 0, VK_WHOLE_SIZE, std::bit_cast<std::uint32_t>(1.0F));
+    recordDependency(state(), commands,
                      {VK_PIPELINE_STAGE_2_ALL_TRANSFER_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                       VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_READ_BIT});
-    timer_->recordReset(*commands);
-    timer_->recordBegin(*commands, 0);
-    dispatch(*commands, pipeline, timedInputs_, threads, count, repeats);
-    timer_->recordEnd(*commands, 0);
-    if (Status status = runner_->submitAndWait(); !status) {
-        return status.error();
-    }
+    timer_->recordReset(commands);
+    timer_->recordBegin(commands, 0);
+    dispatch(commands, pipeline, timedInputs_, threads, count, repeats);
+    timer_->recordEnd(commands, 0);
+    GLINT_TRY_DO(runner_->submitAndWait());
     const Result<std::vector<double>> times = timer_->read(1);
     return times ? Result<double>(times->front()) : times.error();
 }

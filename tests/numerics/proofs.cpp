@@ -82,14 +82,11 @@ const std::vector<Unclaimed>& unclaimedFunctions() {
 Result<std::vector<verify::Program>> compileProofs(const std::vector<Proof>& proofs) {
     compiler::ShaderCompileOptions options;
     options.debugInfo = true;  // names, by which functions are found
-    const Result<std::vector<std::uint32_t>> words = compiler::compileShader(sourceOf(proofs), options);
-    if (!words) {
-        return words.error();
-    }
+    GLINT_TRY(const auto words, compiler::compileShader(sourceOf(proofs), options));
     std::vector<verify::Program> programs;
     for (const Proof& proof : proofs) {
         Result<verify::Program> program =
-            verify::executeSymbolically(*words, fmt::format("prove{}", proof.name));
+            verify::executeSymbolically(words, fmt::format("prove{}", proof.name));
         if (!program) {
             Diagnostic error = program.error();
             error.where = std::string(proof.function);
@@ -114,11 +111,8 @@ Result<verify::Program> compileClaim(std::string_view statements) {
     source.functionsApart = {"claim"};
     compiler::ShaderCompileOptions options;
     options.debugInfo = true;
-    const Result<std::vector<std::uint32_t>> words = compiler::compileShader(source, options);
-    if (!words) {
-        return words.error();
-    }
-    return verify::executeSymbolically(*words, "claim");
+    GLINT_TRY(const auto words, compiler::compileShader(source, options));
+    return verify::executeSymbolically(words, "claim");
 }
 
 bool isProvedQuickly(const Proof& proof) {

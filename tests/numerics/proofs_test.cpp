@@ -3,6 +3,7 @@
 #include "proofs.h"
 
 #include "proof_functions.h"
+#include "support/must.h"
 #include "verify/concrete.h"
 #include "verify/evaluate.h"
 #include "verify/interval.h"
@@ -23,11 +24,7 @@ namespace {
 using verify::Interval;
 
 const std::vector<verify::Program>& programs() {
-    static const std::vector<verify::Program> kPrograms = [] {
-        Result<std::vector<verify::Program>> made = compileProofs(allProofs());
-        EXPECT_TRUE(made) << (made ? "" : toString(made.error()));
-        return made ? std::move(*made) : std::vector<verify::Program>{};
-    }();
+    static const std::vector<verify::Program> kPrograms = [] { return must(compileProofs(allProofs())); }();
     return kPrograms;
 }
 
@@ -342,10 +339,9 @@ TEST(Proofs, AMissingCheckOfADomainIsFound) {
         {"for (int k = 0; k < 4; ++k) { o[0] += i[0]; }", {"x", 0.0, 1.0}, ProofState::Proved, ""},
     };
     for (const Planted& planted : cases) {
-        const Result<verify::Program> program = compileClaim(planted.code);
-        ASSERT_TRUE(program) << toString(program.error());
+        const verify::Program program = must(compileClaim(planted.code));
         const verify::Claim claim{{planted.input}, {{"result", -kLargest, kLargest}}};
-        const verify::ProofResult result = verify::prove(*program, claim, {});
+        const verify::ProofResult result = verify::prove(program, claim, {});
         EXPECT_EQ(result.state, planted.state)
             << planted.code << ": " << result.undecidedWhy
             << (result.counterexample ? result.counterexample->what : std::string());
@@ -358,9 +354,8 @@ TEST(Proofs, AMissingCheckOfADomainIsFound) {
 
 // What depends on a resource is no proof.
 TEST(Proofs, WhatCannotBeFollowedIsSaid) {
-    const Result<verify::Program> program = compileClaim("while (o[0] < i[0]) { o[0] = o[0] * 1.5 + 1.0; }");
-    ASSERT_FALSE(program);
-    EXPECT_EQ(program.error().id, "prove-unsupported");
+    EXPECT_EQ(mustFail(compileClaim("while (o[0] < i[0]) { o[0] = o[0] * 1.5 + 1.0; }")).id,
+              "prove-unsupported");
 }
 
 }  // namespace

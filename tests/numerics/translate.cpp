@@ -111,9 +111,7 @@ public:
 
     Result<std::string> run() {
         for (std::size_t i = 0; i < tokens_.size(); ++i) {
-            if (Status status = translate(i); !status) {
-                return status.error();
-            }
+            GLINT_TRY_DO(translate(i));
         }
         std::string text;
         for (const Token& token : tokens_) {

@@ -35,9 +35,6 @@ LinearImage renderEffect(const gltf::Scene& scene, const EffectOptions& options,
             light.size = static_cast<float>(sun ? 0.5 * options.lights.sunDiameter : options.lights.radius);
         }
     });
-    if (!loaded.ok()) {
-        return {};
-    }
     if (options.occlusion.radius > 0.0) {
         setup.frame.occlusionRadius = static_cast<float>(options.occlusion.radius);
     }

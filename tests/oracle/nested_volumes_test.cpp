@@ -84,14 +84,12 @@ TEST(NestedVolumes, RefractedRaysAndPathsHaveTheClosedForm) {
     settings.plan.merge = compiler::MergePolicy::None;
     const gltf::Scene scene = slabs();
     const LoadedScene loaded(scene, settings);
-    ASSERT_TRUE(loaded.ok());
     RenderSetup setup = setupOf(scene, kSize, kSize, 64, {});
     setup.frame.maxInterfaces = 64;
     RendererOptions options;
     options.strategy = package::kStrategyVisibility;
     options.bounces = kBounces;
     const LinearImage image = loaded.render(options, setup);
-    ASSERT_FALSE(image.pixels.empty());
     const Vec3 truth = lightThroughSlabs();
     for (const bool mirrored : {true, false}) {
         Vec3 mean(0.0);

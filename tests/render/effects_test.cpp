@@ -44,8 +44,8 @@ gltf::Scene roomBehindGlass() {
     pane["attenuationDistance"] = 0.5F;
     pane["attenuationColor"] = {0.9F, 0.5F, 0.4F};
     const int thick = addMaterial(scene, pane);
-    addInstance(scene, addMesh(scene, makeQuad(thick, {0.1F, -0.4F, -1.2F}, {1, 0, 0}, {0, 1, 0})));
-    addInstance(scene, addMesh(scene, makeQuad(thick, {1.1F, -0.4F, -1.4F}, {-1, 0, 0}, {0, 1, 0})));
+    addQuad(scene, thick, {0.1F, -0.4F, -1.2F}, {1, 0, 0}, {0, 1, 0});
+    addQuad(scene, thick, {1.1F, -0.4F, -1.4F}, {-1, 0, 0}, {0, 1, 0});
     return scene;
 }
 
@@ -62,7 +62,6 @@ TEST(AllEffects, EveryWayMakesTheSamePicture) {
             const std::string what = nameOf(way) + (batch ? ", batched" : ", one by one");
             FrameCounters counters;
             const LinearImage image = loaded.render(options, setup, &counters);
-            ASSERT_FALSE(image.pixels.empty()) << what;
             if (!reference) {
                 reference = image;
                 first = counters;
@@ -97,7 +96,6 @@ TEST(AllEffects, BandsAndFramesWithoutAMeanChangeNothing) {
     settings.strategies = package::kStrategyUber | package::kStrategyVisibility;
     settings.plan.merge = compiler::MergePolicy::All;
     const LoadedScene loaded(scene, settings);
-    ASSERT_TRUE(loaded.ok());
     RenderSetup setup = smallSetup(scene);
     setup.samples = 1;
     for (const package::Strategy strategy : {package::kStrategyUber, package::kStrategyVisibility}) {
@@ -127,7 +125,6 @@ TEST(AllEffects, AskForTheResourcesThatTheirFramesNeed) {
     settings.strategies = package::kStrategyUber;
     settings.plan.merge = compiler::MergePolicy::All;
     const LoadedScene loaded(scene, settings);
-    ASSERT_TRUE(loaded.ok());
     const RenderSetup setup = smallSetup(scene);
     RendererOptions options;
     options.strategy = package::kStrategyUber;
@@ -136,7 +133,6 @@ TEST(AllEffects, AskForTheResourcesThatTheirFramesNeed) {
     options.accumulate = false;
     options.bands = 2;
     const auto renderer = loaded.makeRenderer(options);
-    ASSERT_NE(renderer, nullptr);
     const auto idOf = [](const auto& result) { return result ? std::string() : result.error().id; };
     EXPECT_EQ(idOf(renderer->render(setup.frame, 2)), "frame-options");
     EXPECT_TRUE(renderer->render(setup.frame, 1));
@@ -162,7 +158,6 @@ TEST(AllEffects, OfCompactVerticesAreNearlyTheSame) {
     const LoadedScene full = load(VertexForm::Full);
     const LoadedScene compact = load(VertexForm::Compact);
     const LoadedScene quantized = load(VertexForm::Quantized);
-    ASSERT_TRUE(full.ok() && compact.ok() && quantized.ok());
     const auto bytesOf = [](const LoadedScene& loaded) {
         std::uint64_t bytes = 0;
         for (const MemoryItem& item : loaded.gpuScene().memory()) {
@@ -200,7 +195,6 @@ TEST(AllEffects, AnswerDeferredShadowsAndPackedRecords) {
     settings.shadows = package::ShadowPlacement::Deferred;
     settings.hitRecord = package::HitRecordFormat::Packed;
     const LoadedScene packed(scene, settings);
-    ASSERT_TRUE(plain.ok() && packed.ok());
     const LinearImage a = plain.render(package::kStrategyVisibility, setup);
     const LinearImage b = packed.render(package::kStrategyVisibility, setup);
     ASSERT_EQ(a.pixels.size(), b.pixels.size());
@@ -225,7 +219,6 @@ TEST(AllEffects, OffIsAsIfTheyWereNotThere) {
     const LoadedScene all(scene, settings);
     settings.effects.named = package::kEffectShadow;
     const LoadedScene bare(scene, settings);
-    ASSERT_TRUE(all.ok() && bare.ok());
     RenderSetup off = setup;
     off.frame.effects = 0;
     FrameCounters counters;
@@ -236,12 +229,10 @@ TEST(AllEffects, OffIsAsIfTheyWereNotThere) {
 
 // Under a uniform sky, indirect light and occlusion change nothing.
 TEST(IndirectDiffuse, OfAnEmptySkyIsTheSkysLight) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material white;
     white["metallicFactor"] = 0.0F;
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, white), {-2, -2, -1}, {4, 0, 0}, {0, 4, 0})));
+    addQuad(scene, white, {-2, -2, -1}, {4, 0, 0}, {0, 4, 0});
     RenderSetup setup = squareSetup(scene);
     setup.samples = 4;
     compiler::CompileSettings settings;
@@ -250,7 +241,6 @@ TEST(IndirectDiffuse, OfAnEmptySkyIsTheSkysLight) {
     const LoadedScene sky(scene, settings);
     settings.effects.named = package::kEffectIndirectDiffuse | package::kEffectAmbientOcclusion;
     const LoadedScene traced(scene, settings);
-    ASSERT_TRUE(sky.ok() && traced.ok());
     // Every ray of a flat wall leaves the scene, and the sky is white everywhere.
     FrameCounters counters;
     const LinearImage image = traced.render(package::kStrategyUber, setup, &counters);
@@ -276,7 +266,7 @@ materials::Material clearGlass(float ior) {
 // outside.
 void addBlock(gltf::Scene& scene, int material, float near, float far, float half) {
     const auto face = [&](gltf::Float3 corner, gltf::Float3 right, gltf::Float3 up) {
-        addInstance(scene, addMesh(scene, makeQuad(material, corner, right, up)));
+        addQuad(scene, material, corner, right, up);
     };
     const float size = 2.0F * half;
     const float depth = far - near;
@@ -290,8 +280,7 @@ void addBlock(gltf::Scene& scene, int material, float near, float far, float hal
 
 // Returns a wall of coloured squares that shows where a ray goes.
 gltf::Scene squaresBehind() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     std::vector<std::uint8_t> texels;
     for (int i = 0; i < 16 * 16; ++i) {
         const auto across = static_cast<std::uint8_t>(i % 16 * 16);
@@ -301,8 +290,7 @@ gltf::Scene squaresBehind() {
     }
     materials::Material squares = unlitMaterial({1, 1, 1});
     squares.texture("baseColorTexture").texture = addTexture(scene, 16, 16, std::move(texels));
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, squares), {-8, -8, -6}, {16, 0, 0}, {0, 16, 0})));
+    addQuad(scene, squares, {-8, -8, -6}, {16, 0, 0}, {0, 16, 0});
     return scene;
 }
 
@@ -312,7 +300,7 @@ LinearImage refracted(const gltf::Scene& scene) {
     settings.effects.named = package::kEffectRefraction;
     const LoadedScene loaded(scene, settings);
     RenderSetup setup = defaultSetup(scene, 64, 64);
-    return loaded.ok() ? loaded.render(package::kStrategyUber, setup) : LinearImage{};
+    return loaded.render(package::kStrategyUber, setup);
 }
 
 // Returns the share of pixels that differ by more than the edge of a square may.
@@ -354,18 +342,15 @@ TEST(NestedDielectrics, AreBoundedByTheMediumAround) {
 
 // A sample whose weight is below the bound sends no ray, and is counted.
 TEST(Gates, FaintSamplesAreSkipped) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material glossy;
     glossy["metallicFactor"] = 0.0F;
     glossy["roughnessFactor"] = 0.0F;
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, glossy), {-2, -2, -1}, {4, 0, 0}, {0, 4, 0})));
+    addQuad(scene, glossy, {-2, -2, -1}, {4, 0, 0}, {0, 4, 0});
     RenderSetup setup = squareSetup(scene);
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     const LoadedScene loaded(scene, settings);
-    ASSERT_TRUE(loaded.ok());
     FrameCounters counters;
     loaded.render(package::kStrategyUber, setup, &counters);
     EXPECT_EQ(counters.of(package::kEffectReflection).rays, 32U * 32U);
@@ -378,12 +363,10 @@ TEST(Gates, FaintSamplesAreSkipped) {
 
 // A spot light misses half of the wall, and the range of a point light ends in front of it.
 TEST(Gates, LightsAreKeptByConeRangeAndFacing) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material wall;
     wall["metallicFactor"] = 0.0F;
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, wall), {-2, -2, -1}, {4, 0, 0}, {0, 4, 0})));
+    addQuad(scene, wall, {-2, -2, -1}, {4, 0, 0}, {0, 4, 0});
     gltf::Light light;
     light.type = gltf::LightType::Point;
     light.range = 0.5F;
@@ -400,7 +383,6 @@ TEST(Gates, LightsAreKeptByConeRangeAndFacing) {
     settings.strategies = package::kStrategyUber;
     settings.effects.named = package::kEffectShadow;
     const LoadedScene loaded(scene, settings);
-    ASSERT_TRUE(loaded.ok());
     FrameCounters counters;
     loaded.render(package::kStrategyUber, setup, &counters);
     const EffectCounters shadow = counters.of(package::kEffectShadow);

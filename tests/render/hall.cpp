@@ -1,6 +1,7 @@
 #include "render/hall.h"
 
 #include "render/pixel_test.h"
+#include "render/scene_builder.h"
 
 #include <utility>
 #include <vector>
@@ -8,16 +9,8 @@
 namespace glint::testing {
 namespace {
 
-materials::Material glossyMaterial(gltf::Float3 color, float roughness) {
-    materials::Material material;
-    material["baseColorFactor"] = {color[0], color[1], color[2], 1.0F};
-    material["metallicFactor"] = 0.0F;
-    material["roughnessFactor"] = roughness;
-    return material;
-}
-
 materials::Material coatedMaterial(gltf::Float3 color) {
-    materials::Material material = glossyMaterial(color, 0.6F);
+    materials::Material material = paint(color, 0.6F);
     material.give("KHR_materials_clearcoat");
     material["clearcoatFactor"] = 1.0F;
     material["clearcoatRoughnessFactor"] = 0.1F;
@@ -26,7 +19,7 @@ materials::Material coatedMaterial(gltf::Float3 color) {
 
 // Returns a chequerboard of holes.
 materials::Material fenceMaterial(gltf::Scene& scene) {
-    materials::Material material = glossyMaterial({0.9F, 0.8F, 0.3F}, 0.4F);
+    materials::Material material = paint({0.9F, 0.8F, 0.3F}, 0.4F);
     material.alphaMode = materials::AlphaMode::Mask;
     material.doubleSided = true;
     std::vector<std::uint8_t> texels;
@@ -41,14 +34,12 @@ materials::Material fenceMaterial(gltf::Scene& scene) {
 }  // namespace
 
 gltf::Scene hallScene() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const int fence = addMaterial(scene, fenceMaterial(scene));
     const int coated = addMaterial(scene, coatedMaterial(kRed));
-    const int glossy = addMaterial(scene, glossyMaterial(kGreen, 0.3F));
+    const int glossy = addMaterial(scene, paint(kGreen, 0.3F));
     const int unlit = addMaterial(scene, unlitMaterial(kBlue));
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-4, -1, 0}, {8, 0, 0},
-                                               {0, 0, -8})));
+    addQuad(scene, mirrorMaterial(), {-4, -1, 0}, {8, 0, 0}, {0, 0, -8});
     gltf::Mesh wall;
     wall.primitives = {makeQuad(coated, {-4, -0.9F, -5}, {3, 0, 0}, {0, 4, 0}),
                        makeQuad(glossy, {-1, -0.9F, -5}, {2, 0, 0}, {0, 4, 0}),

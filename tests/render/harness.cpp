@@ -1,6 +1,7 @@
 #include "render/harness.h"
 
 #include "image/compare.h"
+#include "support/must.h"
 #include "support/shared_modules.h"
 
 #include <glint/session/camera.h>
@@ -13,6 +14,27 @@
 
 namespace glint::testing {
 
+namespace {
+
+// Fails each case during which the validation layers of the shared device said something.
+class ValidationListener : public ::testing::EmptyTestEventListener {
+public:
+    explicit ValidationListener(const Context& context) : context_(context) {}
+
+private:
+    void OnTestEnd(const ::testing::TestInfo&) override {
+        const std::vector<std::string> messages = context_.validationMessages();
+        for (; reported_ < messages.size(); ++reported_) {
+            ADD_FAILURE() << messages[reported_];
+        }
+    }
+
+    const Context& context_;
+    std::size_t reported_ = 0;
+};
+
+}  // namespace
+
 Context& sharedContext() {
     static const std::unique_ptr<Context> context = [] {
         HeadlessOptions options;
@@ -20,39 +42,15 @@ Context& sharedContext() {
         const bool unvalidated = std::getenv("GLINT_TESTS_UNVALIDATED") != nullptr;
         options.validation = unvalidated ? Validation::Off : Validation::Synchronization;
         options.shaderFloat16 = true;
-        Result<std::unique_ptr<Context>> made = Context::createHeadless(options);
-        if (!made) {
-            ADD_FAILURE() << toString(made.error());
-            std::abort();
-        }
-        return std::move(*made);
+        auto made = must(Context::createHeadless(options));
+        ::testing::UnitTest::GetInstance()->listeners().Append(new ValidationListener(*made));
+        return made;
     }();
     return *context;
 }
 
-void expectNoValidationMessages() {
-    static std::size_t reported = 0;
-    const std::vector<std::string> messages = sharedContext().validationMessages();
-    for (; reported < messages.size(); ++reported) {
-        ADD_FAILURE() << messages[reported];
-    }
-}
-
-namespace {
-
-template <typename Value>
-Value valueOrFailure(Result<Value> made) {
-    if (!made) {
-        ADD_FAILURE() << toString(made.error());
-        return {};
-    }
-    return std::move(*made);
-}
-
-}  // namespace
-
 std::unique_ptr<GpuScene> uploadScene(const Package& package, const SceneView& scene) {
-    return valueOrFailure(GpuScene::upload(sharedContext(), package, scene));
+    return must(GpuScene::upload(sharedContext(), package, scene));
 }
 
 std::unique_ptr<GpuScene> uploadScene(const Package& package, const gltf::Scene& scene,
@@ -68,11 +66,11 @@ std::unique_ptr<GpuScene> uploadScene(const Package& package, const gltf::Scene&
 
 std::unique_ptr<Renderer> makeRenderer(const Package& package, GpuScene& scene,
                                        const RendererOptions& options) {
-    return valueOrFailure(Renderer::create(sharedContext(), package, scene, options));
+    return must(Renderer::create(sharedContext(), package, scene, options));
 }
 
 LinearImage drawn(Renderer& renderer, const FrameOptions& frame, std::uint32_t samples) {
-    return valueOrFailure(renderer.render(frame, samples));
+    return must(renderer.render(frame, samples));
 }
 
 LoadedScene::LoadedScene(const gltf::Scene& scene, const compiler::PlanOptions& plan)
@@ -80,16 +78,8 @@ LoadedScene::LoadedScene(const gltf::Scene& scene, const compiler::PlanOptions& 
 
 LoadedScene::LoadedScene(const gltf::Scene& scene, const compiler::CompileSettings& settings,
                          const std::function<void(session::SceneViewData&)>& change) {
-    const Status loaded = load(scene, settings, change);
-    if (!loaded) {
-        ADD_FAILURE() << toString(loaded.error());
-    }
-}
-
-Status LoadedScene::load(const gltf::Scene& scene, const compiler::CompileSettings& settings,
-                         const std::function<void(session::SceneViewData&)>& change) {
-    GLINT_TRY(compiled_, compilePackage(scene, settings, &sharedModules()));
-    GLINT_TRY(auto package, session::loadPackage(compiled_));
+    compiled_ = must(compilePackage(scene, settings, &sharedModules()));
+    auto package = must(session::loadPackage(compiled_));
     session::SceneViewData data = session::makeSceneView(scene);
     data.vertices = VertexForm::Full;  // pictures are compared with exact ones
     if (scene.lights.empty()) {
@@ -99,8 +89,7 @@ Status LoadedScene::load(const gltf::Scene& scene, const compiler::CompileSettin
         change(data);
     }
     session::useLayoutOf(*package, scene, data);
-    GLINT_TRY(device_, session::DeviceScene::upload(sharedContext(), std::move(package), std::move(data)));
-    return okStatus();
+    device_ = must(session::DeviceScene::upload(sharedContext(), std::move(package), std::move(data)));
 }
 
 LinearImage LoadedScene::render(package::Strategy strategy, const RenderSetup& setup,
@@ -118,17 +107,11 @@ LinearImage LoadedScene::render(RendererOptions options, const RenderSetup& setu
         renderer_ = makeRenderer(options);
         options_ = options;
     }
-    LinearImage image = renderer_ ? drawn(*renderer_, setup.frame, setup.samples) : LinearImage{};
-    if (counters != nullptr && !image.pixels.empty()) {
-        Result<FrameCounters> counted = renderer_->counters();
-        if (!counted) {
-            ADD_FAILURE() << toString(counted.error());
-            return {};
-        }
-        *counters = std::move(*counted);
+    LinearImage image = drawn(*renderer_, setup.frame, setup.samples);
+    if (counters != nullptr) {
+        *counters = must(renderer_->counters());
         EXPECT_EQ(counters->unknownShader, 0U);
     }
-    expectNoValidationMessages();
     return image;
 }
 
@@ -139,20 +122,16 @@ PosedScene::PosedScene(gltf::Scene posed, std::shared_ptr<const LoadedScene> loa
     if (change) {
         change(data);
     }
-    if (compiled->ok()) {
-        session::useLayoutOf(package(), scene, data);
-        gpuScene = uploadScene(package(), data.view());
-    }
+    session::useLayoutOf(package(), scene, data);
+    gpuScene = uploadScene(package(), data.view());
 }
 
 MotionStatistics PosedScene::update(MotionView::Builds builds) {
     session::poseSceneView(scene, data);
     MotionView motion = data.motion();
     motion.builds = builds;
-    const Status updated = gpuScene->updateAndWait(motion);
-    EXPECT_TRUE(updated.ok()) << (updated ? "" : toString(updated.error()));
-    const Result<MotionStatistics> statistics = gpuScene->motion();
-    return statistics ? *statistics : MotionStatistics{};
+    must(gpuScene->updateAndWait(motion));
+    return must(gpuScene->motion());
 }
 
 RenderSetup defaultSetup(const gltf::Scene& scene, std::uint32_t width, std::uint32_t height) {

@@ -14,15 +14,11 @@
 
 namespace glint::testing {
 
-// Returns a device that the tests of a program share, with synchronisation validation. Fails the test if
-// there is none.
+// Returns a device that the tests of a program share, with synchronisation validation. From then on each case
+// fails for the messages of the validation layers.
 Context& sharedContext();
 
-// Fails the test for each message of the validation layers that no earlier call has reported.
-void expectNoValidationMessages();
-
-// These make something of a scene. If that fails, the test fails, and the result is null or an image without
-// a size.
+// These make something of a scene. They throw as must() does.
 std::unique_ptr<GpuScene> uploadScene(const Package& package, const SceneView& scene);
 // `change`, if there is one, is called with what is uploaded.
 std::unique_ptr<GpuScene> uploadScene(const Package& package, const gltf::Scene& scene,
@@ -42,19 +38,15 @@ struct RenderSetup {
 // A scene that is compiled with one policy, loaded through a package on disk, and uploaded.
 class LoadedScene {
 public:
-    // Compiles into its own temporary folder. On failure ok() is false and the test fails.
+    // Throws as must() does.
     LoadedScene(const gltf::Scene& scene, const compiler::PlanOptions& plan);
     // `change`, if there is one, is called with the data before they are uploaded.
     LoadedScene(const gltf::Scene& scene, const compiler::CompileSettings& settings,
                 const std::function<void(session::SceneViewData&)>& change = {});
 
-    bool ok() const {
-        return device_.gpu != nullptr;
-    }
     const compiler::CompiledPackage& compiled() const {
         return compiled_;
     }
-    // Requires ok().
     const Package& package() const {
         return *device_.package;
     }
@@ -64,8 +56,7 @@ public:
     std::unique_ptr<Renderer> makeRenderer(const RendererOptions& options) const {
         return testing::makeRenderer(package(), gpuScene(), options);
     }
-    // Renders an image. If that fails, the test fails and the image has no size. `counters` may be null.
-    // Keeps the renderer for further images with the same options, because making one takes longer than most
+    // Renders an image. `counters` may be null. Keeps the renderer for further images with the same options, because making one takes longer than most
     // images.
     LinearImage render(package::Strategy strategy, const RenderSetup& setup,
                        FrameCounters* counters = nullptr) const;
@@ -74,9 +65,6 @@ public:
                        FrameCounters* counters = nullptr) const;
 
 private:
-    Status load(const gltf::Scene& scene, const compiler::CompileSettings& settings,
-                const std::function<void(session::SceneViewData&)>& change);
-
     compiler::CompiledPackage compiled_;
     session::DeviceScene device_;
     mutable std::unique_ptr<Renderer> renderer_;  // the last one of render()
@@ -90,11 +78,6 @@ struct PosedScene {
     PosedScene(gltf::Scene posed, std::shared_ptr<const LoadedScene> loaded,
                const std::function<void(session::SceneViewData&)>& change = {});
 
-    // Otherwise the test has failed.
-    bool ok() const {
-        return gpuScene != nullptr;
-    }
-    // These require ok().
     const Package& package() const {
         return compiled->package();
     }

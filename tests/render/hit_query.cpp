@@ -1,6 +1,7 @@
 #include "render/hit_query.h"
 
 #include "render/hit_kernel.h"
+#include "support/must.h"
 
 #include <cstring>
 
@@ -18,14 +19,7 @@ std::vector<Values> ask(const gltf::Scene& scene, const std::vector<Query>& quer
     // Queries name triangles by the numbers that they have in the scene.
     const LoadedScene loaded(
         scene, settings, [](session::SceneViewData& data) { data.traversalOrder = TraversalOrder::Input; });
-    if (!loaded.ok()) {
-        return {};
-    }
-    const Result<std::unique_ptr<HitKernel>> kernel = HitKernel::create(scene, loaded, "hit_values.comp");
-    if (!kernel) {
-        ADD_FAILURE() << toString(kernel.error());
-        return {};
-    }
+    const std::unique_ptr<HitKernel> kernel = must(HitKernel::create(scene, loaded, "hit_values.comp"));
     std::vector<gpu::RayRecord> rays;
     for (const Query& query : queries) {
         gpu::RayRecord ray{};
@@ -37,14 +31,9 @@ std::vector<Values> ask(const gltf::Scene& scene, const std::vector<Query>& quer
         rays.push_back(ray);
     }
     const auto count = static_cast<std::uint32_t>(rays.size());
-    const Result<std::vector<std::uint32_t>> words = (*kernel)->run({}, rays, count, count * kWords);
-    if (!words) {
-        ADD_FAILURE() << toString(words.error());
-        return {};
-    }
-    expectNoValidationMessages();
+    const std::vector<std::uint32_t> words = must(kernel->run({}, rays, count, count * kWords));
     std::vector<Values> values(queries.size());
-    std::memcpy(values.data(), words->data(), words->size() * sizeof(std::uint32_t));
+    std::memcpy(values.data(), words.data(), words.size() * sizeof(std::uint32_t));
     return values;
 }
 

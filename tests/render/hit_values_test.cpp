@@ -212,8 +212,8 @@ TEST(HitValues, NoLightLeaksThroughThinGaps) {
     for (const float gap : {1e-3F, 5e-5F}) {
         gltf::Scene scene = emptyScene();
         const int material = addMaterial(scene, unlitMaterial({1, 1, 1}));
-        addInstance(scene, addMesh(scene, makeQuad(material, {-1, -1, 0.5F}, {2, 0, 0}, {0, 2, 0})));
-        addInstance(scene, addMesh(scene, makeQuad(material, {-1, -1, 0.5F + gap}, {2, 0, 0}, {0, 2, 0})));
+        addQuad(scene, material, {-1, -1, 0.5F}, {2, 0, 0}, {0, 2, 0});
+        addQuad(scene, material, {-1, -1, 0.5F + gap}, {2, 0, 0}, {0, 2, 0});
         const std::vector<Values> values =
             ask(scene, {{0, 0, {0.4F, 0.4F}, {0, 0, -1}, 0.0F}, {1, 1, {0.4F, 0.4F}, {0, 0, -1}, 0.0F}});
         ASSERT_EQ(values.size(), 2U);

@@ -1,5 +1,7 @@
 #include "render/layered_scene.h"
 
+#include "support/must.h"
+
 #include <glint/session/camera.h>
 #include <glint/session/scene_view.h>
 
@@ -9,14 +11,10 @@ namespace glint::testing {
 
 LayerSet::LayerSet(Renderer& renderer) {
     for (const LayerImage& layer : renderer.layers()) {
-        Result<LayerValues> values = renderer.readLayer(layer.name);
-        if (!values) {
-            ADD_FAILURE() << toString(values.error());
-            continue;
-        }
-        width = values->width;
-        height = values->height;
-        layers_.emplace(layer.name, std::move(*values));
+        LayerValues values = must(renderer.readLayer(layer.name));
+        width = values.width;
+        height = values.height;
+        layers_.emplace(layer.name, std::move(values));
     }
 }
 
@@ -57,19 +55,13 @@ LayeredScene::LayeredScene(const gltf::Scene& posed, const compiler::CompileSett
     options.width = width;
     options.height = height;
     options.accumulate = false;
-    if (PosedScene::ok()) {
-        renderer_ = makeRenderer(options);
-    }
+    renderer_ = makeRenderer(options);
 }
 
 LinearImage LayeredScene::render() {
     update();
-    const Result<CameraView> camera = session::sceneCamera(scene, 0, aspect_);
-    EXPECT_TRUE(camera.ok());
-    frame.camera = *camera;
-    LinearImage image = drawn(*renderer_, frame);
-    expectNoValidationMessages();
-    return image;
+    frame.camera = must(session::sceneCamera(scene, 0, aspect_));
+    return drawn(*renderer_, frame);
 }
 
 }  // namespace glint::testing

@@ -35,10 +35,6 @@ public:
     LayeredScene(const gltf::Scene& posed, const compiler::CompileSettings& settings, std::uint32_t width,
                  std::uint32_t height);
 
-    bool ok() const {
-        return renderer_ != nullptr;
-    }
-    // Requires ok(), as what follows.
     Renderer& renderer() {
         return *renderer_;
     }

@@ -4,6 +4,7 @@
 #include "render/layered_scene.h"
 #include "render/scene_builder.h"
 #include "render/ways.h"
+#include "support/must.h"
 
 #include <fmt/format.h>
 
@@ -31,8 +32,7 @@ gltf::Scene hallBehindGlass() {
     glass["transmissionFactor"] = 0.9F;
     glass["metallicFactor"] = 0.0F;
     glass["roughnessFactor"] = 0.1F;
-    addInstance(
-        scene, addMesh(scene, makeQuad(addMaterial(scene, glass), {-1.5F, -0.5F, -2}, {1, 0, 0}, {0, 1, 0})));
+    addQuad(scene, glass, {-1.5F, -0.5F, -2}, {1, 0, 0}, {0, 1, 0});
     return scene;
 }
 
@@ -45,12 +45,10 @@ TEST(Layers, DemodulatedLightTimesAlbedoGivesThePicture) {
         for (const std::uint32_t samples : {1U, 3U}) {
             options.accumulate = samples > 1;
             const auto renderer = loaded.makeRenderer(options);
-            ASSERT_NE(renderer, nullptr);
             FrameOptions frame = defaultSetup(hallBehindGlass(), options.width, options.height).frame;
             frame.maxReflectionRoughness = 1.0F;
-            const Result<LinearImage> image = renderer->render(frame, samples);
-            ASSERT_TRUE(image.ok()) << toString(image.error());
-            LinearImage sum = *image;
+            const LinearImage image = must(renderer->render(frame, samples));
+            LinearImage sum = image;
             const LayerSet layers(*renderer);
             const std::pair<const char*, const char*> sources[] = {{"direct", "albedo"},
                                                                    {"reflection", "albedo-specular"},
@@ -69,12 +67,11 @@ TEST(Layers, DemodulatedLightTimesAlbedoGivesThePicture) {
                     }
                 }
             }
-            expectSameImage(sum, *image, nameOf(way) + ", " + std::to_string(samples) + " samples");
+            expectSameImage(sum, image, nameOf(way) + ", " + std::to_string(samples) + " samples");
             for (const auto& [source, albedo] : sources) {
                 EXPECT_GT(layers.sum(std::string(source) + ".radiance"), 0.0) << source << " brings no light";
             }
         }
-        expectNoValidationMessages();
     });
 }
 
@@ -90,10 +87,9 @@ TEST(Layers, BouncesAddUpToTheLightOfTheirEffect) {
         options.height = 14;
         options.bounces = 6;
         const auto renderer = loaded.makeRenderer(options);
-        ASSERT_NE(renderer, nullptr);
         FrameOptions frame = defaultSetup(scene, options.width, options.height).frame;
         frame.maxReflectionRoughness = 1.0F;
-        ASSERT_TRUE(renderer->render(frame, 2).ok());
+        must(renderer->render(frame, 2));
         const LayerSet layers(*renderer);
         for (const std::string source : {"reflection", "refraction", "indirect-diffuse"}) {
             const std::string albedo = source == "reflection"   ? "albedo-specular"
@@ -120,22 +116,19 @@ TEST(Layers, BouncesAddUpToTheLightOfTheirEffect) {
             EXPECT_GT(layers.sum("indirect-diffuse.bounce-radiance" + number), 0.0) << bounce;
             EXPECT_GT(layers.sum("indirect-diffuse.bounce-distance" + number), 0.0) << bounce;
         }
-        expectNoValidationMessages();
     });
 }
 
 // A pane before a lamp that rays find. The walk through the pane finds it before the end of its ray.
 TEST(Layers, LightsThatRefractedRaysFindAreOfTheRefraction) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material glass;
     glass["transmissionFactor"] = 1.0F;
     glass["metallicFactor"] = 0.0F;
     glass["roughnessFactor"] = 0.0F;
     glass["baseColorFactor"] = {0.25F, 0.5F, 0.75F, 1.0F};
     glass.doubleSided = true;
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, glass), {-9, -9, -1}, {18, 0, 0}, {0, 18, 0})));
+    addQuad(scene, glass, {-9, -9, -1}, {18, 0, 0}, {0, 18, 0});
     gltf::Light lamp;
     lamp.type = gltf::LightType::Point;
     lamp.position = {0.2F, 0, -3};
@@ -147,21 +140,18 @@ TEST(Layers, LightsThatRefractedRaysFindAreOfTheRefraction) {
     settings.maxBounces = 2;
     const LoadedScene loaded(scene, settings,
                              [](session::SceneViewData& data) { data.lights[0].size = 0.8F; });
-    ASSERT_TRUE(loaded.ok());
     RendererOptions options;
     options.strategy = package::kStrategyUber;
     options.width = options.height = 16;
     options.bounces = 2;
     const auto renderer = loaded.makeRenderer(options);
-    ASSERT_NE(renderer, nullptr);
     FrameOptions frame = defaultSetup(scene, 16, 16).frame;
     frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     for (const bool refracts : {true, false}) {
         frame.effects = refracts ? package::kAllEffects : ~compiler::builtinEffects({"refraction"});
-        const Result<LinearImage> image = renderer->render(frame, 3);
-        ASSERT_TRUE(image.ok()) << toString(image.error());
+        const LinearImage image = must(renderer->render(frame, 3));
         const LayerSet layers(*renderer);
-        LinearImage sum = *image;
+        LinearImage sum = image;
         for (std::size_t i = 0; i < sum.pixels.size(); ++i) {
             for (std::size_t c = 0; c < 3; ++c) {
                 sum.pixels[i][c] = layers.at("emission", i, c);
@@ -173,11 +163,10 @@ TEST(Layers, LightsThatRefractedRaysFindAreOfTheRefraction) {
                             layers.at("refraction.radiance", i, c), 1e-4);
             }
         }
-        expectSameImage(sum, *image, refracts ? "with refraction" : "without refraction");
+        expectSameImage(sum, image, refracts ? "with refraction" : "without refraction");
         EXPECT_EQ(layers.sum("refraction.radiance") > 1.0, refracts);
         EXPECT_EQ(layers.sum("refraction.variance") > 0.0, refracts);
     }
-    expectNoValidationMessages();
 }
 
 TEST(Layers, LeaveThePictureAsItIs) {
@@ -187,7 +176,6 @@ TEST(Layers, LeaveThePictureAsItIs) {
     const LoadedScene with(scene, settings);
     settings.layers.clear();
     const LoadedScene without(scene, settings);
-    ASSERT_TRUE(with.ok() && without.ok());
     EXPECT_TRUE(without.package().layers().empty());
     expectSameImage(with.render(package::kDefaultStrategy, setup),
                     without.render(package::kDefaultStrategy, setup), "with layers");
@@ -206,7 +194,6 @@ TEST(Layers, LeaveNoBufferOrPassWhereTheyAreOff) {
         compiler::CompileSettings settings = everyLayer();
         settings.layers = std::move(layers);
         const LoadedScene loaded(scene, settings);
-        EXPECT_TRUE(loaded.ok());
         RendererOptions options;
         options.width = 16;
         options.height = 16;
@@ -227,20 +214,18 @@ TEST(Layers, LeaveNoBufferOrPassWhereTheyAreOff) {
 
 TEST(Layers, ShowThePrimarySurface) {
     // A red metal wall 3 m ahead, turned by 45 degrees about Y, and an unlit one beside it.
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material metal;
     metal["baseColorFactor"] = {0.8F, 0.2F, 0.1F, 1.0F};
     metal["roughnessFactor"] = 0.4F;
     addMaterial(scene, unlitMaterial({0.25F, 0.5F, 0.75F}));
     addMaterial(scene, metal);
-    addInstance(scene, addMesh(scene, makeQuad(1, {-2, -10, -5}, {2, 0, 2}, {0, 20, 0})));
-    addInstance(scene, addMesh(scene, makeQuad(0, {0, -10, -3}, {1, 0, 0}, {0, 20, 0})));
+    addQuad(scene, 1, {-2, -10, -5}, {2, 0, 2}, {0, 20, 0});
+    addQuad(scene, 0, {0, -10, -3}, {1, 0, 0}, {0, 20, 0});
     compiler::CompileSettings settings = everyLayer();
     settings.layers = {"surface"};
     settings.plan.merge = compiler::MergePolicy::None;
     LayeredScene shown(scene, settings, 32, 32);
-    ASSERT_TRUE(shown.ok());
     shown.render();
     const LayerSet layers(shown.renderer());
     for (std::size_t i = 0; i < 32 * 32; ++i) {
@@ -287,13 +272,11 @@ TEST(Layers, VarianceIsThatOfTheSamples) {
     compiler::CompileSettings settings = everyLayer();
     settings.layers = {"indirect-diffuse.variance", "direct.variance"};
     const LoadedScene loaded(scene, settings);
-    ASSERT_TRUE(loaded.ok());
     EXPECT_EQ(loaded.package().layers().size(), 4U) << "radiance, from which it is computed, is there too";
     RendererOptions options;
     options.width = 24;
     options.height = 14;
     const auto renderer = loaded.makeRenderer(options);
-    ASSERT_NE(renderer, nullptr);
     constexpr std::uint32_t kSamples = 5;
     const auto luminance = [](const LayerSet& layers, const std::string& name, std::size_t i) {
         return 0.2126 * layers.at(name, i, 0) + 0.7152 * layers.at(name, i, 1) +
@@ -309,7 +292,7 @@ TEST(Layers, VarianceIsThatOfTheSamples) {
         return okStatus();
     };
     const FrameOptions frame = defaultSetup(scene, options.width, options.height).frame;
-    ASSERT_TRUE(renderer->render(frame, kSamples, keep).ok());
+    must(renderer->render(frame, kSamples, keep));
     const LayerSet layers(*renderer);
     std::size_t noisy = 0;
     for (std::size_t i = 0; i < 24 * 14; ++i) {
@@ -328,25 +311,19 @@ TEST(Layers, VarianceIsThatOfTheSamples) {
         noisy += variance > 1e-6 ? 1 : 0;
     }
     EXPECT_GT(noisy, 24U) << "rays that go everywhere are noisy";
-    expectNoValidationMessages();
 }
 
 TEST(Layers, ErrorsSayWhatThereIs) {
     const gltf::Scene scene = hallScene();
     compiler::CompileSettings settings;
     settings.layers = {"refraction.radiance"};
-    const auto missing = compiler::compilePackage({&scene, 1}, settings);
-    ASSERT_FALSE(missing.ok());
-    EXPECT_EQ(missing.error().id, "layer-effect");
+    EXPECT_EQ(mustFail(compiler::compilePackage({&scene, 1}, settings)).id, "layer-effect");
     settings.layers = {"reflexion.radiance"};
-    const auto misspelt = compiler::compilePackage({&scene, 1}, settings);
-    ASSERT_FALSE(misspelt.ok());
-    EXPECT_NE(toString(misspelt.error()).find("reflection"), std::string::npos) << toString(misspelt.error());
+    const Diagnostic misspelt = mustFail(compiler::compilePackage({&scene, 1}, settings));
+    EXPECT_NE(toString(misspelt).find("reflection"), std::string::npos) << toString(misspelt);
     settings.layers = {"depth"};
     settings.passes = package::Passes::Steps;
-    const auto steps = compiler::compilePackage({&scene, 1}, settings);
-    ASSERT_FALSE(steps.ok());
-    EXPECT_EQ(steps.error().id, "passes");
+    EXPECT_EQ(mustFail(compiler::compilePackage({&scene, 1}, settings)).id, "passes");
 }
 
 }  // namespace

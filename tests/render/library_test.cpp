@@ -9,6 +9,7 @@
 #include "render/pixel_test.h"
 #include "spirv/compiler.h"
 #include "spirv/optimize.h"
+#include "support/must.h"
 #include "support/nightly.h"
 #include "support/shared_modules.h"
 
@@ -20,8 +21,10 @@
 #endif
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -75,9 +78,8 @@ compiler::CompileSettings librarySettings() {
 }
 
 std::string textAt(const std::string& path) {
-    const Result<base::Bytes> bytes = base::readFile(path);
-    EXPECT_TRUE(bytes) << toString(bytes.error());
-    return bytes ? std::string(bytes->begin(), bytes->end()) : std::string();
+    const base::Bytes bytes = must(base::readFile(path));
+    return std::string(bytes.begin(), bytes.end());
 }
 
 // The functions of each case. If they are inlined, compiling takes several times as long.
@@ -96,18 +98,25 @@ std::vector<std::string> functionsOfCases(const compiler::Plan& plan) {
 // A scene with its library, and the values that kernels read from both.
 class Library : public ::testing::Test {
 protected:
-    void SetUp() override {
-        ASSERT_TRUE(loaded_.ok());
+    using Sky = std::array<gpu::vec3, 3>;
+
+    static void SetUpTestSuite() {
+        loaded_ = std::make_unique<LoadedScene>(libraryScene(), librarySettings());
         compiler::CompileSettings settings = librarySettings();
         settings.emitLibrary = true;
         settings.emitLinkable = true;
-        Result<std::vector<compiler::PackageFile>> files = makeLibrary(
-            gltf::SceneList({&libraryScene(), 1}), loaded_.compiled().plan, settings, &sharedModules());
-        ASSERT_TRUE(files) << toString(files.error());
-        files_ = std::move(*files);
+        files_ = must(makeLibrary(gltf::SceneList({&libraryScene(), 1}), loaded_->compiled().plan, settings,
+                                  &sharedModules()));
+        library_ = fileText("library/glint_library.glsl");
+        both_ = must(HitKernel::create(*loaded_, must(compileShader(kernel(library_, true), {}))));
+    }
+    static void TearDownTestSuite() {
+        both_.reset();
+        loaded_.reset();
+        files_.clear();
     }
 
-    std::string fileText(std::string_view name) const {
+    static std::string fileText(std::string_view name) {
         for (const compiler::PackageFile& file : files_) {
             if (file.name == name) {
                 return {file.bytes.begin(), file.bytes.end()};
@@ -117,7 +126,7 @@ protected:
         return {};
     }
 
-    std::uint32_t hits() const {
+    static std::uint32_t hits() {
         std::size_t geometries = 0;
         for (const gltf::Node& node : libraryScene().nodes) {
             geometries += node.mesh < 0
@@ -128,10 +137,10 @@ protected:
     }
 
     // The kernel's source with a text in the place of the library.
-    compiler::ShaderSource kernel(const std::string& library, bool product) const {
+    static compiler::ShaderSource kernel(const std::string& library, bool product) {
         compiler::ShaderSource source{"library_values.comp", compiler::ShaderStage::Compute, {}, {}};
         Result<compiler::SourceSet> sources =
-            makeSourceSet(gltf::SceneList({&libraryScene(), 1}), loaded_.compiled().plan, librarySettings());
+            makeSourceSet(gltf::SceneList({&libraryScene(), 1}), loaded_->compiled().plan, librarySettings());
         EXPECT_TRUE(sources) << toString(sources.error());
         sources->add("library.glsl", library);
         sources->add("library_host.glsl", textAt(kShaders + "library_host.glsl"));
@@ -143,39 +152,28 @@ protected:
             flatten(source.name, text, sources->lookup(), compiler::FlattenSide::Glsl);
         EXPECT_TRUE(glsl) << toString(glsl.error());
         source.glsl = glsl ? glsl->withPlaces() : "";
-        source.functionsApart = functionsOfCases(loaded_.compiled().plan);
+        source.functionsApart = functionsOfCases(loaded_->compiled().plan);
         return source;
     }
 
-    std::vector<float> valuesOf(const Result<std::vector<std::uint32_t>>& words, std::size_t perHit) const {
-        if (!words) {
-            ADD_FAILURE() << toString(words.error());
-            return {};
-        }
-        Result<std::unique_ptr<HitKernel>> kernel = HitKernel::create(loaded_, *words);
-        if (!kernel) {
-            ADD_FAILURE() << toString(kernel.error());
-            return {};
-        }
+    // What a kernel writes under a sky, `perHit` values for each hit.
+    static std::vector<float> valuesOf(HitKernel& kernel, const Sky& sky, std::size_t perHit) {
         gpu::FrameConstants constants{};
         constants.seed = 7;
-        constants.skyZenith = sky_[0];
-        constants.skyHorizon = sky_[1];
-        constants.skyGround = sky_[2];
-        const Result<std::vector<std::uint32_t>> output =
-            (*kernel)->run(constants, {}, hits(), hits() * perHit);
-        EXPECT_TRUE(output) << toString(output.error());
-        std::vector<float> values(output ? output->size() : 0);
-        if (output) {
-            std::memcpy(values.data(), output->data(), values.size() * sizeof(float));
-        }
-        expectNoValidationMessages();
+        constants.skyZenith = sky[0];
+        constants.skyHorizon = sky[1];
+        constants.skyGround = sky[2];
+        const std::vector<std::uint32_t> output = must(kernel.run(constants, {}, hits(), hits() * perHit));
+        std::vector<float> values(output.size());
+        std::memcpy(values.data(), output.data(), values.size() * sizeof(float));
         return values;
     }
 
-    LoadedScene loaded_{libraryScene(), librarySettings()};
-    std::vector<compiler::PackageFile> files_;
-    gpu::vec3 sky_[3] = {{0.3F, 0.5F, 0.9F}, {0.8F, 0.7F, 0.6F}, {0.1F, 0.2F, 0.1F}};
+    static inline std::unique_ptr<LoadedScene> loaded_;
+    static inline std::vector<compiler::PackageFile> files_;
+    static inline std::string library_;
+    // Writes the values of the library and of the product. It takes longest to compile.
+    static inline std::unique_ptr<HitKernel> both_;
 };
 
 void expectClose(float value, float reference, float tolerance, std::size_t hit, std::size_t place) {
@@ -185,8 +183,8 @@ void expectClose(float value, float reference, float tolerance, std::size_t hit,
 }
 
 TEST_F(Library, GivesWhatTheRendererGives) {
-    const std::string library = fileText("library/glint_library.glsl");
-    const std::vector<float> values = valuesOf(compileShader(kernel(library, true), {}), 2 * kValues);
+    const Sky sky{{{0.3F, 0.5F, 0.9F}, {0.8F, 0.7F, 0.6F}, {0.1F, 0.2F, 0.1F}}};
+    const std::vector<float> values = valuesOf(*both_, sky, 2 * kValues);
     float sum = 0.0F;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const std::size_t hit = i / (2 * kValues);
@@ -232,12 +230,12 @@ constexpr const char* kSky = R"(
 
 // The program is the kernel, which imports the library's functions and exports the host's, but for the sky.
 TEST_F(Library, LinkedGivesWhatTheGlslGives) {
-    std::ranges::fill(sky_, gpu::vec3{0.25F, 0.5F, 0.75F});
-    const std::string library = fileText("library/glint_library.glsl");
-    const std::vector<float> expected = valuesOf(compileShader(kernel(library, false), {}), kValues);
+    Sky sky;
+    sky.fill({0.25F, 0.5F, 0.75F});
+    const std::vector<float> expected = valuesOf(*both_, sky, 2 * kValues);
 
     // The declarations of the library, with bodies that are not used.
-    std::string declared = library.substr(0, library.find("\n// Reads the surface that a ray has hit"));
+    std::string declared = library_.substr(0, library_.find("\n// Reads the surface that a ray has hit"));
     compiler::LinkNames names;
     names.keepsEntryPoint = true;
     const std::pair<const char*, const char*> functions[] = {
@@ -270,8 +268,7 @@ TEST_F(Library, LinkedGivesWhatTheGlslGives) {
         "0u).x +\n"
         "          glintHostLight(0u, vec3(0.0), vec3(0.0)).distance);\n";
     source.glsl.insert(source.glsl.rfind('}'), "    if (GLINT_FRAME.width == 0u) {\n" + calls + "    }\n");
-    const Result<std::vector<std::uint32_t>> program = compileLinkable(source, names, {});
-    ASSERT_TRUE(program) << toString(program.error());
+    const std::vector<std::uint32_t> imports = must(compileLinkable(source, names, {}));
 
     const std::string bytes = fileText("library/glint_library.spv");
     std::vector<std::uint32_t> module(bytes.size() / sizeof(std::uint32_t));
@@ -280,18 +277,18 @@ TEST_F(Library, LinkedGivesWhatTheGlslGives) {
     spvtools::Context context(SPV_ENV_UNIVERSAL_1_5);
     context.SetMessageConsumer(
         [&](spv_message_level_t, const char*, const spv_position_t&, const char* text) { message += text; });
-    std::vector<std::uint32_t> sky;
+    std::vector<std::uint32_t> hostSky;
     spvtools::SpirvTools tools(SPV_ENV_UNIVERSAL_1_5);
-    ASSERT_TRUE(tools.Assemble(kSky, &sky));
+    ASSERT_TRUE(tools.Assemble(kSky, &hostSky));
     std::vector<std::uint32_t> linked;
-    ASSERT_EQ(spvtools::Link(context, {*program, sky, module}, &linked), SPV_SUCCESS) << message;
-    const Status valid = compiler::validateSpirv(linked, "linked");
-    ASSERT_TRUE(valid) << toString(valid.error());
+    ASSERT_EQ(spvtools::Link(context, {imports, hostSky, module}, &linked), SPV_SUCCESS) << message;
+    must(compiler::validateSpirv(linked, "linked"));
 
-    const std::vector<float> values = valuesOf(linked, kValues);
-    ASSERT_EQ(values.size(), expected.size());
+    const std::unique_ptr<HitKernel> program = must(HitKernel::create(*loaded_, linked));
+    const std::vector<float> values = valuesOf(*program, sky, kValues);
     for (std::size_t i = 0; i < values.size(); ++i) {
-        expectClose(values[i], expected[i], 1e-6F, i / kValues, i % kValues);
+        const std::size_t hit = i / kValues;
+        expectClose(values[i], expected[i + hit * kValues], 1e-6F, hit, i % kValues);
     }
 }
 
@@ -318,19 +315,17 @@ std::string hostBodies(const std::string& host) {
 
 // A shader of a user's own has nothing of Glint's but the library. At night it is that of the gallery.
 TEST(LibraryFiles, CompileInAShaderOfAUser) {
-    const Result<gltf::Scene> scene =
-        test::nightly() ? gltf::importScene(GLINT_GALLERY_SCENE) : Result<gltf::Scene>(libraryScene());
-    ASSERT_TRUE(scene) << toString(scene.error());
-    const gltf::SceneList list({&*scene, 1});
+    const gltf::Scene scene =
+        must(test::nightly() ? gltf::importScene(GLINT_GALLERY_SCENE) : Result<gltf::Scene>(libraryScene()));
+    const gltf::SceneList list({&scene, 1});
     compiler::CompileSettings settings = librarySettings();
     settings.plan.merge = compiler::MergePolicy::Family;
     settings.emitLibrary = true;
     const compiler::Plan plan = makePlan(list.materials(), list.primitives(), settings.plan);
-    const Result<std::vector<compiler::PackageFile>> files = makeLibrary(list, plan, settings);
-    ASSERT_TRUE(files) << toString(files.error());
-    ASSERT_EQ(files->size(), 2 + plan.cases.size());
+    const std::vector<compiler::PackageFile> files = must(makeLibrary(list, plan, settings));
+    ASSERT_EQ(files.size(), 2 + plan.cases.size());
     EXPECT_GE(plan.cases.size(), 2U);
-    const std::string host = textOf(files->front());
+    const std::string host = textOf(files.front());
     ASSERT_NE(hostBodies(host).find("glintHostTexture("), std::string::npos);
     // Names that a user may have, too.
     const std::string user =
@@ -342,14 +337,14 @@ TEST(LibraryFiles, CompileInAShaderOfAUser) {
         "    sum = glintEvaluate(surface, sum, sum) + glintRadiance(surface).radiance +\n"
         "          glintSample(surface, sum, sum).weight * glintDensity(surface, sum, sum) +\n"
         "          glintMirror(surface).weight + glintRayOrigin(surface, sum);\n";
-    for (std::size_t i = 1; i < files->size(); ++i) {
+    for (std::size_t i = 1; i < files.size(); ++i) {
         // Every text is compiled. Only the switch and one case are called, too, which takes most of the time.
-        const std::string text = textOf((*files)[i]);
+        const std::string text = textOf(files[i]);
         for (const char* const foreign : {"void main", "binding", "push_constant", "#include", "#line"}) {
-            EXPECT_EQ(text.find(foreign), std::string::npos) << (*files)[i].name << ": " << foreign;
+            EXPECT_EQ(text.find(foreign), std::string::npos) << files[i].name << ": " << foreign;
         }
         const Result<std::vector<std::uint32_t>> words = compiler::compileShader(
-            {(*files)[i].name, compiler::ShaderStage::Compute,
+            {files[i].name, compiler::ShaderStage::Compute,
              "#version 460\n" + host + text + hostBodies(host) + user + (i <= 2 ? calls : "") + "}\n",
              functionsOfCases(plan)},
             {});
@@ -365,11 +360,8 @@ TEST(Host, OfAnotherVertexLayoutGivesTheSamePicture) {
     const LoadedScene own(packsScene(), settings);
     settings.host = GLINT_SOURCE_DIR "/tests/render/host";
     const LoadedScene other(packsScene(), settings);
-    ASSERT_TRUE(own.ok());
-    ASSERT_TRUE(other.ok());
     const LinearImage reference = own.render(package::kStrategyUber, setup);
     expectSameImage(other.render(package::kStrategyUber, setup), reference, "host");
-    expectNoValidationMessages();
     // It is not the same shader.
     for (std::size_t i = 0; i < own.compiled().modules.size(); ++i) {
         const compiler::CompiledModule& module = own.compiled().modules[i];

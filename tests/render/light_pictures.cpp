@@ -1,14 +1,22 @@
 #include "render/light_pictures.h"
 
-#include "render/scene_builder.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
 namespace glint::testing {
+
+void noLights(session::SceneViewData& data) {
+    data.lights.clear();
+}
+
+SkyView uniformSky(float radiance) {
+    const std::array<float, 3> sky{radiance, radiance, radiance};
+    return {sky, sky, sky};
+}
 
 materials::Material matte(float albedo) {
     materials::Material material;
@@ -17,11 +25,6 @@ materials::Material matte(float albedo) {
     material["roughnessFactor"] = 1.0F;
     material["specularFactor"] = 0.0F;
     return material;
-}
-
-void addQuad(gltf::Scene& scene, const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
-             gltf::Float3 up) {
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
 }
 
 double meanOf(const LinearImage& image, std::size_t channel) {
@@ -34,6 +37,14 @@ double meanOf(const LinearImage& image, std::size_t channel) {
 
 double meanOf(const LinearImage& image) {
     return (meanOf(image, 0) + meanOf(image, 1) + meanOf(image, 2)) / 3.0;
+}
+
+double meanSquare(const LinearImage& image, const LinearImage& reference) {
+    return squaredDifference(image, reference) / (3.0 * static_cast<double>(image.pixels.size()));
+}
+
+double rootMeanSquare(const LinearImage& image, const LinearImage& reference) {
+    return std::sqrt(meanSquare(image, reference));
 }
 
 double squaredDifference(const LinearImage& image, const LinearImage& reference) {

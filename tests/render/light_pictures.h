@@ -11,15 +11,18 @@
 
 namespace glint::testing {
 
+void noLights(session::SceneViewData& data);
+SkyView uniformSky(float radiance);
+
 // Returns a diffuse surface that reflects nothing else.
 materials::Material matte(float albedo);
-// Adds a parallelogram as makeQuad() makes it.
-void addQuad(gltf::Scene& scene, const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
-             gltf::Float3 up);
 
 // The mean over all pixels of one channel, or of red, green and blue.
 double meanOf(const LinearImage& image, std::size_t channel);
 double meanOf(const LinearImage& image);
+// The mean of the squares of the differences of red, green and blue, and its root.
+double meanSquare(const LinearImage& image, const LinearImage& reference);
+double rootMeanSquare(const LinearImage& image, const LinearImage& reference);
 // The sum over all pixels, red, green and blue.
 double squaredDifference(const LinearImage& image, const LinearImage& reference);
 

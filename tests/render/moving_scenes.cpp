@@ -13,20 +13,12 @@
 namespace glint::testing {
 namespace {
 
-materials::Material coloured(gltf::Float3 color) {
-    materials::Material material;
-    material["baseColorFactor"] = {color[0], color[1], color[2], 1.0F};
-    material["metallicFactor"] = 0.0F;
-    material["roughnessFactor"] = 0.5F;
-    return material;
-}
-
 // Adds a mirror below, whose reflections show the content of the TLAS.
 void addRoom(gltf::Scene& scene) {
     addCamera(scene);
     addDirectionalLight(scene, {0.0F, -0.6F, -0.8F}, 3.0F);
     const int mirror = addMaterial(scene, mirrorMaterial());
-    addInstance(scene, addMesh(scene, makeQuad(mirror, {-4, -1, -1}, {8, 0, 0}, {0, 0, -8})));
+    addQuad(scene, mirror, {-4, -1, -1}, {8, 0, 0}, {0, 0, -8});
 }
 
 // Returns a strip of 1 x 2 m with `segments` rows above (0, 0, 0). All its vertices have normals and
@@ -61,7 +53,7 @@ gltf::Matrix4 placed(double x, double y, double z, double angle) {
 gltf::Scene rigidScene() {
     gltf::Scene scene = emptyScene();
     addRoom(scene);
-    const int red = addMaterial(scene, coloured({0.9F, 0.1F, 0.1F}));
+    const int red = addMaterial(scene, paint({0.9F, 0.1F, 0.1F}));
     const int quad = addMesh(scene, makeQuad(red, {-0.5F, -0.5F, 0}, {1, 0, 0}, {0, 1, 0}));
     addInstance(scene, quad, placed(-1, 0, -3));
     addInstance(scene, quad, placed(1, 0, -3));
@@ -71,7 +63,7 @@ gltf::Scene rigidScene() {
 gltf::Scene skinnedScene(double angle) {
     gltf::Scene scene = emptyScene();
     addRoom(scene);
-    gltf::Primitive strip = makeStrip(addMaterial(scene, coloured({0.1F, 0.6F, 0.9F})), 16);
+    gltf::Primitive strip = makeStrip(addMaterial(scene, paint({0.1F, 0.6F, 0.9F})), 16);
     strip.influences.count = 2;
     for (const gltf::Float3& position : strip.positions) {
         const float up = position[1] / 2.0F;
@@ -115,7 +107,7 @@ gltf::Scene bakedScene(const gltf::Scene& scene) {
 gltf::Scene morphedScene(std::vector<double> weights) {
     gltf::Scene scene = emptyScene();
     addRoom(scene);
-    gltf::Primitive strip = makeStrip(addMaterial(scene, coloured({0.9F, 0.7F, 0.1F})), 8);
+    gltf::Primitive strip = makeStrip(addMaterial(scene, paint({0.9F, 0.7F, 0.1F})), 8);
     strip.targets.resize(2);
     for (const gltf::Float3& position : strip.positions) {
         strip.targets[0].positions.push_back({0.5F * position[1] * position[1], 0, 0});

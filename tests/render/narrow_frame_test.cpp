@@ -44,7 +44,6 @@ LinearImage expectOnePicture(const gltf::Scene& scene, const compiler::CompileSe
         options.bounces = bounces;
         FrameCounters counters;
         const LinearImage image = loaded.render(options, setup, &counters);
-        ASSERT_FALSE(image.pixels.empty()) << nameOf(way);
         EXPECT_GT(counters.rays, 0U) << nameOf(way);
         EXPECT_EQ(counters.orderErrors, 0U) << nameOf(way);
         if (!reference) {
@@ -80,7 +79,6 @@ TEST(PackedSamples, OfEveryWayAreOnePictureThatIsNearlyTheFullOne) {
     settings.strategies = package::kStrategyUber;
     settings.tracers = package::kTracerRayQuery;
     const LoadedScene full(scene, settings);
-    ASSERT_TRUE(full.ok());
     const LinearImage exact = full.render(package::kStrategyUber, setup);
     // A ray that meets another surface, or a path that is refracted otherwise, may change a few pixels.
     EXPECT_LT(shareThatDiffers(packed, exact, 0.004F), 0.02);
@@ -105,13 +103,11 @@ TEST(PackedSamples, WithDeferredShadowsInBandsAndInOneListAreTheSameToTheBit) {
     settings.shadows = package::ShadowPlacement::Deferred;
     settings.plan.fallback = true;
     const LoadedScene loaded(scene, settings);
-    ASSERT_TRUE(loaded.ok());
     EXPECT_TRUE(loaded.package().hitsInSamples());
     const RenderSetup setup = narrowSetup(scene, 1);
     for (const package::Strategy strategy : {package::kStrategyVisibility, package::kStrategySortedUber}) {
         RendererOptions options = optionsOf({strategy, package::kTracerRayQuery});
         const LinearImage whole = loaded.render(options, setup);
-        ASSERT_FALSE(whole.pixels.empty());
         options.bands = 3;
         options.accumulate = false;
         EXPECT_EQ(loaded.render(options, setup).pixels, whole.pixels);
@@ -136,9 +132,7 @@ TEST(PackedSamples, SayHowPixelsFoundLight) {
     for (const auto record : {package::SampleRecordFormat::Packed, package::SampleRecordFormat::Full}) {
         settings.sampleRecord = record;
         const LoadedScene loaded(scene, settings);
-        ASSERT_TRUE(loaded.ok());
         const auto renderer = loaded.makeRenderer(options);
-        ASSERT_NE(renderer, nullptr);
         ASSERT_TRUE(renderer->render(narrowSetup(scene, 1).frame, 1));
         const auto paths = renderer->readCoverage(package::kEffectReflection);
         ASSERT_TRUE(paths);
@@ -149,7 +143,6 @@ TEST(PackedSamples, SayHowPixelsFoundLight) {
         different += found[0][i] != found[1][i] ? 1 : 0;
     }
     EXPECT_LE(different, found[0].size() / 200);
-    expectNoValidationMessages();
 }
 
 // The march reads the weights of other pixels, and moves the starts of rays.
@@ -182,7 +175,6 @@ TEST(HalfPicture, IsWithinItsBitsOfTheFullOne) {
     settings.strategies = package::kStrategyUber;
     settings.plan.merge = compiler::MergePolicy::All;
     const LoadedScene loaded(scene, settings);
-    ASSERT_TRUE(loaded.ok());
     const RenderSetup setup = narrowSetup(scene, 1);
     // First hits are shaded by compute shaders or by ray generation shaders.
     for (const Way& way : waysOf(package::kStrategyUber, package::kAllTracers)) {
@@ -205,25 +197,21 @@ TEST(HalfPicture, IsWithinItsBitsOfTheFullOne) {
 
 // What a picture of bright light shows in a package with these layers.
 void expectBrightPicture(std::vector<std::string> layers, float expected) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material lamp;
     lamp["emissiveFactor"] = {1.0F, 1.0F, 1.0F};
     lamp["emissiveStrength"] = 1e6F;
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, lamp), {-20, -20, -2}, {40, 0, 0}, {0, 40, 0})));
+    addQuad(scene, lamp, {-20, -20, -2}, {40, 0, 0}, {0, 40, 0});
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     settings.layers = std::move(layers);
     const LoadedScene loaded(scene, settings);
-    ASSERT_TRUE(loaded.ok());
     RendererOptions options;
     options.strategy = package::kStrategyUber;
     options.accumulate = false;
     options.picture = PictureFormat::Half;
     FrameCounters counters;
     const LinearImage image = loaded.render(options, defaultSetup(scene, 16, 16), &counters);
-    ASSERT_FALSE(image.pixels.empty());
     EXPECT_EQ(counters.nonFinite, 0U);
     for (const auto& pixel : image.pixels) {
         EXPECT_NEAR(pixel[0], expected, 1.0F);

@@ -212,11 +212,7 @@ Status measureAll(const Arguments& arguments) {
         for (const std::uint32_t hits : arguments.hits) {
             for (const Spread spread : kSpreads) {
                 Row row{hits, buckets, spread, {}, {}};
-                if (Status status =
-                        measure(*kernel, arguments, makeProblem(spread, buckets, hits), row, held);
-                    !status) {
-                    return status;
-                }
+                GLINT_TRY_DO(measure(*kernel, arguments, makeProblem(spread, buckets, hits), row, held));
                 print(row, orderings);
                 report["rows"].push_back(toJson(row));
             }

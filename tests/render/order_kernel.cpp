@@ -85,17 +85,7 @@ Result<std::unique_ptr<OrderKernel>> OrderKernel::create(Context& context, std::
 
 Status OrderKernel::createPipelines() {
     const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(gpu::PushConstants)};
-    VkPipelineLayoutCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-    info.pushConstantRangeCount = 1;
-    info.pPushConstantRanges = &range;
-    VkPipelineLayout layout = VK_NULL_HANDLE;
-    const VkResult result =
-        context_.vk.CreatePipelineLayout(context_.handles.device, &info, nullptr, &layout);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreatePipelineLayout", result);
-    }
-    layout_ = UniquePipelineLayout(context_, layout);
+    GLINT_TRY(layout_, createPipelineLayout(context_, {}, range));
     GLINT_TRY(const auto modules, compileOrdering(caseCount_, hitRecord_));
     for (const compiler::CompiledModule& module : modules) {
         PipelineCreation creation;

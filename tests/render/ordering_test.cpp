@@ -2,6 +2,7 @@
 // is not so.
 #include "render/harness.h"
 #include "render/order_problems.h"
+#include "support/must.h"
 #include "support/nightly.h"
 
 #include <algorithm>
@@ -27,13 +28,7 @@ bool holds(Ordering ordering, std::uint32_t bucketCount) {
 }
 
 std::unique_ptr<OrderKernel> makeKernel(std::uint32_t bucketCount, HitRecordFormat format) {
-    Result<std::unique_ptr<OrderKernel>> kernel =
-        OrderKernel::create(sharedContext(), bucketCount - 1, format);
-    if (!kernel) {
-        ADD_FAILURE() << toString(kernel.error());
-        return nullptr;
-    }
-    return std::move(*kernel);
+    return must(OrderKernel::create(sharedContext(), bucketCount - 1, format));
 }
 
 void expectDispatch(const gpu::DispatchArguments& arguments, std::uint32_t elements) {
@@ -78,14 +73,12 @@ void expectOrdered(const OrderProblem& problem, std::uint32_t bucketCount, const
 }
 
 void expectAllOrder(OrderKernel& kernel, std::uint32_t bucketCount, const OrderProblem& problem) {
-    const Status loaded = kernel.load(problem);
-    ASSERT_TRUE(loaded) << toString(loaded.error());
+    must(kernel.load(problem));
     for (const Ordering ordering : kOrderings) {
         if (holds(ordering, bucketCount)) {
             SCOPED_TRACE(std::string(nameOf(ordering)));
-            const Result<OrderResult> result = kernel.run(ordering);
-            ASSERT_TRUE(result) << toString(result.error());
-            expectOrdered(problem, bucketCount, *result);
+            const OrderResult result = must(kernel.run(ordering));
+            expectOrdered(problem, bucketCount, result);
         }
     }
 }
@@ -96,7 +89,6 @@ TEST_P(Orderings, GiveEachHitASlotOfItsBucket) {
     const std::uint32_t bucketCount = GetParam();
     for (const HitRecordFormat format : {HitRecordFormat::Full, HitRecordFormat::Packed}) {
         const std::unique_ptr<OrderKernel> kernel = makeKernel(bucketCount, format);
-        ASSERT_NE(kernel, nullptr);
         for (const std::uint32_t alignment : {1U, gpu::kRayGroupSize}) {
             for (const Spread spread : kSpreads) {
                 // The numbers of rays are: none, one, less than a workgroup, one for each bucket, and two
@@ -111,7 +103,6 @@ TEST_P(Orderings, GiveEachHitASlotOfItsBucket) {
             }
         }
     }
-    expectNoValidationMessages();
 }
 
 // At 2^5, 2^8 and 2^10, ballots, scans and keys take another word, round or byte. 1024 is the most that
@@ -134,9 +125,7 @@ TEST(OrderingsOfManyHits, FillDispatchesOfTwoDimensions) {
     constexpr std::uint32_t kBuckets = 33;
     constexpr std::uint32_t kRays = gpu::kMaxRayGroupsX * gpu::kRayGroupSize + 1001;
     const std::unique_ptr<OrderKernel> kernel = makeKernel(kBuckets, HitRecordFormat::Packed);
-    ASSERT_NE(kernel, nullptr);
     expectAllOrder(*kernel, kBuckets, makeProblem(Spread::Zipf, kBuckets, kRays));
-    expectNoValidationMessages();
 }
 
 constexpr std::uint32_t kFaultBuckets = 5;
@@ -177,22 +166,18 @@ std::vector<FaultCase> faultCases() {
 
 TEST(OrderCheck, FindsEveryFault) {
     const std::unique_ptr<OrderKernel> kernel = makeKernel(kFaultBuckets, HitRecordFormat::Full);
-    ASSERT_NE(kernel, nullptr);
     OrderProblem problem = makeProblem(Spread::InTurn, kFaultBuckets, kFaultRays);
     problem.alignment = gpu::kRayGroupSize;
-    const Status loaded = kernel->load(problem);
-    ASSERT_TRUE(loaded) << toString(loaded.error());
+    must(kernel->load(problem));
     for (std::uint32_t hit : {2U, 3U}) {
         ASSERT_EQ(bucketOf(problem, hit, kFaultBuckets), 4 - hit);
     }
     for (const Ordering ordering : kOrderings) {
         for (const FaultCase& fault : faultCases()) {
-            const Result<OrderResult> result = kernel->run(ordering, fault.faults);
-            ASSERT_TRUE(result) << toString(result.error());
-            EXPECT_GE(result->errors, fault.errors) << nameOf(ordering) << ": " << fault.name;
+            const OrderResult result = must(kernel->run(ordering, fault.faults));
+            EXPECT_GE(result.errors, fault.errors) << nameOf(ordering) << ": " << fault.name;
         }
     }
-    expectNoValidationMessages();
 }
 
 }  // namespace

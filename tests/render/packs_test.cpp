@@ -3,6 +3,7 @@
 #include "gltf/import.h"
 #include "materials/declarations.h"
 #include "render/pixel_test.h"
+#include "support/must.h"
 #include "support/printed_files.h"
 #include "support/temporary_folder.h"
 
@@ -50,10 +51,9 @@ TEST_P(ExamplePacks, StrategiesAndMergePoliciesGiveOneImage) {
     gltf::ImportOptions import;
     import.decodeImages = true;
     import.materialModel = &modelOf(folder);
-    const Result<gltf::Scene> scene = importScene(folder + "/scene.gltf", import);
-    ASSERT_TRUE(scene) << toString(scene.error());
-    EXPECT_TRUE(scene->warnings.empty()) << toString(scene->warnings.front());
-    RenderSetup setup = defaultSetup(*scene, 75, 30);
+    const gltf::Scene scene = must(importScene(folder + "/scene.gltf", import));
+    EXPECT_TRUE(scene.warnings.empty()) << toString(scene.warnings.front());
+    RenderSetup setup = defaultSetup(scene, 75, 30);
     setup.frame.maxReflectionRoughness = 1.0F;
     LinearImage reference;
     // PackStages has all strategies; here they are few, because the scene has many cases.
@@ -65,25 +65,20 @@ TEST_P(ExamplePacks, StrategiesAndMergePoliciesGiveOneImage) {
         settings.plan.merge = merge;
         settings.plan.keys.alpha = package::AlphaPolicy::Tested;
         settings.strategies = strategy;
-        const LoadedScene loaded(*scene, settings);
-        ASSERT_TRUE(loaded.ok());
+        const LoadedScene loaded(scene, settings);
         const LinearImage image = loaded.render(strategy, setup);
-        ASSERT_FALSE(image.pixels.empty());
         reference = reference.pixels.empty() ? image : reference;
         expectSameImage(image, reference, std::string(nameOf(merge)));
     }
-    expectNoValidationMessages();
 }
 
 // A black wall with a layer, under one directional light without a sky. Returns the radiance along the axis
 // of the camera, whose direction is the wall's normal turned by `tilt` radians about x.
 Pixel litWall(const materials::Material& material, double tilt, gltf::Float3 light) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const auto cosine = static_cast<float>(std::cos(tilt));
     const auto sine = static_cast<float>(std::sin(tilt));
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), {-4, -4 * cosine, -4 - 4 * sine},
-                                               {8, 0, 0}, {0, 8 * cosine, 8 * sine})));
+    addQuad(scene, material, {-4, -4 * cosine, -4 - 4 * sine}, {8, 0, 0}, {0, 8 * cosine, 8 * sine});
     addDirectionalLight(scene, light, 2.0F);
     RenderSetup setup = defaultSetup(scene, 33, 33);
     setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
@@ -91,9 +86,8 @@ Pixel litWall(const materials::Material& material, double tilt, gltf::Float3 lig
     settings.plan.merge = compiler::MergePolicy::None;
     settings.effects = {};
     const LoadedScene loaded(scene, settings);
-    const LinearImage image =
-        loaded.ok() ? loaded.render(package::kStrategyVisibility, setup) : LinearImage{};
-    return image.pixels.empty() ? Pixel{-1, -1, -1, -1} : at(image, 16, 16);
+    const LinearImage image = loaded.render(package::kStrategyVisibility, setup);
+    return at(image, 16, 16);
 }
 
 struct Direction {
@@ -203,17 +197,15 @@ TEST(Packs, ThePageAddsALobe) {
     const test::TemporaryFolder folder;
     test::writePrintedFiles("material_features.md", folder.path(),
                             {"wax/wax.json", "wax/wax.glsl", "wax/wax_bsdf.glsl"});
-    const Result<const materials::MaterialModel*> model =
-        materials::loadMaterialModel(std::vector{folder.path().string()});
-    ASSERT_TRUE(model) << toString(model.error());
-    materials::Material material = blackMaterial(**model);
+    const const materials::MaterialModel* model =
+        must(materials::loadMaterialModel(std::vector{folder.path().string()}));
+    materials::Material material = blackMaterial(*model);
     material.give("EXAMPLE_materials_wax");
     material["waxFactor"] = 0.5F;
     const Pixel pixel = litWall(material, kTilt, kLight);
     // Lambert's law.
     const Direction l = toWall({-kLight[0], -kLight[1], -kLight[2]}, kTilt);
     EXPECT_NEAR(pixel[0], 2.0 * 0.5 * l.z / std::numbers::pi, 1e-4);
-    expectNoValidationMessages();
 }
 
 TEST(Packs, ErrorsOfGlslNameTheFileTheLineAndTheFeature) {
@@ -227,22 +219,17 @@ TEST(Packs, ErrorsOfGlslNameTheFileTheLineAndTheFeature) {
                         "                         inout Surface surface) {\n"
                         "    nonsense = 1.0;\n"
                         "}\n"));
-    const Result<const materials::MaterialModel*> model =
-        materials::loadMaterialModel(std::vector{folder.path().string()});
-    ASSERT_TRUE(model) << toString(model.error());
-    materials::Material material = blackMaterial(**model);
+    const const materials::MaterialModel* model =
+        must(materials::loadMaterialModel(std::vector{folder.path().string()}));
+    materials::Material material = blackMaterial(*model);
     material.give("EXAMPLE_materials_retroreflection");
     material["retroreflectionFactor"] = 0.75F;
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -2}, {2, 0, 0}, {0, 2, 0})));
-    const Result<compiler::CompiledPackage> package = compiler::compilePackage(scene, {});
-    ASSERT_FALSE(package);
-    EXPECT_EQ(package.error().id, "glsl");
-    EXPECT_EQ(package.error().where, file.string() + ":5");
-    EXPECT_NE(package.error().message.find("feature retroreflection"), std::string::npos)
-        << package.error().message;
+    gltf::Scene scene = sceneWithCamera();
+    addQuad(scene, material, {-1, -1, -2}, {2, 0, 0}, {0, 2, 0});
+    const Diagnostic package = mustFail(compiler::compilePackage(scene, {}));
+    EXPECT_EQ(package.id, "glsl");
+    EXPECT_EQ(package.where, file.string() + ":5");
+    EXPECT_NE(package.message.find("feature retroreflection"), std::string::npos) << package.message;
 }
 
 // Returns the texts of the modules of the example scene, by name, with the packs of `folder`.
@@ -270,9 +257,8 @@ TEST(Packs, AChangeOfGlslChangesItsCaseAlone) {
     fs::copy(kPacks, folder.path(), fs::copy_options::recursive);
     const std::map<std::string, std::string> before = moduleTexts(folder.path().string());
     const fs::path file = folder.path() / "fibre" / "fibre.glsl";
-    const Result<base::Bytes> bytes = base::readFile(file);
-    ASSERT_TRUE(bytes);
-    std::string text(bytes->begin(), bytes->end());
+    const base::Bytes bytes = must(base::readFile(file));
+    std::string text(bytes.begin(), bytes.end());
     const std::size_t place = text.find("return kInversePi /");
     ASSERT_NE(place, std::string::npos);
     text.insert(place + 7, "0.5 * ");

@@ -56,7 +56,7 @@ protected:
         settings.plan.merge = compiler::MergePolicy::None;
         settings.energyCompensation = energyCompensation_;
         const LoadedScene loaded(scene, settings);
-        return loaded.ok() ? loaded.render(GetParam(), setup, counters) : LinearImage{};
+        return loaded.render(GetParam(), setup, counters);
     }
 
     bool energyCompensation_ = true;

@@ -5,6 +5,7 @@
 #include "render/pixel_test.h"
 #include "render/ways.h"
 #include "scene/gpu_scene_state.h"
+#include "support/must.h"
 
 #include <glint/internal/package_modules.h>
 #include <glint/session/scene_view.h>
@@ -43,7 +44,7 @@ RenderSetup hallSetup(const gltf::Scene& scene) {
 // Adds a mirror in front of the camera, across its view.
 void addMirror(gltf::Scene& scene) {
     const int mirror = addMaterial(scene, mirrorMaterial());
-    addInstance(scene, addMesh(scene, makeQuad(mirror, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0})));
+    addQuad(scene, mirror, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0});
 }
 
 bool deviceHas(Tracer tracer) {
@@ -63,13 +64,11 @@ protected:
 void expectAllWaysAgree(const gltf::Scene& scene, const compiler::CompileSettings& settings,
                         const RenderSetup& setup, FrameCounters& counters) {
     const LoadedScene loaded(scene, settings);
-    ASSERT_TRUE(loaded.ok());
     std::optional<LinearImage> reference;
     for (const Way& way : waysOf(settings.strategies, settings.tracers)) {
         SCOPED_TRACE(nameOf(way));
         FrameCounters counted;
         const LinearImage image = loaded.render(optionsOf(way), setup, &counted);
-        ASSERT_FALSE(image.pixels.empty());
         if (!reference) {
             reference = image;
             counters = counted;
@@ -109,8 +108,7 @@ TEST(RayPipelines, PackedHitsToo) {
 
 // First no surface, so that lists have no elements; then one whose rays all leave the scene.
 TEST(RayPipelines, ListsWithoutElementsAndRaysWithoutHits) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const compiler::CompileSettings settings =
         settingsFor(ShadowPlacement::Deferred, compiler::MergePolicy::None);
     FrameCounters counters;
@@ -129,23 +127,19 @@ TEST_F(DeviceWithPipelines, LetsLightAndRaysThroughMasks) {
     const LoadedScene tested(scene, settings);
     settings.plan.keys.alpha = package::AlphaPolicy::Opaque;
     const LoadedScene opaque(scene, settings);
-    ASSERT_TRUE(tested.ok() && opaque.ok());
     const RenderSetup setup = hallSetup(scene);
     const LinearImage withHoles = tested.render(package::kStrategyHitShaders, setup);
     const LinearImage without = opaque.render(package::kStrategyHitShaders, setup);
-    ASSERT_FALSE(withHoles.pixels.empty());
     EXPECT_NE(withHoles.pixels, without.pixels);
 }
 
 // A mirror sees a wall whose shader ID no case has.
 TEST_F(DeviceWithPipelines, ShowsUnknownShadersInMagenta) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addMirror(scene);
     const int red = addMaterial(scene, unlitMaterial(kRed));
-    addInstance(scene, addMesh(scene, makeQuad(red, {9, -9, 3}, {-18, 0, 0}, {0, 18, 0})));
+    addQuad(scene, red, {9, -9, 3}, {-18, 0, 0}, {0, 18, 0});
     const LoadedScene loaded(scene, settingsFor(ShadowPlacement::Inline, compiler::MergePolicy::None));
-    ASSERT_TRUE(loaded.ok());
     const RenderSetup setup = squareSetup(scene);
     expectColor(at(loaded.render(package::kStrategyHitShaders, setup), 16, 16), kRed, 1e-4F, "known");
 
@@ -154,23 +148,17 @@ TEST_F(DeviceWithPipelines, ShowsUnknownShadersInMagenta) {
     options.width = setup.width;
     options.height = setup.height;
     const auto renderer = loaded.makeRenderer(options);
-    ASSERT_NE(renderer, nullptr);
-    const Result<LinearImage> image = renderer->render(setup.frame);
-    ASSERT_TRUE(image) << toString(image.error());
-    expectColor(at(*image, 16, 16), {1.0F, 0.0F, 1.0F}, 1e-4F, "unknown");
-    const Result<FrameCounters> counters = renderer->counters();
-    ASSERT_TRUE(counters) << toString(counters.error());
-    EXPECT_EQ(counters->unknownShader, 32U * 32U);
-    expectNoValidationMessages();
+    const LinearImage image = must(renderer->render(setup.frame));
+    expectColor(at(image, 16, 16), {1.0F, 0.0F, 1.0F}, 1e-4F, "unknown");
+    const FrameCounters counters = must(renderer->counters());
+    EXPECT_EQ(counters.unknownShader, 32U * 32U);
 }
 
 TEST_F(DeviceWithPipelines, RefusesImagesAboveOneDispatch) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     compiler::CompileSettings settings = settingsFor(ShadowPlacement::Inline, compiler::MergePolicy::None);
     settings.strategies = package::kStrategyHitShaders;
     const LoadedScene loaded(scene, settings);
-    ASSERT_TRUE(loaded.ok());
     std::uint32_t& limit = sharedContext().state().limits.rayPipeline.maxRayDispatchInvocationCount;
     const std::uint32_t before = limit;
     RendererOptions options = optionsOf({package::kStrategyHitShaders, package::kTracerRayPipeline});
@@ -200,35 +188,31 @@ TEST_P(OneTracer, IsEnoughForEveryStrategyThatItHas) {
     HeadlessOptions headless;
     headless.validation = Validation::Synchronization;
     headless.tracers = GetParam();
-    const auto context = Context::createHeadless(headless);
-    ASSERT_TRUE(context) << toString(context.error());
-    EXPECT_EQ((*context)->handles().tracers, GetParam());
+    const auto context = must(Context::createHeadless(headless));
+    EXPECT_EQ(context->handles().tracers, GetParam());
 
     const gltf::Scene scene = hallScene();
     const LoadedScene loaded(scene, settingsFor(ShadowPlacement::Inline, compiler::MergePolicy::All));
-    ASSERT_TRUE(loaded.ok());
     const RenderSetup setup = hallSetup(scene);
     const LinearImage reference = loaded.render(package::kStrategyVisibility, setup);
     const session::SceneViewData view = session::makeSceneView(scene);
-    auto uploaded = GpuScene::upload(**context, loaded.package(), view.view());
-    ASSERT_TRUE(uploaded) << toString(uploaded.error());
+    auto uploaded = must(GpuScene::upload(*context, loaded.package(), view.view()));
     for (const Way& way : waysOf(package::allStrategies(), package::kAllTracers)) {
         SCOPED_TRACE(nameOf(way));
         RendererOptions options = optionsOf(way);
         options.width = setup.width;
         options.height = setup.height;
-        auto renderer = Renderer::create(**context, loaded.package(), **uploaded, options);
+        auto renderer = Renderer::create(*context, loaded.package(), *uploaded, options);
         if (way.tracer != GetParam()) {
             ASSERT_FALSE(renderer);
             EXPECT_EQ(renderer.error().id, "device-tracer");
             continue;
         }
         ASSERT_TRUE(renderer) << toString(renderer.error());
-        const Result<LinearImage> image = (*renderer)->render(setup.frame, setup.samples);
-        ASSERT_TRUE(image) << toString(image.error());
-        expectSameImage(*image, reference, nameOf(way));
+        const LinearImage image = must((*renderer)->render(setup.frame, setup.samples));
+        expectSameImage(image, reference, nameOf(way));
     }
-    for (const std::string& message : (*context)->validationMessages()) {
+    for (const std::string& message : context->validationMessages()) {
         ADD_FAILURE() << message;
     }
 }

@@ -3,6 +3,7 @@
 #include "render/pixel_test.h"
 #include "render/scene_builder.h"
 #include "resolve/resolve.h"
+#include "support/must.h"
 #include "support/shared_modules.h"
 
 #include <glint/session/scene_view.h>
@@ -22,14 +23,6 @@ compiler::CompileSettings roomSettings(std::uint32_t strategies, bool fallback) 
     return settings;
 }
 
-materials::Material glossyMaterial(gltf::Float3 color) {
-    materials::Material material;
-    material["baseColorFactor"] = {color[0], color[1], color[2], 1.0F};
-    material["metallicFactor"] = 0.0F;
-    material["roughnessFactor"] = 0.5F;
-    return material;
-}
-
 void giveCoat(materials::Material& material) {
     material.give("KHR_materials_clearcoat");
     material["clearcoatFactor"] = 1.0F;
@@ -43,17 +36,15 @@ void giveSheen(materials::Material& material) {
 }
 
 gltf::Scene roomScene() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-4, -1, 0}, {8, 0, 0},
-                                               {0, 0, -8})));
-    materials::Material coated = glossyMaterial(kGreen);
+    gltf::Scene scene = sceneWithCamera();
+    addQuad(scene, mirrorMaterial(), {-4, -1, 0}, {8, 0, 0}, {0, 0, -8});
+    materials::Material coated = paint(kGreen);
     giveCoat(coated);
-    materials::Material sheen = glossyMaterial(kBlue);
+    materials::Material sheen = paint(kBlue);
     giveSheen(sheen);
     gltf::Mesh walls;
     float x = -4.0F;
-    for (const materials::Material& material : {glossyMaterial(kRed), coated, sheen, unlitMaterial(kGreen)}) {
+    for (const materials::Material& material : {paint(kRed), coated, sheen, unlitMaterial(kGreen)}) {
         walls.primitives.push_back(
             makeQuad(addMaterial(scene, material), {x, -0.9F, -5.0F}, {2, 0, 0}, {0, 4, 0}));
         x += 2.0F;
@@ -72,7 +63,6 @@ gltf::Scene repaintedRoom() {
 
 void expectEqualImage(const LinearImage& image, const LinearImage& reference, const std::string& what) {
     ASSERT_EQ(image.pixels.size(), reference.pixels.size()) << what;
-    ASSERT_FALSE(image.pixels.empty()) << what;
     std::size_t others = 0;
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         others += image.pixels[i] == reference.pixels[i] ? 0 : 1;
@@ -82,13 +72,8 @@ void expectEqualImage(const LinearImage& image, const LinearImage& reference, co
 
 std::shared_ptr<const Package> packageOf(const gltf::Scene& scene,
                                          const compiler::CompileSettings& settings) {
-    auto package =
-        session::compileAndLoad(*compiler::resolve(std::span(&scene, 1), settings), &sharedModules());
-    if (!package) {
-        ADD_FAILURE() << toString(package.error());
-        return nullptr;
-    }
-    return *package;
+    return must(
+        session::compileAndLoad(*compiler::resolve(std::span(&scene, 1), settings), &sharedModules()));
 }
 
 RendererOptions ReplacementTest::optionsOf(package::Strategy strategy,
@@ -108,8 +93,7 @@ LinearImage ReplacementTest::draw(Renderer& renderer) const {
 LinearImage ReplacementTest::fresh(const gltf::Scene& scene, const Package& package,
                                    const RendererOptions& options) const {
     const std::unique_ptr<GpuScene> uploaded = uploadScene(package, scene);
-    const auto renderer = uploaded ? makeRenderer(package, *uploaded, options) : nullptr;
-    return renderer ? draw(*renderer) : LinearImage{};
+    return draw(*makeRenderer(package, *uploaded, options));
 }
 
 }  // namespace glint::testing

@@ -17,7 +17,6 @@ compiler::CompileSettings roomSettings(std::uint32_t strategies, bool fallback =
 
 inline constexpr std::size_t kGlossy = 1;  // the material of the room that is edited
 
-materials::Material glossyMaterial(gltf::Float3 color);
 void giveCoat(materials::Material& material);
 void giveSheen(materials::Material& material);
 // Returns a mirror below walls with a material each.
@@ -31,11 +30,10 @@ inline bool differ(const LinearImage& first, const LinearImage& second) {
     return first.pixels != second.pixels;
 }
 
-// Fails the test and returns null if the scene can't be compiled.
+// Throws as must() does.
 std::shared_ptr<const Package> packageOf(const gltf::Scene& scene, const compiler::CompileSettings& settings);
 
-// Makes small pictures of `setup_`. On failure the functions return null or an image without a size, and the
-// test fails.
+// Makes small pictures of `setup_`.
 class ReplacementTest : public ::testing::Test {
 protected:
     RendererOptions optionsOf(package::Strategy strategy,

@@ -10,16 +10,8 @@
 namespace glint::testing {
 namespace {
 
-materials::Material painted(gltf::Float3 color, float roughness) {
-    materials::Material material;
-    material["baseColorFactor"] = {color[0], color[1], color[2], 1.0F};
-    material["metallicFactor"] = 0.0F;
-    material["roughnessFactor"] = roughness;
-    return material;
-}
-
 materials::Material metal(gltf::Float3 color, float roughness) {
-    materials::Material material = painted(color, roughness);
+    materials::Material material = paint(color, roughness);
     material["metallicFactor"] = 1.0F;
     return material;
 }
@@ -37,7 +29,7 @@ int checkers(gltf::Scene& scene, int size, std::uint8_t otherAlpha) {
 
 void addWall(gltf::Scene& scene, const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
              gltf::Float3 up) {
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, material), corner, right, up)));
+    addQuad(scene, material, corner, right, up);
 }
 
 void addLamp(gltf::Scene& scene, gltf::Float3 position, gltf::Float3 color, float candela) {
@@ -63,19 +55,18 @@ void addStrip(gltf::Scene& scene, const materials::Material& material, int strip
 }
 
 gltf::Scene roomOf(bool everyLobe) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addWall(scene, metal({0.9F, 0.9F, 0.9F}, 0.25F), {-5, -1, 0}, {10, 0, 0}, {0, 0, -5});
 
-    materials::Material textured = painted({1, 1, 1}, 0.8F);
+    materials::Material textured = paint({1, 1, 1}, 0.8F);
     textured.texture("baseColorTexture").texture = checkers(scene, 8, 255);
     addStrip(scene, textured, 0);
-    materials::Material coated = painted({0.7F, 0.05F, 0.05F}, 0.6F);
+    materials::Material coated = paint({0.7F, 0.05F, 0.05F}, 0.6F);
     coated["clearcoatFactor"] = 1.0F;
     coated["clearcoatRoughnessFactor"] = 0.1F;
     addStrip(scene, coated, 1);
     if (everyLobe) {
-        materials::Material cloth = painted({0.2F, 0.2F, 0.5F}, 0.9F);
+        materials::Material cloth = paint({0.2F, 0.2F, 0.5F}, 0.9F);
         cloth["sheenColorFactor"] = {0.8F, 0.6F, 0.4F};
         cloth["sheenRoughnessFactor"] = 0.4F;
         addStrip(scene, cloth, 2);
@@ -87,7 +78,7 @@ gltf::Scene roomOf(bool everyLobe) {
         addStrip(scene, film, 5);
     }
     addStrip(scene, unlitMaterial({0.1F, 0.8F, 0.3F}), 3);
-    materials::Material lamp = painted({0, 0, 0}, 1.0F);
+    materials::Material lamp = paint({0, 0, 0}, 1.0F);
     lamp["emissiveFactor"] = {2.0F, 1.5F, 0.5F};
     addStrip(scene, lamp, 6);
     addStrip(scene, mirrorMaterial(), 7);
@@ -115,17 +106,15 @@ gltf::Scene roomBehindPane() {
     pane["roughnessFactor"] = 0.1F;
     pane["transmissionFactor"] = 0.8F;
     pane.doubleSided = true;
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, pane), {-1.2F, -0.4F, -1.2F}, {1, 0, 0},
-                                               {0, 1, 0})));
+    addQuad(scene, pane, {-1.2F, -0.4F, -1.2F}, {1, 0, 0}, {0, 1, 0});
     return scene;
 }
 
 gltf::Scene roomWithFence() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addWall(scene, mirrorMaterial(), {-3, -2, -4}, {6, 0, 0}, {0, 5, 0});
-    addWall(scene, painted({0.6F, 0.6F, 0.6F}, 0.2F), {-3, -1, 1}, {6, 0, 0}, {0, 0, -5});
-    materials::Material fence = painted({0.9F, 0.8F, 0.3F}, 0.4F);
+    addWall(scene, paint({0.6F, 0.6F, 0.6F}, 0.2F), {-3, -1, 1}, {6, 0, 0}, {0, 0, -5});
+    materials::Material fence = paint({0.9F, 0.8F, 0.3F}, 0.4F);
     fence.alphaMode = materials::AlphaMode::Mask;
     fence.doubleSided = true;
     fence.texture("baseColorTexture").texture = checkers(scene, 8, 0);
@@ -134,7 +123,7 @@ gltf::Scene roomWithFence() {
                                              {0.6F, -1, -2.5F}, {0.8F, 0, 0.3F}, {0, 1.5F, 0}));
     addInstance(scene, post);
     addInstance(scene, post, scaling(-1, 1, 1.2));
-    materials::Material glass = painted({0.9F, 1.0F, 0.95F}, 0.1F);
+    materials::Material glass = paint({0.9F, 1.0F, 0.95F}, 0.1F);
     glass["transmissionFactor"] = 0.8F;
     glass.doubleSided = true;
     addWall(scene, glass, {1.2F, -1, -1.5F}, {0.8F, 0, -1.2F}, {0, 1.8F, 0});

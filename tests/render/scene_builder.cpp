@@ -25,6 +25,12 @@ gltf::Scene emptyScene() {
     return scene;
 }
 
+gltf::Scene sceneWithCamera() {
+    gltf::Scene scene = emptyScene();
+    addCamera(scene);
+    return scene;
+}
+
 int addMaterial(gltf::Scene& scene, const materials::Material& material) {
     scene.materials.push_back(material);
     return static_cast<int>(scene.materials.size()) - 1;
@@ -34,6 +40,14 @@ materials::Material unlitMaterial(gltf::Float3 color) {
     materials::Material material;
     material.give("KHR_materials_unlit");
     material["baseColorFactor"] = {color[0], color[1], color[2], 1.0F};
+    return material;
+}
+
+materials::Material paint(gltf::Float3 color, float roughness) {
+    materials::Material material;
+    material["baseColorFactor"] = {color[0], color[1], color[2], 1.0F};
+    material["metallicFactor"] = 0.0F;
+    material["roughnessFactor"] = roughness;
     return material;
 }
 
@@ -70,6 +84,15 @@ void addInstance(gltf::Scene& scene, int mesh, const gltf::Matrix4& world) {
 
 void addInstance(gltf::Scene& scene, int mesh) {
     addInstance(scene, mesh, scaling(1.0, 1.0, 1.0));
+}
+
+void addQuad(gltf::Scene& scene, int material, gltf::Float3 corner, gltf::Float3 right, gltf::Float3 up) {
+    addInstance(scene, addMesh(scene, makeQuad(material, corner, right, up)));
+}
+
+void addQuad(gltf::Scene& scene, const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
+             gltf::Float3 up) {
+    addQuad(scene, addMaterial(scene, material), corner, right, up);
 }
 
 gltf::Matrix4 scaling(double x, double y, double z) {

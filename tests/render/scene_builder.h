@@ -9,10 +9,14 @@ namespace glint::testing {
 
 // Returns a scene without meshes, cameras or lights.
 gltf::Scene emptyScene();
+// The same with the camera of addCamera().
+gltf::Scene sceneWithCamera();
 
 // Each of these returns the index of what it appends.
 int addMaterial(gltf::Scene& scene, const materials::Material& material);
 materials::Material unlitMaterial(gltf::Float3 color);
+// Returns an opaque dielectric.
+materials::Material paint(gltf::Float3 color, float roughness = 0.5F);
 // Returns a perfect mirror: metallic, roughness 0, white.
 materials::Material mirrorMaterial();
 
@@ -25,6 +29,10 @@ int addMesh(gltf::Scene& scene, gltf::Primitive primitive);
 // `world` is column-major.
 void addInstance(gltf::Scene& scene, int mesh, const gltf::Matrix4& world);
 void addInstance(gltf::Scene& scene, int mesh);
+// Adds an instance of a mesh of one quad, whose material is an index or is added, too.
+void addQuad(gltf::Scene& scene, int material, gltf::Float3 corner, gltf::Float3 right, gltf::Float3 up);
+void addQuad(gltf::Scene& scene, const materials::Material& material, gltf::Float3 corner, gltf::Float3 right,
+             gltf::Float3 up);
 gltf::Matrix4 scaling(double x, double y, double z);
 
 // Adds an image of width × height RGBA8 texels with nearest sampling. Returns the texture.

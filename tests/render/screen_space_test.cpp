@@ -29,14 +29,13 @@ void addBox(gltf::Scene& scene, int material, gltf::Float3 low, gltf::Float3 siz
 
 // Returns a mirror floor one metre below the camera that ends at a wall: blue below 2 m, green above.
 gltf::Scene room() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const int mirror = addMaterial(scene, mirrorMaterial());
     const int blue = addMaterial(scene, unlitMaterial(kBlue));
     const int green = addMaterial(scene, unlitMaterial(kGreen));
-    addInstance(scene, addMesh(scene, makeQuad(mirror, {-20, -1, 4}, {40, 0, 0}, {0, 0, -14})));
-    addInstance(scene, addMesh(scene, makeQuad(blue, {-20, -1, -10}, {40, 0, 0}, {0, 3, 0})));
-    addInstance(scene, addMesh(scene, makeQuad(green, {-20, 2, -10}, {40, 0, 0}, {0, 6, 0})));
+    addQuad(scene, mirror, {-20, -1, 4}, {40, 0, 0}, {0, 0, -14});
+    addQuad(scene, blue, {-20, -1, -10}, {40, 0, 0}, {0, 3, 0});
+    addQuad(scene, green, {-20, 2, -10}, {40, 0, 0}, {0, 6, 0});
     addDirectionalLight(scene, {0, -1, 0}, 1.0F);
     return scene;
 }
@@ -99,7 +98,6 @@ INSTANTIATE_TEST_SUITE_P(Steps, ScreenSpace, ::testing::Values(8U, 24U, kEveryPi
 TEST_P(ScreenSpace, TheFloorShowsBoxAndWall) {
     const gltf::Scene scene = roomWithBox();
     const LoadedScene loaded(scene, compiler::PlanOptions{});
-    ASSERT_TRUE(loaded.ok());
     const TracedFrame frame = traceFrame(loaded, package::kStrategyUber, withSteps(scene, GetParam()));
     ASSERT_FALSE(frame.image.pixels.empty());
     const struct {
@@ -121,7 +119,6 @@ TEST_P(ScreenSpace, TheFloorShowsBoxAndWall) {
 TEST_P(ScreenSpace, AgreesWithRays) {
     const gltf::Scene scene = roomWithBox();
     const LoadedScene loaded(scene, compiler::PlanOptions{});
-    ASSERT_TRUE(loaded.ok());
     RenderSetup setups[] = {withSteps(scene, GetParam()), withSteps(scene, GetParam())};
     // The view is from above with parallel rays; the floor fills the lower half.
     CameraView& camera = setups[1].frame.camera;
@@ -158,9 +155,8 @@ TEST_P(ScreenSpace, WhatIsHiddenIsLeftToRays) {
     const int slab = addMaterial(scene, unlitMaterial({0.9F, 0.9F, 0.1F}));
     const int panel = addMaterial(scene, unlitMaterial(kRed));
     addBox(scene, slab, {-0.8F, 0.45F, -3.2F}, {1.6F, 0.75F, 0.2F});
-    addInstance(scene, addMesh(scene, makeQuad(panel, {-1, 1, -6}, {2, 0, 0}, {0, 1.2F, 0})));
+    addQuad(scene, panel, {-1, 1, -6}, {2, 0, 0}, {0, 1.2F, 0});
     const LoadedScene loaded(scene, compiler::PlanOptions{});
-    ASSERT_TRUE(loaded.ok());
     for (const float thickness : {0.02F, 10.0F}) {
         RenderSetup setup = withSteps(scene, GetParam());
         setup.frame.screenThickness = thickness;
@@ -178,12 +174,10 @@ TEST_P(ScreenSpace, WhatIsHiddenIsLeftToRays) {
 // A convex mirror does not see itself, whatever its facets and normals are.
 TEST_P(ScreenSpace, ASphereDoesNotReflectItself) {
     for (const int rows : {6, 40}) {
-        gltf::Scene scene = emptyScene();
-        addCamera(scene);
+        gltf::Scene scene = sceneWithCamera();
         addInstance(scene, addMesh(scene, makeSphere(addMaterial(scene, mirrorMaterial()),
                                                      {0.1F, -0.2F, -2.0F}, 1.3F, rows)));
         const LoadedScene loaded(scene, compiler::PlanOptions{});
-        ASSERT_TRUE(loaded.ok());
         RenderSetup setup = withSteps(scene, GetParam());
         setup.frame.screenThickness = 1.0F;
         setup.samples = 3;
@@ -197,16 +191,13 @@ TEST_P(ScreenSpace, ASphereDoesNotReflectItself) {
 // Rays that the march has followed pixel by pixel start where it ends, on the same line. Other rays start
 // where they would without it.
 TEST_P(ScreenSpace, RaysStartWhereTheMarchEnds) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-20, -1, 4}, {40, 0, 0},
-                                               {0, 0, -14})));
+    gltf::Scene scene = sceneWithCamera();
+    addQuad(scene, mirrorMaterial(), {-20, -1, 4}, {40, 0, 0}, {0, 0, -14});
     addBox(scene, addMaterial(scene, unlitMaterial(kRed)), {-1.0F, 0.5F, -6.0F}, {2.0F, 1.5F, 1.0F});
     compiler::CompileSettings settings;
     settings.hitRecord = package::HitRecordFormat::Packed;
     settings.maxBounces = 2;  // rays then keep their origins, as frames have one bounce
     const LoadedScene loaded(scene, settings);
-    ASSERT_TRUE(loaded.ok());
     RenderSetup setup = withSteps(scene, GetParam());
     const TracedFrame hybrid = traceFrame(loaded, package::kStrategyVisibility, setup);
     setup.frame.screenSteps = 0;
@@ -242,7 +233,6 @@ TEST_P(ScreenSpace, RaysStartWhereTheMarchEnds) {
 TEST(ScreenSpaceSamples, ConvergeToTheImageOfRays) {
     const gltf::Scene scene = roomWithBox();
     const LoadedScene loaded(scene, compiler::PlanOptions{});
-    ASSERT_TRUE(loaded.ok());
     RenderSetup setup = withSteps(scene, kEveryPixel);
     setup.samples = 16;
     const TracedFrame hybrid = traceFrame(loaded, package::kStrategyUber, setup);
@@ -261,7 +251,6 @@ TEST(ScreenSpaceSamples, ConvergeToTheImageOfRays) {
 TEST(ScreenSpaceSamples, NoThicknessMeansRays) {
     const gltf::Scene scene = roomWithBox();
     const LoadedScene loaded(scene, compiler::PlanOptions{});
-    ASSERT_TRUE(loaded.ok());
     RenderSetup setup = withSteps(scene, kEveryPixel);
     setup.frame.screenThickness = 0.0F;
     const TracedFrame hybrid = traceFrame(loaded, package::kStrategyUber, setup);

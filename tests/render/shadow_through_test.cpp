@@ -45,10 +45,8 @@ double fresnel(double cosine) {
 
 // A wall before the camera, and a light that comes from above; plates above the view may stand in its way.
 gltf::Scene litWall() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, diffuse(0.8F)), {-4, -4, -2}, {8, 0, 0},
-                                               {0, 8, 0})));
+    gltf::Scene scene = sceneWithCamera();
+    addQuad(scene, diffuse(0.8F), {-4, -4, -2}, {8, 0, 0}, {0, 8, 0});
     addDirectionalLight(scene, kLightDirection, 3.0F);
     return scene;
 }
@@ -57,7 +55,7 @@ gltf::Scene litWall() {
 void addPlate(gltf::Scene& scene, int material, float height, bool facesUp = true) {
     const gltf::Float3 right = facesUp ? gltf::Float3{18, 0, 0} : gltf::Float3{-18, 0, 0};
     const float left = facesUp ? -9.0F : 9.0F;
-    addInstance(scene, addMesh(scene, makeQuad(material, {left, height, 2.5F}, right, {0, 0, -4.4F})));
+    addQuad(scene, material, {left, height, 2.5F}, right, {0, 0, -4.4F});
 }
 
 compiler::CompileSettings settingsFor(ShadowThrough through) {
@@ -71,14 +69,13 @@ compiler::CompileSettings settingsFor(ShadowThrough through) {
 
 LinearImage picture(const gltf::Scene& scene, ShadowThrough through) {
     const LoadedScene loaded(scene, settingsFor(through));
-    return loaded.ok() ? loaded.render(package::kStrategyUber, darkSetup(scene, 16)) : LinearImage{};
+    return loaded.render(package::kStrategyUber, darkSetup(scene, 16));
 }
 
 // Expects that each pixel keeps this share of the light that it has without plates.
 void expectShare(const gltf::Scene& scene, ShadowThrough through, const std::array<double, 3>& share) {
     const LinearImage lit = picture(litWall(), ShadowThrough::Alpha);
     const LinearImage shaded = picture(scene, through);
-    ASSERT_FALSE(lit.pixels.empty());
     ASSERT_EQ(shaded.pixels.size(), lit.pixels.size());
     for (std::size_t i = 0; i < lit.pixels.size(); ++i) {
         for (std::size_t channel = 0; channel < 3; ++channel) {
@@ -150,7 +147,6 @@ TEST(ShadowThrough, VolumesThatHoldTheSurfaceOrTheLightAbsorbOneWay) {
         const LinearImage lit = picture(scene, ShadowThrough::Alpha);
         addPlate(scene, addMaterial(scene, absorbing()), 3.0F, !holdsLight);
         const LinearImage shaded = picture(scene, ShadowThrough::Glass);
-        ASSERT_FALSE(lit.pixels.empty());
         ASSERT_EQ(shaded.pixels.size(), lit.pixels.size());
         for (std::size_t i = 0; i < lit.pixels.size(); ++i) {
             // Where the pixel's light comes from is in the green channel; the others follow from it. The
@@ -200,8 +196,7 @@ TEST(ShadowThrough, SettingsDifferInBlendAsTheySay) {
 
 // Returns a room with what light passes: thin and thick glass, a veil and a grid, between lamps and surfaces.
 gltf::Scene glassRoom() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const int grey = addMaterial(scene, diffuse(0.6F));
     const int mirror = addMaterial(scene, mirrorMaterial());
     materials::Material frosted = glass(kFirst);
@@ -217,7 +212,7 @@ gltf::Scene glassRoom() {
     grid.texture("baseColorTexture").texture =
         addTexture(scene, 2, 2, {255, 255, 255, 255, 255, 255, 255, 0, 255, 255, 255, 0, 255, 255, 255, 255});
     const auto add = [&](int material, gltf::Float3 corner, gltf::Float3 right, gltf::Float3 up) {
-        addInstance(scene, addMesh(scene, makeQuad(material, corner, right, up)));
+        addQuad(scene, material, corner, right, up);
     };
     add(grey, {-4, -1.1F, 1}, {8, 0, 0}, {0, 0, -7});
     add(grey, {-4, -1.1F, -5.2F}, {8, 0, 0}, {0, 6, 0});
@@ -257,7 +252,6 @@ TEST(ShadowThrough, EveryStrategyAndTracerGivesTheSamePicture) {
         RendererOptions options = optionsOf(way);
         options.bounces = 2;
         const LinearImage image = loaded.render(options, setup);
-        ASSERT_FALSE(image.pixels.empty());
         reference = reference.value_or(image);
         expectSameImage(image, *reference, name);
     };
@@ -270,7 +264,6 @@ TEST(ShadowThrough, EveryStrategyAndTracerGivesTheSamePicture) {
     if (!ways.empty()) {
         deferred.tracers = ways.front().tracer;
         const LoadedScene loaded(scene, deferred);
-        ASSERT_TRUE(loaded.ok());
         expectSame(loaded, ways.front(), "deferred shadow rays");
     }
 }
@@ -278,15 +271,12 @@ TEST(ShadowThrough, EveryStrategyAndTracerGivesTheSamePicture) {
 // A pane that is as wide as the wall colours light in all, however rough it is: what passes straight for
 // shadow rays comes on all ways for paths. Neither counts the other's light.
 TEST(ShadowThrough, PathsCountTheLightOfRoughGlassOnce) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, diffuse(0.5F)), {-90, -90, -2}, {180, 0, 0},
-                                               {0, 180, 0})));
+    gltf::Scene scene = sceneWithCamera();
+    addQuad(scene, diffuse(0.5F), {-90, -90, -2}, {180, 0, 0}, {0, 180, 0});
     materials::Material frosted = glass({0.9F, 0.9F, 0.9F});
     frosted["roughnessFactor"] = 0.5F;
     frosted.doubleSided = true;
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, frosted), {-90, -90, 0.5F}, {180, 0, 0},
-                                               {0, 180, 0})));
+    addQuad(scene, frosted, {-90, -90, 0.5F}, {180, 0, 0}, {0, 180, 0});
     addDirectionalLight(scene, {0.0F, -0.3713907F, -0.9284767F}, 3.0F);
     const auto mean = [&](ShadowThrough through) {
         compiler::CompileSettings settings = settingsFor(through);
@@ -299,10 +289,8 @@ TEST(ShadowThrough, PathsCountTheLightOfRoughGlassOnce) {
         RenderSetup setup = darkSetup(scene, 16);
         setup.samples = 256;
         double sum = 0.0;
-        if (loaded.ok()) {
-            for (const Pixel& pixel : loaded.render(options, setup).pixels) {
-                sum += pixel[1] / 256.0;
-            }
+        for (const Pixel& pixel : loaded.render(options, setup).pixels) {
+            sum += pixel[1] / 256.0;
         }
         return sum;
     };
@@ -330,7 +318,6 @@ TEST(ShadowThrough, WithoutGlassOrBlendPackagesAreTheSame) {
     const LoadedScene plain(scene, roomSettings(ShadowThrough::Alpha, kInline));
     const LoadedScene opaque(scene, roomSettings(ShadowThrough::Opaque, kInline));
     const LoadedScene passing(scene, roomSettings(ShadowThrough::Glass, kInline));
-    ASSERT_TRUE(plain.ok() && opaque.ok() && passing.ok());
     EXPECT_EQ(opaque.package().shadowThrough(), ShadowThrough::Alpha);
     EXPECT_EQ(passing.package().shadowThrough(), ShadowThrough::Glass);
     EXPECT_EQ(codeOf(plain), codeOf(opaque));
@@ -339,7 +326,6 @@ TEST(ShadowThrough, WithoutGlassOrBlendPackagesAreTheSame) {
     scene.materials.back()["transmissionFactor"] = 0.0F;
     const LoadedScene without(scene, roomSettings(ShadowThrough::Alpha, kInline));
     const LoadedScene asked(scene, roomSettings(ShadowThrough::Glass, kInline));
-    ASSERT_TRUE(without.ok() && asked.ok());
     EXPECT_EQ(asked.package().shadowThrough(), ShadowThrough::Alpha);
     EXPECT_EQ(codeOf(without), codeOf(asked));
 }

@@ -5,6 +5,7 @@
 #include "render/light_pictures.h"
 #include "render/scene_builder.h"
 #include "render/ways.h"
+#include "support/must.h"
 #include "support/nightly.h"
 #include "support/temporary_folder.h"
 
@@ -118,8 +119,7 @@ double meanOfSphere(double candela, double distance) {
 
 // A mirror before the camera, and one behind it.
 gltf::Scene mirrors() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addQuad(scene, mirrorMaterial(), {-50, -50, -2}, {100, 0, 0}, {0, 100, 0});
     addQuad(scene, mirrorMaterial(), {50, -50, 1}, {-100, 0, 0}, {0, 100, 0});
     return scene;
@@ -135,7 +135,6 @@ TEST(FoundLights, MirrorsShowLamps) {
     for (const auto& [bounces, lights] : {std::pair(1U, 0U), std::pair(2U, 0U), std::pair(2U, 1U)}) {
         const LoadedScene loaded =
             load(scene, {SizedLights::On, bounces, package::ShadowThrough::Alpha, false, lights});
-        ASSERT_TRUE(loaded.ok());
         EXPECT_TRUE(loaded.package().sizedLights());
         const LinearImage image = render(loaded, setupOf(scene, 256, 1), bounces);
         // Packages for one bounce do not look for lights at hits.
@@ -149,7 +148,6 @@ TEST(FoundLights, MirrorsShowLamps) {
         EXPECT_NEAR(meanOf(image, 0), expected, 0.015 * expected);
     }
     const LoadedScene unseen = load(scene, {SizedLights::Off});
-    ASSERT_TRUE(unseen.ok());
     EXPECT_FALSE(unseen.package().sizedLights());
     EXPECT_LT(meanOf(render(unseen, setupOf(scene, 16, 1), 1), 0), 0.1 * meanOfSphere(2.0, 3.5));
 }
@@ -157,8 +155,7 @@ TEST(FoundLights, MirrorsShowLamps) {
 // A mirror takes no samples, so what it shows depends on the search for lights alone. All of a few hundred
 // lights are looked at without a hierarchy.
 TEST(FoundLights, AMirrorShowsTheSameWithAHierarchy) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addQuad(scene, mirrorMaterial(), {-50, -50, -2}, {100, 0, 0}, {0, 100, 0});
     std::mt19937 random(7);
     std::uniform_real_distribution<float> unit(0.0F, 1.0F);
@@ -177,7 +174,6 @@ TEST(FoundLights, AMirrorShowsTheSameWithAHierarchy) {
     for (const std::uint32_t lights : {0U, 4U}) {
         const LoadedScene loaded(
             scene, settingsOf({SizedLights::On, 1, package::ShadowThrough::Alpha, false, lights}), sizes);
-        ASSERT_TRUE(loaded.ok());
         images.push_back(render(loaded, setupOf(scene, 16, 1), 1));
         ASSERT_FALSE(images.back().pixels.empty());
     }
@@ -186,26 +182,22 @@ TEST(FoundLights, AMirrorShowsTheSameWithAHierarchy) {
 }
 
 TEST(FoundLights, AMirrorShowsTheSunUnlessItIsHidden) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     addQuad(scene, mirrorMaterial(), {-50, -50, -2}, {100, 0, 0}, {0, 100, 0});
     addDirectionalLight(scene, {0, 0, -1}, 3.0F);
     const double sine = std::sin(kSunHalfAngle);
     const double whole = meanOfDisk(3.0 / (std::numbers::pi * sine * sine), std::tan(kSunHalfAngle));
     const LoadedScene open = load(scene, {});
-    ASSERT_TRUE(open.ok());
     EXPECT_NEAR(meanOf(render(open, setupOf(scene, 256, 1), 1), 0), whole, 0.01 * whole);
     // A black wall behind the camera hides the sun's right half.
     addQuad(scene, matte(0.0F), {50, -50, 3}, {-50, 0, 0}, {0, 100, 0});
     const LoadedScene hidden = load(scene, {});
-    ASSERT_TRUE(hidden.ok());
     EXPECT_NEAR(meanOf(render(hidden, setupOf(scene, 256, 1), 1), 0), 0.5 * whole, 0.02 * whole);
 }
 
 // Thin glass whose index is that of air passes its tint.
 TEST(FoundLights, GlassShowsALamp) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material glass = plastic(1.0F);
     glass["baseColorFactor"] = {0.25F, 0.5F, 0.75F, 1.0F};
     glass["roughnessFactor"] = 0.0F;
@@ -215,7 +207,6 @@ TEST(FoundLights, GlassShowsALamp) {
     addQuad(scene, glass, {-50, -50, -1}, {100, 0, 0}, {0, 100, 0});
     addLamp(scene, {0, 0, -3}, 2.0F);
     const LoadedScene loaded = load(scene, {SizedLights::On, 1, package::ShadowThrough::Alpha, true});
-    ASSERT_TRUE(loaded.ok());
     const LinearImage image = render(loaded, setupOf(scene, 256, 1), 1);
     for (std::size_t channel = 0; channel < 3; ++channel) {
         const double expected = 0.25 * static_cast<double>(channel + 1) * meanOfSphere(2.0, 3.0);
@@ -226,8 +217,7 @@ TEST(FoundLights, GlassShowsALamp) {
 // A room with surfaces of several lobes, lit by lamps and through an opening by a sun. `glazed` puts glass
 // in the opening, and another pane before the wall.
 gltf::Scene room(bool glazed) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     materials::Material glossy = plastic(0.5F);
     glossy["roughnessFactor"] = 0.4F;
     materials::Material coated = plastic(0.3F);
@@ -290,11 +280,9 @@ TEST(FoundLights, TheMeanIsThatOfLightSamples) {
         const gltf::Scene scene = room(one.bounces > 1);
         const std::uint32_t samples = test::nightly() ? 192 : 64;
         const LoadedScene sampled = load(scene, {SizedLights::Off, one.bounces, one.through});
-        ASSERT_TRUE(sampled.ok());
         const MeanEstimate expected = estimate(sampled, scene, one.bounces, samples);
         for (const std::uint32_t lights : one.lights) {
             const LoadedScene found = load(scene, {SizedLights::On, one.bounces, one.through, false, lights});
-            ASSERT_TRUE(found.ok());
             const MeanEstimate mean = estimate(found, scene, one.bounces, samples);
             EXPECT_LT(mean.error, 0.01 * mean.mean);
             expectSameMean(mean, expected,
@@ -316,7 +304,6 @@ TEST(FoundLights, ShareAHierarchyWithTriangles) {
         compiler::CompileSettings settings = settingsOf({sized, 1, package::ShadowThrough::Alpha, false, 2});
         settings.emissiveLights = compiler::EmissiveLights::On;
         const LoadedScene loaded(scene, settings, sizeLights);
-        ASSERT_TRUE(loaded.ok());
         means[sized == SizedLights::On ? 1 : 0] = estimate(loaded, scene, 1, 64);
     }
     expectSameMean(means[1], means[0], "with triangles");
@@ -326,15 +313,12 @@ TEST(FoundLights, ShareAHierarchyWithTriangles) {
 // balance heuristic costs little there.
 TEST(FoundLights, TheNoiseOfHighlightsIsLess) {
     for (const float roughness : {0.05F, 0.4F}) {
-        gltf::Scene scene = emptyScene();
-        addCamera(scene);
+        gltf::Scene scene = sceneWithCamera();
         addQuad(scene, metalOf(roughness), {-50, -50, -2}, {100, 0, 0}, {0, 100, 0});
         addLamp(scene, {0, 0, -0.5F}, 2.0F);
         const LoadedScene found = load(scene, {SizedLights::On});
         const LoadedScene sampled = load(scene, {SizedLights::Off});
-        ASSERT_TRUE(found.ok() && sampled.ok());
         const LinearImage reference = render(found, setupOf(scene, 2048, 1), 1);
-        ASSERT_FALSE(reference.pixels.empty());
         std::array<double, 2> errors{};
         for (int seed = 0; seed < 3; ++seed) {
             errors[0] += squaredDifference(render(sampled, setupOf(scene, 32, 30 + seed), 1), reference);
@@ -370,7 +354,6 @@ TEST(FoundLights, StrategiesAgree) {
                 RenderSetup setup = setupOf(scene, 4, 1);
                 setup.frame.shadowSamples = 2;
                 const LinearImage image = loaded.render(options, setup);
-                ASSERT_FALSE(image.pixels.empty());
                 reference = reference.value_or(image);
                 expectSameImage(image, *reference, nameOf(way));
             },
@@ -402,9 +385,7 @@ TEST(FoundLights, AutoDecidesByBouncesEffectsAndSizes) {
     settings.effects.named = compiler::builtinEffects({"reflection"});
     EXPECT_FALSE(finds()) << "without shadow rays";
     settings.sizedLights = SizedLights::On;
-    const auto refused = compiler::planPackage({&scene, 1}, settings);
-    ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().id, "sized-lights");
+    EXPECT_EQ(mustFail(compiler::planPackage({&scene, 1}, settings)).id, "sized-lights");
 }
 
 // A host's own lights, and the steps of its own rays, are not Glint's to find.
@@ -413,16 +394,12 @@ TEST(FoundLights, AHostsOwnLightsAreNotFound) {
     compiler::CompileSettings settings = settingsOf({SizedLights::On, 2});
     settings.skyLight = compiler::SkyLight::Off;
     settings.passes = package::Passes::Steps;
-    const auto steps = compiler::planPackage({&scene, 1}, settings);
-    ASSERT_FALSE(steps);
-    EXPECT_EQ(steps.error().id, "sized-lights");
+    EXPECT_EQ(mustFail(compiler::planPackage({&scene, 1}, settings)).id, "sized-lights");
     settings.passes = package::Passes::Frame;
     const test::TemporaryFolder folder;
     ASSERT_TRUE(base::writeFile(folder.path() / "lights.glsl", "// lights of a host\n"));
     settings.host = folder.path().string();
-    const auto host = compiler::planPackage({&scene, 1}, settings);
-    ASSERT_FALSE(host);
-    EXPECT_EQ(host.error().id, "sized-lights");
+    EXPECT_EQ(mustFail(compiler::planPackage({&scene, 1}, settings)).id, "sized-lights");
 }
 
 }  // namespace

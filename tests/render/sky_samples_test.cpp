@@ -2,6 +2,7 @@
 #include "render/hit_kernel.h"
 #include "render/scene_builder.h"
 #include "sky/environment.h"
+#include "support/must.h"
 
 #include <glint/environment.h>
 
@@ -49,8 +50,7 @@ double solidAngleOf(std::uint32_t index) {
 
 // Stratified random numbers of 24 bits.
 std::vector<Drawn> draw(bool isMap, const gpu::FrameConstants& constants) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     const int mesh = addMesh(
         scene, makeQuad(addMaterial(scene, materials::Material()), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0}));
     addInstance(scene, mesh);
@@ -58,12 +58,8 @@ std::vector<Drawn> draw(bool isMap, const gpu::FrameConstants& constants) {
     compiler::CompileSettings settings;
     settings.skyLight = compiler::SkyLight::On;
     settings.environmentMap = isMap;
-    const Result<std::unique_ptr<HitKernel>> kernel =
-        HitKernel::create(scene, loaded, "sky_samples.comp", settings);
-    if (!kernel) {
-        ADD_FAILURE() << toString(kernel.error());
-        return {};
-    }
+    const std::unique_ptr<HitKernel> kernel =
+        must(HitKernel::create(scene, loaded, "sky_samples.comp", settings));
     std::mt19937 random(3);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     const auto grid = [](double value) {
@@ -79,16 +75,12 @@ std::vector<Drawn> draw(bool isMap, const gpu::FrameConstants& constants) {
         rays[i].coneWidth = static_cast<float>(unit(random) * 0.999);
         rays[i].coneSpread = static_cast<float>(unit(random) * 0.999);
     }
-    const Result<std::vector<std::uint32_t>> words =
-        (*kernel)->run(constants, rays, kDraws, std::size_t{6} * kDraws);
-    if (!words) {
-        ADD_FAILURE() << toString(words.error());
-        return {};
-    }
+    const std::vector<std::uint32_t> words =
+        must(kernel->run(constants, rays, kDraws, std::size_t{6} * kDraws));
     std::vector<Drawn> drawn(kDraws);
     for (std::uint32_t i = 0; i < kDraws; ++i) {
         const auto at = [&](std::size_t word) {
-            return static_cast<double>(std::bit_cast<float>((*words)[6 * i + word]));
+            return static_cast<double>(std::bit_cast<float>(words[6 * i + word]));
         };
         drawn[i] = {{at(0), at(1), at(2)}, at(3), at(4), at(5)};
     }
@@ -145,13 +137,9 @@ std::vector<Drawn> drawMap(std::uint32_t width, std::uint32_t height, const Texe
         const float value = texel(i % width, i / width);
         image.pixels.push_back({value, value, value, 1.0F});
     }
-    const Result<std::unique_ptr<Environment>> map =
-        Environment::create(sharedContext(), image, {.sampled = true});
-    if (!map) {
-        ADD_FAILURE() << toString(map.error());
-        return {};
-    }
-    const Environment::State& state = *(*map)->state();
+    const std::unique_ptr<Environment> map =
+        must(Environment::create(sharedContext(), image, {.sampled = true}));
+    const Environment::State& state = *map->state();
     EXPECT_EQ(state.countColumns, kColumns);
     EXPECT_EQ(state.countRows, kRows);
     gpu::FrameConstants constants{};

@@ -6,6 +6,7 @@
 #include "render/scene_builder.h"
 #include "render/ways.h"
 #include "scene/gpu_scene_state.h"
+#include "support/must.h"
 
 #include <glint/measure/views.h>
 
@@ -25,8 +26,7 @@ constexpr std::uint32_t kNothing = 0xFFFFFFFF;
 // A wall that fills the left half of the picture, 3 m ahead, with a checkered texture of 64 by 64 texels. A
 // light shines along the view.
 gltf::Scene litWall() {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
+    gltf::Scene scene = sceneWithCamera();
     std::vector<std::uint8_t> texels;
     for (int i = 0; i < 64 * 64; ++i) {
         const auto value = static_cast<std::uint8_t>((i + i / 64) % 2 == 0 ? 255 : 64);
@@ -38,8 +38,7 @@ gltf::Scene litWall() {
     // Changes nothing, so that no pixel reads it. Its texels are much larger.
     paper.texture("normalTexture").texture = addTexture(scene, 2, 2, std::vector<std::uint8_t>(16, 200));
     paper["normalScale"] = 0.0F;
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, paper), {-6, -3, -3}, {6, 0, 0}, {0, 6, 0})));
+    addQuad(scene, paper, {-6, -3, -3}, {6, 0, 0}, {0, 6, 0});
     addDirectionalLight(scene, {0, 0, -1}, 3.0F);
     return scene;
 }
@@ -57,13 +56,11 @@ TEST(Views, LayersHaveTheValuesOfASceneThatIsKnown) {
     materials::Material fence;
     fence.alphaMode = materials::AlphaMode::Mask;
     fence.texture("baseColorTexture").texture = 0;
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, fence), {-9, -9, 2}, {18, 0, 0}, {0, 18, 0})));
+    addQuad(scene, fence, {-9, -9, 2}, {18, 0, 0}, {0, 18, 0});
     compiler::CompileSettings settings = settingsWith(
         {"rays", "candidates", "non-finite", "texture-level", "footprint", "branches", "lobes", "shader"});
     settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     LayeredScene shown(scene, settings, 16, 16);
-    ASSERT_TRUE(shown.ok());
     shown.render();
     const LayerSet layers(shown.renderer());
     std::size_t oneCandidate = 0;
@@ -88,20 +85,17 @@ TEST(Views, LayersHaveTheValuesOfASceneThatIsKnown) {
     const std::size_t middle = 8 * 16 + 7;
     EXPECT_NEAR(layers.at("footprint", middle, 0), 0.375, 0.005);
     EXPECT_NEAR(layers.at("texture-level", middle, 0), 2.0, 0.05);
-    expectNoValidationMessages();
 }
 
 TEST(Views, SumsAreOverAllSamples) {
     const gltf::Scene scene = litWall();
     const LoadedScene loaded(scene, settingsWith({"rays"}));
-    ASSERT_TRUE(loaded.ok());
     RendererOptions options;
     options.width = 16;
     options.height = 16;
     const auto renderer = loaded.makeRenderer(options);
-    ASSERT_NE(renderer, nullptr);
     for (int picture = 0; picture < 2; ++picture) {
-        ASSERT_TRUE(renderer->render(defaultSetup(scene, 16, 16).frame, 3).ok());
+        must(renderer->render(defaultSetup(scene, 16, 16).frame, 3));
         EXPECT_EQ(LayerSet(*renderer).integer("rays", 8 * 16 + 4), 3U) << "and each picture begins anew";
     }
 }
@@ -113,7 +107,6 @@ TEST(Views, CountInfiniteSamples) {
     addDirectionalLight(scene, {0, 0, -1}, 3e38F);
     addDirectionalLight(scene, {0, 0, -1}, 3e38F);
     LayeredScene shown(scene, settingsWith({"non-finite"}), 16, 16);
-    ASSERT_TRUE(shown.ok());
     shown.render();
     const LayerSet layers(shown.renderer());
     EXPECT_EQ(layers.integer("non-finite", 8 * 16 + 4), package::kInfiniteSample);
@@ -122,12 +115,9 @@ TEST(Views, CountInfiniteSamples) {
 
 // A wall on the left and one on the right, 3 m ahead. They share their mesh's shape alone.
 gltf::Scene twoWalls(const materials::Material& left, const materials::Material& right, float z) {
-    gltf::Scene scene = emptyScene();
-    addCamera(scene);
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, left), {-9, -9, z}, {9, 0, 0}, {0, 18, 0})));
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, right), {0, -9, z}, {9, 0, 0}, {0, 18, 0})));
+    gltf::Scene scene = sceneWithCamera();
+    addQuad(scene, left, {-9, -9, z}, {9, 0, 0}, {0, 18, 0});
+    addQuad(scene, right, {0, -9, z}, {9, 0, 0}, {0, 18, 0});
     addDirectionalLight(scene, {0, 0, -1}, 3.0F);
     return scene;
 }
@@ -148,17 +138,15 @@ TEST(Views, FindWhatIsNotANumber) {
     broken["emissiveFactor"] = {1.0F, std::numeric_limits<float>::quiet_NaN(), 0.0F};
     const gltf::Scene scene = twoWalls(plain, broken, -3);
     LayeredScene shown(scene, settingsWith({"non-finite"}), 16, 16);
-    ASSERT_TRUE(shown.ok());
     shown.render();
     measure::ViewInput input;
     input.package = &shown.package();
-    const Result<measure::View> view =
-        measure::makeView(*measure::parseView("non-finite"), shown.renderer(), input);
-    ASSERT_TRUE(view.ok()) << toString(view.error());
-    EXPECT_EQ(pixelsOf(*view, "not a number"), 128U);
-    EXPECT_EQ(pixelsOf(*view, "finite"), 128U);
+    const measure::View view =
+        must(measure::makeView(*measure::parseView("non-finite"), shown.renderer(), input));
+    EXPECT_EQ(pixelsOf(view, "not a number"), 128U);
+    EXPECT_EQ(pixelsOf(view, "finite"), 128U);
     for (std::size_t i = 0; i < 16 * 16; ++i) {
-        EXPECT_EQ(view->picture.pixels[i] == view->picture.pixels[15], i % 16 >= 8) << i;
+        EXPECT_EQ(view.picture.pixels[i] == view.picture.pixels[15], i % 16 >= 8) << i;
     }
 }
 
@@ -175,8 +163,7 @@ gltf::Scene mirroredWalls() {
     for (gltf::Mesh& mesh : scene.meshes) {
         mesh.primitives[0].indices = {0, 2, 1, 0, 3, 2};  // they face the mirror
     }
-    addInstance(scene, addMesh(scene, makeQuad(addMaterial(scene, mirrorMaterial()), {-9, -9, -3}, {18, 0, 0},
-                                               {0, 18, 0})));
+    addQuad(scene, mirrorMaterial(), {-9, -9, -3}, {18, 0, 0}, {0, 18, 0});
     return scene;
 }
 
@@ -188,18 +175,15 @@ void expectRightHalf(const gltf::Scene& scene, const LoadedScene& loaded, GpuSce
     options.width = 16;
     options.height = 16;
     const auto renderer = makeRenderer(loaded.package(), gpuScene, options);
-    ASSERT_NE(renderer, nullptr);
-    ASSERT_TRUE(renderer->render(defaultSetup(scene, 16, 16).frame, 1).ok());
+    must(renderer->render(defaultSetup(scene, 16, 16).frame, 1));
     measure::ViewInput input;
     input.package = &loaded.package();
-    const Result<measure::View> view = measure::makeView(*measure::parseView("fallback"), *renderer, input);
-    ASSERT_TRUE(view.ok()) << toString(view.error());
-    EXPECT_EQ(pixelsOf(*view, category), 128U);
-    EXPECT_EQ(pixelsOf(*view, "has a case"), 128U);
+    const measure::View view = must(measure::makeView(*measure::parseView("fallback"), *renderer, input));
+    EXPECT_EQ(pixelsOf(view, category), 128U);
+    EXPECT_EQ(pixelsOf(view, "has a case"), 128U);
     for (std::size_t i = 0; i < 16 * 16; ++i) {
-        EXPECT_EQ(view->picture.pixels[i] == view->picture.pixels[15], i % 16 >= 8) << i;
+        EXPECT_EQ(view.picture.pixels[i] == view.picture.pixels[15], i % 16 >= 8) << i;
     }
-    expectNoValidationMessages();
 }
 
 compiler::CompileSettings settingsOfHits(bool hasFallback) {
@@ -213,7 +197,6 @@ compiler::CompileSettings settingsOfHits(bool hasFallback) {
 TEST(Views, FindHitsOfTheFallback) {
     const gltf::Scene scene = mirroredWalls();
     const LoadedScene loaded(scene, settingsOfHits(true));
-    ASSERT_TRUE(loaded.ok());
     const auto gpuScene = uploadScene(loaded.package(), scene, [](SceneView& view) { view.editable = true; });
     ASSERT_NE(gpuScene, nullptr);
     SceneEditor& editor = *gpuScene->editor();
@@ -222,13 +205,11 @@ TEST(Views, FindHitsOfTheFallback) {
     const session::MaterialSourceData source = session::makeMaterialSource(
         loaded.package(), session::recordLayoutOf(loaded.package(), both.model()), scene, both,
         session::uploadedTextures(editor, loaded.package().scene(0), scene));
-    const Result<MaterialHandle> added = editor.addMaterial(source.view());
-    ASSERT_TRUE(added.ok()) << toString(added.error());
-    const Result<EditReport> set = editor.setInstanceMaterial(editor.instance(1), 0, *added);
-    ASSERT_TRUE(set.ok()) << toString(set.error());
-    EXPECT_EQ(set->missing.size(), 1U);
+    const MaterialHandle added = must(editor.addMaterial(source.view()));
+    const EditReport set = must(editor.setInstanceMaterial(editor.instance(1), 0, added));
+    EXPECT_EQ(set.missing.size(), 1U);
     TwoFrames frames(sharedContext());
-    ASSERT_TRUE(editor.record(frames.begin(), frames.frame()).ok());
+    must(editor.record(frames.begin(), frames.frame()));
     frames.submit();
     frames.drain();
     expectRightHalf(scene, loaded, *gpuScene, "fallback");
@@ -239,7 +220,6 @@ TEST(Views, FindHitsWithoutACase) {
     constexpr std::uint32_t kUnknown = 77;
     const gltf::Scene scene = mirroredWalls();
     const LoadedScene loaded(scene, settingsOfHits(false));
-    ASSERT_TRUE(loaded.ok());
     const GpuScene::State& state = loaded.gpuScene().state();
     const std::uint32_t wall = loaded.package().scene(0).primitives[1].shaderId;
     const auto place = std::ranges::find(state.shaderIds, wall) - state.shaderIds.begin();
@@ -262,15 +242,13 @@ TEST(Views, CostNeedsNoRays) {
     coated.give("KHR_materials_clearcoat");
     coated["clearcoatFactor"] = 1.0F;
     LayeredScene shown(twoWalls(plain, coated, -3), settingsWith(measure::layersFor(cost)), 16, 16);
-    ASSERT_TRUE(shown.ok());
     shown.render();
     measure::ViewInput input;
     input.package = &shown.package();
-    const Result<measure::View> view = measure::makeView(cost, shown.renderer(), input);
-    ASSERT_TRUE(view.ok()) << toString(view.error());
-    EXPECT_EQ(view->statistics.numbers, 256U);
-    EXPECT_LT(view->statistics.least, view->statistics.greatest) << "the coat costs more";
-    EXPECT_NEAR(view->statistics.mean, (view->statistics.least + view->statistics.greatest) / 2.0, 1e-6);
+    const measure::View view = must(measure::makeView(cost, shown.renderer(), input));
+    EXPECT_EQ(view.statistics.numbers, 256U);
+    EXPECT_LT(view.statistics.least, view.statistics.greatest) << "the coat costs more";
+    EXPECT_NEAR(view.statistics.mean, (view.statistics.least + view.statistics.greatest) / 2.0, 1e-6);
 }
 
 TEST(Views, EveryStrategyGivesTheSame) {
@@ -286,8 +264,7 @@ TEST(Views, EveryStrategyGivesTheSame) {
         options.width = 48;
         options.height = 28;
         const auto renderer = loaded.makeRenderer(options);
-        ASSERT_NE(renderer, nullptr);
-        ASSERT_TRUE(renderer->render(defaultSetup(scene, 48, 28).frame, 1).ok());
+        must(renderer->render(defaultSetup(scene, 48, 28).frame, 1));
         const LayerSet layers(*renderer);
         std::size_t hits = 0;
         std::uint32_t mostCases = 0;
@@ -313,7 +290,6 @@ TEST(Views, EveryStrategyGivesTheSame) {
             }
             EXPECT_EQ(first.try_emplace(layer, values).first->second, values) << nameOf(way) << ": " << layer;
         }
-        expectNoValidationMessages();
     });
 }
 
@@ -323,29 +299,24 @@ TEST(Views, AreMadeOfARenderersLayers) {
     compiler::CompileSettings settings;
     settings.layers = measure::layersFor(choice);
     LayeredScene shown(scene, settings, 32, 18);
-    ASSERT_TRUE(shown.ok());
     shown.render();
     measure::ViewInput input;
     input.package = &shown.package();
-    const Result<measure::View> view = measure::makeView(choice, shown.renderer(), input);
-    ASSERT_TRUE(view.ok()) << toString(view.error());
+    const measure::View view = must(measure::makeView(choice, shown.renderer(), input));
     std::uint64_t pixels = 0;
-    for (const measure::ViewStatistics::Category& one : view->statistics.categories) {
+    for (const measure::ViewStatistics::Category& one : view.statistics.categories) {
         pixels += one.pixels;
     }
     EXPECT_EQ(pixels, 32U * 18U);
-    EXPECT_EQ(view->picture.pixels.size(), 32U * 18U);
+    EXPECT_EQ(view.picture.pixels.size(), 32U * 18U);
 
-    const auto missing = measure::makeView(*measure::parseView("rays"), shown.renderer(), input);
-    ASSERT_FALSE(missing.ok());
-    EXPECT_EQ(missing.error().id, "view-layer");
-    const auto unknown =
-        measure::makeView(*measure::parseView("refraction.hit-shader"), shown.renderer(), input);
-    ASSERT_FALSE(unknown.ok());
-    EXPECT_EQ(unknown.error().id, "view-source");
-    const auto alone = measure::makeView(*measure::parseView("difference"), shown.renderer(), input);
-    ASSERT_FALSE(alone.ok());
-    EXPECT_EQ(alone.error().id, "view-reference");
+    EXPECT_EQ(mustFail(measure::makeView(*measure::parseView("rays"), shown.renderer(), input)).id,
+              "view-layer");
+    EXPECT_EQ(
+        mustFail(measure::makeView(*measure::parseView("refraction.hit-shader"), shown.renderer(), input)).id,
+        "view-source");
+    EXPECT_EQ(mustFail(measure::makeView(*measure::parseView("difference"), shown.renderer(), input)).id,
+              "view-reference");
 }
 
 }  // namespace

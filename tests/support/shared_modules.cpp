@@ -21,13 +21,9 @@ Result<std::vector<std::uint32_t>> compileComputeOnce(const std::string& name, c
     if (std::optional<compiler::CachedModule> found = sharedModules().find(text)) {
         return std::move(found->spirv);
     }
-    Result<compiler::CachedModule> compiled =
-        compiler::compileMeasured({name, compiler::ShaderStage::Compute, glsl, {}}, {});
-    if (!compiled) {
-        return compiled.error();
-    }
-    sharedModules().put(text, *compiled);
-    return std::move(compiled->spirv);
+    GLINT_TRY(auto compiled, compiler::compileMeasured({name, compiler::ShaderStage::Compute, glsl, {}}, {}));
+    sharedModules().put(text, compiled);
+    return std::move(compiled.spirv);
 }
 
 }  // namespace glint::testing

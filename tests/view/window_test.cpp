@@ -47,8 +47,7 @@ protected:
         if (std::ranges::find(more, "--size") == more.end()) {
             words.insert(words.end(), {"--size", "320x180"});
         }
-        Outcome outcome = run(words, {{"DISPLAY", screen().display()}});
-        EXPECT_EQ(outcome.exit, 0) << outcome.err;
+        Outcome outcome = must(run(words, {{"DISPLAY", screen().display()}}));
         return outcome;
     }
     Json report(const std::string& file) const {
@@ -448,8 +447,7 @@ TEST_F(WindowTest, ShowsViewsAndLayers) {
     // The layer is in an OpenEXR file.
     EXPECT_TRUE(has(readText(path("scene-002.sh")), "--layers depth")) << readText(path("scene-002.sh"));
     fs::rename(path("scene-002.exr"), path("shot.exr"));
-    const Outcome layers = runProgram({"sh", "scene-002.sh"}, {{"PATH", search}});
-    ASSERT_EQ(layers.exit, 0) << layers.err;
+    must(runProgram({"sh", "scene-002.sh"}, {{"PATH", search}}));
     EXPECT_TRUE(has(readText(path("shot.exr")), "depth.Z"));
     EXPECT_EQ(readText(path("shot.exr")), readText(path("scene-002.exr")));
     EXPECT_EQ(report("after.json").at("look"), "");
@@ -564,8 +562,7 @@ TEST_F(WindowTest, FinerLevelsOfTexturesFollow) {
     EXPECT_EQ(report("done.json").at("missingLevels"), 0);
     const std::string search = fs::path(commandPath()).parent_path().string() + ":" + std::getenv("PATH");
     fs::rename(path("scene-001.png"), path("shot.png"));
-    const Outcome again = runProgram({"sh", "scene-001.sh"}, {{"PATH", search}});
-    ASSERT_EQ(again.exit, 0) << again.err;
+    must(runProgram({"sh", "scene-001.sh"}, {{"PATH", search}}));
     EXPECT_LT(shareDiffering(image("shot.png"), image("scene-001.png")), 0.02);
 }
 

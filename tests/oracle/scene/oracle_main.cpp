@@ -166,11 +166,8 @@ Status runPaths(const Settings& settings, const OracleInput& input) {
         const PathPicture reflecting = pathPicture(reflectingTracer, input.view, sampling);
         difference = pathDifference(device, truth, &reflecting, input.scene, settings.deviceSamples);
         if (!settings.difference.empty()) {
-            if (Status status = image::writeImage(settings.difference,
-                                                  image::differenceMap(device, toImage(truth.picture)));
-                !status) {
-                return status;
-            }
+            GLINT_TRY_DO(
+                image::writeImage(settings.difference, image::differenceMap(device, toImage(truth.picture))));
         }
         std::fputs(toText(*difference, settings.list).c_str(), stdout);
     }
@@ -208,11 +205,7 @@ Status run(const Settings& settings) {
     GLINT_TRY(const auto device, readPicture(settings.against, truth));
     GLINT_TRY(const auto difference, compare(settings, input, renderer, truth, device));
     if (!settings.difference.empty()) {
-        if (Status status =
-                image::writeImage(settings.difference, image::differenceMap(device, toImage(truth)));
-            !status) {
-            return status;
-        }
+        GLINT_TRY_DO(image::writeImage(settings.difference, image::differenceMap(device, toImage(truth))));
     }
     std::fputs(toText(difference, settings.list).c_str(), stdout);
     return settings.json.empty()

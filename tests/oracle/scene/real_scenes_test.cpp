@@ -7,6 +7,7 @@
 #include "render/harness.h"
 #include "support/effect_bits.h"
 #include "support/models.h"
+#include "support/must.h"
 #include "support/nightly.h"
 #include "support/temporary_folder.h"
 
@@ -59,7 +60,7 @@ public:
     }
     LinearImage render(std::uint32_t samples) {
         setup_.samples = samples;
-        return loaded_.ok() ? loaded_.render(package::kStrategyVisibility, setup_) : LinearImage{};
+        return loaded_.render(package::kStrategyVisibility, setup_);
     }
 
 private:
@@ -83,17 +84,8 @@ SrgbTable deviceTexels() {
         ADD_FAILURE() << "can't write the scene of texels";
         return exactSrgb();
     }
-    const Result<OracleInput> input = readOracleInput({folder.path() / "texels.gltf", "", ""}, 16, 16);
-    if (!input) {
-        ADD_FAILURE() << toString(input.error());
-        return exactSrgb();
-    }
-    const Result<SrgbTable> table = texelsOf(Device(*input, 16, 16).render(1), "the device's picture");
-    if (!table) {
-        ADD_FAILURE() << toString(table.error());
-        return exactSrgb();
-    }
-    return *table;
+    const OracleInput input = must(readOracleInput({folder.path() / "texels.gltf", "", ""}, 16, 16));
+    return must(texelsOf(Device(input, 16, 16).render(1), "the device's picture"));
 }
 
 const SrgbTable& sharedTexels() {
@@ -122,16 +114,14 @@ TEST_P(RealScenes, AgreeWithTheOracle) {
     if (!fs::exists(subject.path)) {
         GTEST_SKIP() << test::noModels(subject.path);
     }
-    const Result<OracleInput> input = readOracleInput({subject.path, "", ""}, kWidth, kHeight);
-    ASSERT_TRUE(input.ok()) << toString(input.error());
+    const OracleInput input = must(readOracleInput({subject.path, "", ""}, kWidth, kHeight));
     const SceneRenderer renderer(
-        input->scene, {.sky = defaultSky(), .mirrorRoughness = kMirrorRoughness, .srgb = sharedTexels()});
-    Device device(*input);
+        input.scene, {.sky = defaultSky(), .mirrorRoughness = kMirrorRoughness, .srgb = sharedTexels()});
+    Device device(input);
 
     const LinearImage first = device.render(1);
-    ASSERT_FALSE(first.pixels.empty());
     const Difference centres =
-        centreDifference(first, centrePicture(renderer, input->view), renderer, input->view);
+        centreDifference(first, centrePicture(renderer, input.view), renderer, input.view);
     SCOPED_TRACE(toText(centres, 20));
     EXPECT_EQ(centres.notFinite, 0U);
     EXPECT_LE(centres.median, subject.bounds.median);
@@ -139,31 +129,29 @@ TEST_P(RealScenes, AgreeWithTheOracle) {
     EXPECT_LE(centres.count(Cause::Other), subject.bounds.other);
 
     const LinearImage converged = device.render(kSamples);
-    ASSERT_FALSE(converged.pixels.empty());
     // At the same points as the device's samples, only chance and arithmetic differ.
     const Difference samples =
-        meanDifference(converged, samplePicture(renderer, input->view, kSamples), kSamples);
+        meanDifference(converged, samplePicture(renderer, input.view, kSamples), kSamples);
     SCOPED_TRACE(toText(samples, 10));
     EXPECT_LE(samples.rootMeanSquare, 1.2 * samples.expected + subject.bounds.rms);
     EXPECT_LE(std::abs(samples.signedMean), 4.0 * samples.signedError + subject.bounds.mean);
     // This compares means over the whole pixels.
-    const Difference means = meanDifference(converged, meanPicture(renderer, input->view, {4, 4}), kSamples);
+    const Difference means = meanDifference(converged, meanPicture(renderer, input.view, {4, 4}), kSamples);
     SCOPED_TRACE(toText(means, 10));
     EXPECT_LE(std::abs(means.signedMean), 4.0 * means.signedError + subject.bounds.mean);
 }
 
 // A device that is off by 1 % somewhere, or by 0.1 % everywhere, is detected.
 TEST(RealScenes, SeeWhatIsOff) {
-    const Result<OracleInput> input = readOracleInput({GLINT_GALLERY_SCENE, "", ""}, kWidth, kHeight);
-    ASSERT_TRUE(input.ok()) << toString(input.error());
-    const SceneRenderer renderer(input->scene, {.sky = defaultSky(), .mirrorRoughness = kMirrorRoughness});
-    const Picture truth = centrePicture(renderer, input->view);
+    const OracleInput input = must(readOracleInput({GLINT_GALLERY_SCENE, "", ""}, kWidth, kHeight));
+    const SceneRenderer renderer(input.scene, {.sky = defaultSky(), .mirrorRoughness = kMirrorRoughness});
+    const Picture truth = centrePicture(renderer, input.view);
     LinearImage image = toImage(truth);
-    EXPECT_EQ(centreDifference(image, truth, renderer, input->view).different.size(), 0U);
+    EXPECT_EQ(centreDifference(image, truth, renderer, input.view).different.size(), 0U);
     for (float& channel : image.pixels[1000]) {
         channel *= 1.01F;
     }
-    const Difference one = centreDifference(image, truth, renderer, input->view);
+    const Difference one = centreDifference(image, truth, renderer, input.view);
     ASSERT_EQ(one.different.size(), 1U);
     EXPECT_EQ(one.different[0].x, 1000U % kWidth);
     EXPECT_EQ(one.different[0].y, 1000U / kWidth);

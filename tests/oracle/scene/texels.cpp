@@ -43,15 +43,11 @@ Status writeTexelScene(const std::filesystem::path& folder) {
         const auto grey = static_cast<std::uint8_t>(i);
         image.pixels.push_back({grey, grey, grey});
     }
-    if (Status status = image::writeImage(folder / "texels.png", image); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(image::writeImage(folder / "texels.png", image));
     // glTF is little-endian, and so are all machines that Glint runs on.
     std::string corners(sizeof kCorners, '\0');
     std::memcpy(corners.data(), kCorners, sizeof kCorners);
-    if (Status status = base::writeFile(folder / "texels.bin", corners); !status) {
-        return status;
-    }
+    GLINT_TRY_DO(base::writeFile(folder / "texels.bin", corners));
     return base::writeFile(folder / "texels.gltf", std::string(kScene));
 }
 

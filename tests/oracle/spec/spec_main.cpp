@@ -70,9 +70,6 @@ int compareAll(const Rows& rows, Settings settings, std::vector<Comparison>& tab
         }
         settings.options.device.compensation = compensation;
         Comparer comparer(rows, settings.options);
-        if (!comparer.ok()) {
-            return 1;
-        }
         for (std::size_t row = 0; row < rows.rows.size(); ++row) {
             const std::size_t first = table.size();
             compareRow(comparer, row, rows.rows[row].sphere, settings, table);

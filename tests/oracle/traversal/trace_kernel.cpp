@@ -63,20 +63,8 @@ Result<std::unique_ptr<TraceKernel>> TraceKernel::create(Context& context, VkDes
 }
 
 Status TraceKernel::createPipeline(VkDescriptorSetLayout layout) {
-    const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(Pushed)};
-    VkPipelineLayoutCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
-    info.setLayoutCount = 1;
-    info.pSetLayouts = &layout;
-    info.pushConstantRangeCount = 1;
-    info.pPushConstantRanges = &range;
-    VkPipelineLayout handle = VK_NULL_HANDLE;
-    const VkResult result =
-        context_.vk.CreatePipelineLayout(context_.handles.device, &info, nullptr, &handle);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreatePipelineLayout", result);
-    }
-    layout_ = UniquePipelineLayout(context_, handle);
+    GLINT_TRY(layout_, createPipelineLayout(context_, std::span(&layout, 1),
+                                            {VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(Pushed)}));
     GLINT_TRY(const auto words,
               compiler::compileShader({"trace", compiler::ShaderStage::Compute, kShader}, {}));
     GLINT_TRY(pipeline_, createComputePipeline(context_, words, layout_.get()));

@@ -1,6 +1,7 @@
 #include "cache/store.h"
 
 #include "base/files.h"
+#include "support/must.h"
 #include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -68,18 +69,17 @@ TEST_F(Store, TakesNoDamagedEntryAndReplacesIt) {
     compiler::CacheStore store(options());
     store.put("module", "key", "the value");
     const fs::path file = entriesOf(folder()).at(0);
-    const Result<base::Bytes> whole = base::readFile(file);
-    ASSERT_TRUE(whole);
+    const base::Bytes whole = must(base::readFile(file));
     // Changes every byte, and cuts at every length.
-    for (std::size_t i = 0; i < whole->size(); ++i) {
-        base::Bytes damaged = *whole;
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+        base::Bytes damaged = whole;
         damaged[i] ^= 0x10U;
         ASSERT_TRUE(base::writeFile(file, damaged));
         EXPECT_FALSE(store.find("module", "key")) << "byte " << i;
-        ASSERT_TRUE(base::writeFile(file, std::span(*whole).first(i)));
+        ASSERT_TRUE(base::writeFile(file, std::span(whole).first(i)));
         EXPECT_FALSE(store.find("module", "key")) << "cut at " << i;
     }
-    base::Bytes longer = *whole;
+    base::Bytes longer = whole;
     longer.push_back(0);
     ASSERT_TRUE(base::writeFile(file, longer));
     EXPECT_FALSE(store.find("module", "key"));
@@ -137,9 +137,8 @@ TEST_F(Store, NotesAFolderThatCantBeWritten) {
     ASSERT_TRUE(store.trouble());
     EXPECT_EQ(store.trouble()->id, "cache-write");
     EXPECT_EQ(store.trouble()->severity, Severity::Note);
-    const Result<base::Bytes> file = base::readFile(folder());
-    ASSERT_TRUE(file);
-    EXPECT_EQ(file->size(), 6U);
+    const base::Bytes file = must(base::readFile(folder()));
+    EXPECT_EQ(file.size(), 6U);
 }
 
 // Each value repeats its key, so that a mixture of two is detected.

@@ -1,6 +1,7 @@
 // Tests a package as C++ source: a program must get from it the same as from the package's folder.
 #include "emit/package/header.h"
 #include "sample_scene.h"
+#include "support/must.h"
 
 #include <glint/package.h>
 
@@ -63,8 +64,7 @@ std::vector<std::string> filesOf(const fs::path& folder) {
 }
 
 TEST_F(EmbedSource, HoldsTheFilesThatTheRuntimeReads) {
-    const Status written = write(folder_.path() / "new" / "sample_package.cpp");
-    ASSERT_TRUE(written) << toString(written.error());
+    must(write(folder_.path() / "new" / "sample_package.cpp"));
     const fs::path code = folder_.path() / "new";
     std::ofstream(code / "dump.cpp") << kDump;
     const std::string compile =
@@ -80,9 +80,8 @@ TEST_F(EmbedSource, HoldsTheFilesThatTheRuntimeReads) {
     for (const compiler::PackageFile& file : package_.files) {
         if (file.name == "tables.bin" || file.name.ends_with(".spv")) {
             expected.push_back(file.name);
-            const Result<base::Bytes> bytes = base::readFile(dumped / file.name);
-            ASSERT_TRUE(bytes) << toString(bytes.error());
-            EXPECT_EQ(*bytes, file.bytes) << file.name;
+            const base::Bytes bytes = must(base::readFile(dumped / file.name));
+            EXPECT_EQ(bytes, file.bytes) << file.name;
         }
     }
     EXPECT_GT(expected.size(), 10U);
@@ -112,12 +111,9 @@ TEST_F(EmbedSource, AFailureLeavesTheEarlierSource) {
     const fs::path source = folder_.path() / "a.cpp";
     std::ofstream(source) << "earlier";
     fs::create_directories(folder_.path() / "a.h" / "in the way");
-    const Status written = write(source);
-    ASSERT_FALSE(written);
-    EXPECT_EQ(written.error().id, "output-write");
-    const Result<base::Bytes> kept = base::readFile(source);
-    ASSERT_TRUE(kept);
-    EXPECT_EQ(std::string(kept->begin(), kept->end()), "earlier");
+    EXPECT_EQ(mustFail(write(source)).id, "output-write");
+    const base::Bytes kept = must(base::readFile(source));
+    EXPECT_EQ(std::string(kept.begin(), kept.end()), "earlier");
     EXPECT_EQ(filesOf(folder_.path()), (std::vector<std::string>{"a.cpp", "a.h"}));
 }
 

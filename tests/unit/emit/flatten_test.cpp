@@ -1,4 +1,5 @@
 #include "emit/glsl/passes.h"
+#include "support/must.h"
 
 #include <gtest/gtest.h>
 
@@ -23,9 +24,8 @@ Result<std::string> flattenRoot(const Files& files, const std::string& text,
 TEST(Flatten, InlinesEachFileOnceAndMarksLines) {
     const Files files{{"a.glsl", "int a;\n#include \"b.glsl\"\nint c;\n"}, {"b.glsl", "int b;\n"}};
     const auto text =
-        flattenRoot(files, "#version 460\n#include \"a.glsl\"\n#include \"b.glsl\"\nvoid main() {}\n");
-    ASSERT_TRUE(text) << toString(text.error());
-    EXPECT_EQ(*text,
+        must(flattenRoot(files, "#version 460\n#include \"a.glsl\"\n#include \"b.glsl\"\nvoid main() {}\n"));
+    EXPECT_EQ(text,
               "#version 460\n"
               "#extension GL_GOOGLE_cpp_style_line_directive : require\n"
               "#line 1 \"a.glsl\"\n"
@@ -46,9 +46,8 @@ constexpr const char* kShared =
     "#endif\n";
 
 TEST(Flatten, KeepsTheGlslSide) {
-    const auto text = flattenRoot({{"s.h", kShared}}, "#version 460\n#include \"s.h\"\n");
-    ASSERT_TRUE(text) << toString(text.error());
-    EXPECT_EQ(*text,
+    const auto text = must(flattenRoot({{"s.h", kShared}}, "#version 460\n#include \"s.h\"\n"));
+    EXPECT_EQ(text,
               "#version 460\n"
               "#extension GL_GOOGLE_cpp_style_line_directive : require\n"
               "#line 10 \"s.h\"\n"
@@ -63,17 +62,15 @@ TEST(Flatten, KeepsTheGlslSide) {
 }
 
 TEST(Flatten, KeepsTheCppSideAndItsGuard) {
-    const auto text = flattenRoot({{"s.h", kShared}}, "#include \"s.h\"\n", compiler::FlattenSide::Cpp);
-    ASSERT_TRUE(text) << toString(text.error());
+    const auto text = must(flattenRoot({{"s.h", kShared}}, "#include \"s.h\"\n", compiler::FlattenSide::Cpp));
     EXPECT_EQ(
-        *text,
+        text,
         "#ifndef GUARD_H\n#define GUARD_H\n#include <cstdint>\nint cpp;\n#if X\nint x;\n#endif\n#endif\n");
 }
 
 TEST(Flatten, TakesTheNumbersThatALineGives) {
-    const auto text = flattenRoot({}, "#version 460\n#define A 1\n#line 2\nint a;\n\n\nint b;\n");
-    ASSERT_TRUE(text) << toString(text.error());
-    EXPECT_EQ(*text,
+    const auto text = must(flattenRoot({}, "#version 460\n#define A 1\n#line 2\nint a;\n\n\nint b;\n"));
+    EXPECT_EQ(text,
               "#version 460\n"
               "#extension GL_GOOGLE_cpp_style_line_directive : require\n"
               "#line 2 \"root.comp\"\n"
@@ -83,16 +80,14 @@ TEST(Flatten, TakesTheNumbersThatALineGives) {
               "\n"
               "#line 5 \"root.comp\"\n"
               "int b;\n");
-    const auto bad = flattenRoot({}, "#version 460\n#define A 1\n#line 2\n#endif\n");
-    ASSERT_FALSE(bad);
-    EXPECT_EQ(bad.error().where, "root.comp:2");
+    EXPECT_EQ(mustFail(flattenRoot({}, "#version 460\n#define A 1\n#line 2\n#endif\n")).where, "root.comp:2");
 }
 
 TEST(Flatten, TakesCarriageReturnsAndAMissingLastNewline) {
-    const auto text = flattenRoot({{"a.glsl", "int a;"}}, "#version 460\r\n#include \"a.glsl\"\r\nint b;");
-    ASSERT_TRUE(text) << toString(text.error());
-    EXPECT_EQ(text->find('\r'), std::string::npos);
-    EXPECT_TRUE(text->ends_with("int a;\n#line 3 \"root.comp\"\nint b;\n")) << *text;
+    const auto text =
+        must(flattenRoot({{"a.glsl", "int a;"}}, "#version 460\r\n#include \"a.glsl\"\r\nint b;"));
+    EXPECT_EQ(text.find('\r'), std::string::npos);
+    EXPECT_TRUE(text.ends_with("int a;\n#line 3 \"root.comp\"\nint b;\n")) << text;
 }
 
 TEST(Flatten, FindsFilesBesideTheOneThatIncludesThem) {
@@ -100,10 +95,9 @@ TEST(Flatten, FindsFilesBesideTheOneThatIncludesThem) {
                       {"pack/b.glsl", "int b;\n"},
                       {"pack/c.glsl", "int other;\n"},
                       {"c.glsl", "int c;\n"}};
-    const auto text = flattenRoot(files, "#version 460\n#include \"pack/a.glsl\"\n");
-    ASSERT_TRUE(text) << toString(text.error());
-    EXPECT_NE(text->find("#line 1 \"pack/b.glsl\"\nint b;"), std::string::npos) << *text;
-    EXPECT_NE(text->find("int c;"), std::string::npos) << "Glint's files come first: " << *text;
+    const auto text = must(flattenRoot(files, "#version 460\n#include \"pack/a.glsl\"\n"));
+    EXPECT_NE(text.find("#line 1 \"pack/b.glsl\"\nint b;"), std::string::npos) << text;
+    EXPECT_NE(text.find("int c;"), std::string::npos) << "Glint's files come first: " << text;
 }
 
 struct BadSource {

@@ -4,6 +4,7 @@
 #include "emit/material_layout.h"
 #include "emit/package/header.h"
 #include "spirv/reader.h"
+#include "support/must.h"
 #include "unit/emit/sample_scene.h"
 
 #include <glslang/SPIRV/spirv.hpp>
@@ -142,10 +143,9 @@ TEST(InteropLayout, IsThatOfCpp) {
 }
 
 TEST(InteropLayout, HasNoOtherTypes) {
-    const Result<std::vector<compiler::StructLayout>> layouts =
-        compiler::interopLayouts("struct A {\n    uint a;  // ok\n    double b;\n};\n");
-    ASSERT_FALSE(layouts);
-    EXPECT_EQ(layouts.error().id, "internal");
+    const Diagnostic layouts =
+        mustFail(compiler::interopLayouts("struct A {\n    uint a;  // ok\n    double b;\n};\n"));
+    EXPECT_EQ(layouts.id, "internal");
     EXPECT_FALSE(compiler::interopLayouts("struct A {\n    uint a;\n"));
 }
 
@@ -160,9 +160,8 @@ TEST(InteropLayout, IsTheSameInSpirv) {
     settings.layers = {"motion", "virtual-motion", "refraction.radiance"};
     gltf::Scene scene = makeSampleScene();
     scene.materials[0]["transmissionFactor"] = 0.5F;
-    const Result<compiler::CompiledPackage> package = compilePackage(scene, settings, &sharedModules());
-    ASSERT_TRUE(package) << toString(package.error());
-    expectInModules(*package, layoutsOf(Of::Frame));
+    const compiler::CompiledPackage package = must(compilePackage(scene, settings, &sharedModules()));
+    expectInModules(package, layoutsOf(Of::Frame));
 }
 
 // The record of a material is declared, so its layout is made and not compiled.
@@ -188,9 +187,8 @@ TEST(InteropLayout, OfThePassThatDeformsLikewise) {
     scene.nodes.push_back(node);
     compiler::CompileSettings settings;
     settings.debugInfo = true;
-    const Result<compiler::CompiledPackage> package = compilePackage(scene, settings, &sharedModules());
-    ASSERT_TRUE(package) << toString(package.error());
-    expectInModules(*package, layoutsOf(Of::Deform));
+    const compiler::CompiledPackage package = must(compilePackage(scene, settings, &sharedModules()));
+    expectInModules(package, layoutsOf(Of::Deform));
 }
 
 TEST(InteropLayout, OfTheAnswerOfHostsRays) {

@@ -1,6 +1,7 @@
 // Sets of materials that a program compiles in memory.
 #include "emit/material_compiler.h"
 
+#include "support/must.h"
 #include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -58,44 +59,38 @@ TEST(MaterialCompiler, CompilesOnlyWhatIsNew) {
         Result<compiler::MaterialCompiler> compiler =
             compiler::MaterialCompiler::create(smallSettings(), folder.path());
         ASSERT_TRUE(compiler) << toString(compiler.error());
-        const Result<compiler::CompiledMaterials> first = compiler->compile(set);
-        ASSERT_TRUE(first) << toString(first.error());
-        EXPECT_EQ(first->package.plan.cases.size(), 2U);
-        EXPECT_EQ(first->scene.materials[0].name, "paint");
-        EXPECT_GT(countCompiled(*first), 0);
+        const compiler::CompiledMaterials first = must(compiler->compile(set));
+        EXPECT_EQ(first.package.plan.cases.size(), 2U);
+        EXPECT_EQ(first.scene.materials[0].name, "paint");
+        EXPECT_GT(countCompiled(first), 0);
 
         // An error changes nothing.
         set.materials.push_back({.name = "coat", .values = {{"clearcoatFacto", {1}}}});
-        const Result<compiler::CompiledMaterials> wrong = compiler->compile(set);
-        ASSERT_FALSE(wrong);
-        EXPECT_EQ(wrong.error().where, "game#/materials/2/values/clearcoatFacto");
+        EXPECT_EQ(mustFail(compiler->compile(set)).where, "game#/materials/2/values/clearcoatFacto");
         set.materials.pop_back();
-        const Result<compiler::CompiledMaterials> again = compiler->compile(set);
-        ASSERT_TRUE(again) << toString(again.error());
-        EXPECT_EQ(countCompiled(*again), 0);
-        EXPECT_TRUE(filesOf(*again) == filesOf(*first));
+        const compiler::CompiledMaterials again = must(compiler->compile(set));
+        EXPECT_EQ(countCompiled(again), 0);
+        EXPECT_TRUE(filesOf(again) == filesOf(first));
 
         // A value is in the tables alone. Numbers outside of the range are clamped, with a warning.
         set.materials[0].values["roughnessFactor"] = {-1.0};
-        const Result<compiler::CompiledMaterials> value = compiler->compile(set);
-        ASSERT_TRUE(value) << toString(value.error());
-        EXPECT_EQ(countCompiled(*value), 0);
-        EXPECT_TRUE(filesOf(*value) != filesOf(*first));
-        EXPECT_TRUE(std::ranges::any_of(value->messages, [](const Diagnostic& message) {
+        const compiler::CompiledMaterials value = must(compiler->compile(set));
+        EXPECT_EQ(countCompiled(value), 0);
+        EXPECT_TRUE(filesOf(value) != filesOf(first));
+        EXPECT_TRUE(std::ranges::any_of(value.messages, [](const Diagnostic& message) {
             return message.where == "game#/materials/0/values/roughnessFactor";
         }));
 
         set.materials.push_back(
             {.name = "coat", .values = {{"clearcoatFactor", {1}}, {"sheenColorFactor", {1, 1, 1}}}});
-        const Result<compiler::CompiledMaterials> added = compiler->compile(set);
-        ASSERT_TRUE(added) << toString(added.error());
-        EXPECT_EQ(added->package.plan.cases.size(), 3U);
-        EXPECT_GT(countCompiled(*added), 0);
+        const compiler::CompiledMaterials added = must(compiler->compile(set));
+        EXPECT_EQ(added.package.plan.cases.size(), 3U);
+        EXPECT_GT(countCompiled(added), 0);
         // The shader of the new case is one of the parts that are joined; those of the others are kept.
-        EXPECT_TRUE(std::ranges::any_of(added->package.modules, [](const compiler::CompiledModule& module) {
+        EXPECT_TRUE(std::ranges::any_of(added.package.modules, [](const compiler::CompiledModule& module) {
             return module.partsCached > 0;
         }));
-        last = filesOf(*added);
+        last = filesOf(added);
     }
     // The folder has all of it for the next program, or for several threads of one.
     std::array<std::thread, 2> threads;
@@ -104,10 +99,9 @@ TEST(MaterialCompiler, CompilesOnlyWhatIsNew) {
             Result<compiler::MaterialCompiler> compiler =
                 compiler::MaterialCompiler::create(smallSettings(), folder.path());
             ASSERT_TRUE(compiler) << toString(compiler.error());
-            const Result<compiler::CompiledMaterials> next = compiler->compile(set);
-            ASSERT_TRUE(next) << toString(next.error());
-            EXPECT_EQ(countCompiled(*next), 0);
-            EXPECT_TRUE(filesOf(*next) == last);
+            const compiler::CompiledMaterials next = must(compiler->compile(set));
+            EXPECT_EQ(countCompiled(next), 0);
+            EXPECT_TRUE(filesOf(next) == last);
         });
     }
     for (std::thread& thread : threads) {
@@ -118,9 +112,7 @@ TEST(MaterialCompiler, CompilesOnlyWhatIsNew) {
 TEST(MaterialCompiler, RefusesPacksThatAreNotThere) {
     compiler::Settings settings = smallSettings();
     settings.materials = {"no such folder"};
-    const Result<compiler::MaterialCompiler> compiler = compiler::MaterialCompiler::create(settings);
-    ASSERT_FALSE(compiler);
-    EXPECT_EQ(compiler.error().id, "materials-folder");
+    EXPECT_EQ(mustFail(compiler::MaterialCompiler::create(settings)).id, "materials-folder");
 }
 
 }  // namespace

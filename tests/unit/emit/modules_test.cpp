@@ -1,6 +1,7 @@
 #include "emit/modules.h"
 
 #include "emit/context.h"
+#include "support/must.h"
 #include "unit/emit/sample_scene.h"
 #include "unit/emit/tiny_module.h"
 
@@ -12,16 +13,15 @@ namespace glint {
 namespace {
 
 TEST(CompileModules, SharesTheFileOfEqualSpirv) {
-    const auto modules = compiler::compileModules(
+    const auto modules = must(compiler::compileModules(
         {testing::makeTinyModule(0, "data.x = 1u + 1u;"), testing::makeTinyModule(1, "data.x = 3u;"),
          testing::makeTinyModule(2, "data.x = 2u;  // the same in the end")},
-        2, false);
-    ASSERT_TRUE(modules) << toString(modules.error());
-    EXPECT_EQ(modules->at(0).file, "shade_0.spv");
-    EXPECT_EQ(modules->at(1).file, "shade_1.spv");
-    EXPECT_EQ(modules->at(2).file, "shade_0.spv");
-    EXPECT_EQ(modules->at(2).hash, modules->at(0).hash);
-    EXPECT_NE(modules->at(1).hash, modules->at(0).hash);
+        2, false));
+    EXPECT_EQ(modules.at(0).file, "shade_0.spv");
+    EXPECT_EQ(modules.at(1).file, "shade_1.spv");
+    EXPECT_EQ(modules.at(2).file, "shade_0.spv");
+    EXPECT_EQ(modules.at(2).hash, modules.at(0).hash);
+    EXPECT_NE(modules.at(1).hash, modules.at(0).hash);
 }
 
 TEST(CompileModules, ReportsTheFirstErrorWhateverTheJobs) {
@@ -32,11 +32,10 @@ TEST(CompileModules, ReportsTheFirstErrorWhateverTheJobs) {
             sources.push_back(
                 testing::makeTinyModule(i, i >= 5 ? "data.x = wrong" + std::to_string(i) + ";" : ""));
         }
-        const auto modules = compileModules(std::move(sources), jobs, false);
-        ASSERT_FALSE(modules);
-        EXPECT_EQ(modules.error().id, "glsl");
-        EXPECT_EQ(modules.error().where, "case.glsl:13");
-        EXPECT_NE(modules.error().message.find("wrong5"), std::string::npos) << modules.error().message;
+        const Diagnostic modules = mustFail(compileModules(std::move(sources), jobs, false));
+        EXPECT_EQ(modules.id, "glsl");
+        EXPECT_EQ(modules.where, "case.glsl:13");
+        EXPECT_NE(modules.message.find("wrong5"), std::string::npos) << modules.message;
     }
 }
 
@@ -50,10 +49,9 @@ TEST(RenderTemplate, ReportsMissingAndMalformedTemplates) {
     compiler::SourceSet sources;
     sources.add("open.mustache", "{{#cases}} never closed");
     for (const char* const name : {"none.mustache", "open.mustache"}) {
-        const auto text = renderTemplate(sources, name, {});
-        ASSERT_FALSE(text);
-        EXPECT_EQ(text.error().id, "template");
-        EXPECT_EQ(text.error().where, name);
+        const Diagnostic text = mustFail(renderTemplate(sources, name, {}));
+        EXPECT_EQ(text.id, "template");
+        EXPECT_EQ(text.where, name);
     }
 }
 

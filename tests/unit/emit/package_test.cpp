@@ -2,6 +2,7 @@
 #include "emit/modules.h"
 #include "spirv/reader.h"
 #include "support/features.h"
+#include "support/must.h"
 #include "unit/emit/sample_scene.h"
 
 #include <gtest/gtest.h>
@@ -149,9 +150,7 @@ TEST(CompilePackage, LayersThatAreOffLeaveNoCode) {
 TEST(CompilePackage, RefusesNoStrategy) {
     compiler::CompileSettings settings;
     settings.strategies = 0;
-    const auto package = compilePackage(makeSampleScene(), settings);
-    ASSERT_FALSE(package);
-    EXPECT_EQ(package.error().id, "strategy");
+    EXPECT_EQ(mustFail(compilePackage(makeSampleScene(), settings)).id, "strategy");
 }
 
 TEST(CompilePackage, FetchesNoTextureThatTheCaseDoesNotHave) {
@@ -332,11 +331,10 @@ TEST(CompilePackage, EmitsTheGlslThatItCompiled) {
                 source.functionsApart.push_back("shade" + shaderCase.name);
             }
         }
-        const auto again = compileShader(source, {});
-        ASSERT_TRUE(again) << toString(again.error());
+        const auto again = must(compileShader(source, {}));
         if (hasSwitch) {
             // Parts know more about themselves than the whole, so the words differ, but not what they do.
-            const auto counts = compiler::measureSpirv(*again);
+            const auto counts = compiler::measureSpirv(again);
             ASSERT_TRUE(counts);
             EXPECT_EQ(counts->textureFetches, module.statistics.textureFetches);
             EXPECT_EQ(counts->rayQueries, module.statistics.rayQueries);
@@ -345,7 +343,7 @@ TEST(CompilePackage, EmitsTheGlslThatItCompiled) {
             EXPECT_LE(module.statistics.bytes, counts->bytes + counts->bytes / 8);
             continue;
         }
-        EXPECT_EQ(*again, module.spirv) << module.name;
+        EXPECT_EQ(again, module.spirv) << module.name;
     }
 }
 
@@ -353,10 +351,9 @@ TEST(CompilePackage, RefusesMoreCasesThanAllowed) {
     compiler::CompileSettings settings;
     settings.plan.merge = compiler::MergePolicy::None;
     settings.plan.maxShaders = 3;
-    const auto package = compilePackage(makeSampleScene(), settings);
-    ASSERT_FALSE(package);
-    EXPECT_EQ(package.error().id, "max-shaders");
-    EXPECT_FALSE(package.error().message.empty());
+    const Diagnostic package = mustFail(compilePackage(makeSampleScene(), settings));
+    EXPECT_EQ(package.id, "max-shaders");
+    EXPECT_FALSE(package.message.empty());
     settings.plan.maxShaders = 4;
     EXPECT_TRUE(compilePackage(makeSampleScene(), settings, &sharedModules()));
 }
@@ -423,9 +420,8 @@ TEST(Manifest, HoldsTheSettingsAndTheVariant) {
     settings.energyCompensation = false;
     settings.textureLod = compiler::TextureLod::Mip0;
     settings.precision = package::ShadingPrecision::Half;
-    const auto package = compilePackage(scene, settings, &sharedModules());
-    ASSERT_TRUE(package) << toString(package.error());
-    const nlohmann::json other = manifestOf(*package);
+    const auto package = must(compilePackage(scene, settings, &sharedModules()));
+    const nlohmann::json other = manifestOf(package);
     EXPECT_EQ(other["settings"]["hitLobes"], (nlohmann::json{"unlit", "ior"}));
     EXPECT_EQ(other["settings"]["lights"], 4);
     EXPECT_EQ(other["settings"]["energyCompensation"], false);
@@ -440,9 +436,8 @@ TEST(Manifest, HoldsTheSettingsAndTheVariant) {
 TEST(Manifest, TakesNamesThatAreNotUtf8) {
     gltf::Scene scene = makeSampleScene();
     scene.materials[0].name = "\xFF\xC0";
-    const auto package = compiler::compilePackage(scene, {}, &sharedModules());
-    ASSERT_TRUE(package) << toString(package.error());
-    EXPECT_FALSE(manifestOf(*package).empty());
+    const auto package = must(compiler::compilePackage(scene, {}, &sharedModules()));
+    EXPECT_FALSE(manifestOf(package).empty());
 }
 
 }  // namespace

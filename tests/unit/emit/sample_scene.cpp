@@ -1,5 +1,7 @@
 #include "unit/emit/sample_scene.h"
 
+#include "support/must.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -56,9 +58,7 @@ gltf::Scene makeSampleScene() {
 }
 
 compiler::CompiledPackage compileSample(const compiler::CompileSettings& settings) {
-    Result<compiler::CompiledPackage> package = compilePackage(makeSampleScene(), settings, &sharedModules());
-    EXPECT_TRUE(package) << toString(package.error());
-    return package ? std::move(*package) : compiler::CompiledPackage{};
+    return must(compilePackage(makeSampleScene(), settings, &sharedModules()));
 }
 
 const compiler::PackageFile* findFile(const compiler::CompiledPackage& package, std::string_view name) {

@@ -3,6 +3,7 @@
 #include "emit/context.h"
 #include "gltf/import.h"
 #include "support/features.h"
+#include "support/must.h"
 #include "unit/emit/sample_scene.h"
 
 #include <gtest/gtest.h>
@@ -379,9 +380,8 @@ TEST(Tables, GoSceneByScene) {
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     settings.plan.merge = compiler::MergePolicy::None;
-    const Result<compiler::CompiledPackage> compiled = compilePackage(scenes, settings, &sharedModules());
-    ASSERT_TRUE(compiled) << toString(compiled.error());
-    const TableReader reader(findFile(*compiled, package::kTablesFile)->bytes);
+    const compiler::CompiledPackage compiled = must(compilePackage(scenes, settings, &sharedModules()));
+    const TableReader reader(findFile(compiled, package::kTablesFile)->bytes);
     const auto entries = reader.read<package::SceneEntry>(SectionKind::Scenes);
     ASSERT_EQ(entries.size(), 2U);
     EXPECT_EQ(entries[1].firstMaterial, 4U);
@@ -395,7 +395,7 @@ TEST(Tables, GoSceneByScene) {
         EXPECT_EQ(primitives[4 + i].shaderId == primitives[i].shaderId, i != 0);
     }
     const std::size_t keysOfOne = compileSample(settings).plan.keys.size();
-    EXPECT_EQ(compiled->plan.keys.size(), keysOfOne + 1);
+    EXPECT_EQ(compiled.plan.keys.size(), keysOfOne + 1);
 }
 
 // Hits may keep fewer lobes, but the mask on the device is that of primary surfaces.

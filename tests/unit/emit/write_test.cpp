@@ -1,5 +1,6 @@
 #include "emit/package/compiled_package.h"
 #include "emit/package/manifest.h"
+#include "support/must.h"
 #include "unit/emit/sample_scene.h"
 #include "unit/emit/text_package.h"
 
@@ -70,8 +71,7 @@ TEST_F(WritePackage, KeepsWhatUsersPutBesideIt) {
     std::ofstream(folder_ / "notes/mine.txt") << "mine";
     std::ofstream(folder_ / "build.d") << "depends";
     fs::create_symlink("build.d", folder_ / "link.d");
-    const Status status = writePackage(second_, folder_);
-    ASSERT_TRUE(status) << toString(status.error());
+    must(writePackage(second_, folder_));
     const auto contents = readFolder(folder_);
     EXPECT_EQ(contents.at("notes/mine.txt"), "mine");
     EXPECT_EQ(contents.at("build.d"), "depends");
@@ -87,9 +87,7 @@ TEST_F(WritePackage, RefusesAFolderThatHoldsSomethingElse) {
     fs::create_directories(other);
     std::ofstream(other / "manifest.json") << "{\"name\": \"a web page\"}";
     std::ofstream(other / "tables.bin") << "not ours";
-    const Status status = writePackage(second_, other);
-    ASSERT_FALSE(status);
-    EXPECT_EQ(status.error().id, "output-not-a-package");
+    EXPECT_EQ(mustFail(writePackage(second_, other)).id, "output-not-a-package");
     EXPECT_EQ(readFolder(other).size(), 2U);
 }
 
@@ -98,22 +96,15 @@ TEST_F(WritePackage, ReplacesAPackageWhoseManifestIsLost) {
     fs::create_directories(damaged);
     std::ofstream(damaged / "tables.bin") << "GLINTPKG and more";
     std::ofstream(damaged / "manifest.json") << "{ cut";
-    const Status status = writePackage(second_, damaged);
-    ASSERT_TRUE(status) << toString(status.error());
+    must(writePackage(second_, damaged));
     EXPECT_EQ(readFolder(damaged).at("tables.bin"), "two");
 }
 
 TEST_F(WritePackage, RefusesPlacesThatCannotBeWritten) {
     std::ofstream(temporary_.path() / "file") << "a file";
-    const Status onFile = writePackage(first_, temporary_.path() / "file");
-    ASSERT_FALSE(onFile);
-    EXPECT_EQ(onFile.error().id, "output-not-a-folder");
-    const Status belowFile = writePackage(first_, temporary_.path() / "file" / "out");
-    ASSERT_FALSE(belowFile);
-    EXPECT_EQ(belowFile.error().id, "output-write");
-    const Status inProc = writePackage(first_, "/proc/glint-out");
-    ASSERT_FALSE(inProc);
-    EXPECT_EQ(inProc.error().id, "output-write");
+    EXPECT_EQ(mustFail(writePackage(first_, temporary_.path() / "file")).id, "output-not-a-folder");
+    EXPECT_EQ(mustFail(writePackage(first_, temporary_.path() / "file" / "out")).id, "output-write");
+    EXPECT_EQ(mustFail(writePackage(first_, "/proc/glint-out")).id, "output-write");
     EXPECT_FALSE(writePackage(first_, ""));
     EXPECT_FALSE(writePackage(first_, "/"));
 }
@@ -125,10 +116,9 @@ TEST_F(WritePackage, LeavesTheEarlierPackageWholeWhenItFails) {
     fs::create_directories(folder_ / "new.spv");
     std::ofstream(folder_ / "new.spv" / "foreign") << "f";
     const auto before = readFolder(folder_);
-    const Status status = writePackage(second_, folder_);
-    ASSERT_FALSE(status);
-    EXPECT_EQ(status.error().id, "output-write");
-    EXPECT_FALSE(status.error().hint.empty());
+    const Diagnostic status = mustFail(writePackage(second_, folder_));
+    EXPECT_EQ(status.id, "output-write");
+    EXPECT_FALSE(status.hint.empty());
     EXPECT_EQ(readFolder(folder_), before);
     EXPECT_EQ(countEntries(folder_.parent_path()), 1U);
 }
@@ -138,9 +128,7 @@ TEST_F(WritePackage, LeavesTheEarlierPackageWholeWhenANameCannotBeWritten) {
     const auto before = readFolder(folder_);
     const compiler::CompiledPackage tooLong =
         makePackage({{"tables.bin", "three"}, {std::string(300, 'n') + ".spv", "n"}});
-    const Status status = writePackage(tooLong, folder_);
-    ASSERT_FALSE(status);
-    EXPECT_EQ(status.error().id, "output-write");
+    EXPECT_EQ(mustFail(writePackage(tooLong, folder_)).id, "output-write");
     EXPECT_EQ(readFolder(folder_), before);
     EXPECT_EQ(countEntries(folder_.parent_path()), 1U);
 }
@@ -196,8 +184,7 @@ TEST(WriteCompiled, WritesWhatWasCompiled) {
     compiler::CompileSettings settings;
     settings.emitGlsl = true;
     const compiler::CompiledPackage package = compileSample(settings);
-    const Status status = writePackage(package, temporary.path() / "out");
-    ASSERT_TRUE(status) << toString(status.error());
+    must(writePackage(package, temporary.path() / "out"));
     const auto contents = readFolder(temporary.path() / "out");
     EXPECT_EQ(contents.size(), package.files.size());
     for (const compiler::PackageFile& file : package.files) {

@@ -4,6 +4,7 @@
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
 #include "support/features.h"
+#include "support/must.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <glint/session/scene_view.h>
@@ -62,12 +63,7 @@ struct Pointed {
     }
 
     gltf::Scene import() {
-        Result<gltf::Scene> scene = test::import(builder);
-        if (!scene) {
-            ADD_FAILURE() << toString(scene.error());
-            return {};
-        }
-        return std::move(*scene);
+        return must(test::import(builder));
     }
 
     GltfBuilder builder;
@@ -190,9 +186,7 @@ TEST(AnimationPointers, WrongOnesAreWarnedOf) {
     target.erase("extensions");
     EXPECT_EQ(countWarnings(bare.import(), "animation-pointer"), 1U);
     target["extensions"]["KHR_animation_pointer"]["pointer"] = 3;
-    const Result<gltf::Scene> typed = import(bare.builder);
-    ASSERT_FALSE(typed.ok());
-    EXPECT_EQ(typed.error().id, "json-type");
+    EXPECT_EQ(mustFail(import(bare.builder)).id, "json-type");
     target["extensions"]["KHR_animation_pointer"] = Json::object();
     EXPECT_EQ(import(bare.builder).error().id, "json-missing");
 }

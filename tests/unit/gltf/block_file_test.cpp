@@ -1,6 +1,7 @@
 // Tests images in block formats: DDS (MSFT_texture_dds) and KTX2.
 
 #include "gltf/codecs/codecs.h"
+#include "support/must.h"
 #include "unit/gltf/block_files.h"
 #include "unit/gltf/gltf_builder.h"
 
@@ -178,9 +179,8 @@ TEST(GltfKtx2Blocks, DamageIsRefused) {
         setWord(bytes, 44, 2);
         const auto file = gltf::readBlockFile(bytes);
         ASSERT_TRUE(file) << file.error().message;
-        const auto blocks = blocksOf(*file, bytes);
-        ASSERT_FALSE(blocks);
-        EXPECT_NE(blocks.error().message.find("level 0"), std::string::npos) << blocks.error().message;
+        const Diagnostic blocks = mustFail(blocksOf(*file, bytes));
+        EXPECT_NE(blocks.message.find("level 0"), std::string::npos) << blocks.message;
     }
 }
 
@@ -234,26 +234,23 @@ GltfBuilder ddsScene(const base::Bytes& bytes) {
 TEST(GltfDds, IsASourceOfATexture) {
     const base::Bytes blocks = randomBlocks(TexelFormat::Bc1, 16, 8, 5);
     const GltfBuilder builder = ddsScene(bc1File());
-    const Result<gltf::Scene> decoded = import(builder, {.decodeImages = true});
-    ASSERT_TRUE(decoded.ok()) << toString(decoded.error());
-    ASSERT_EQ(decoded->images.size(), 1U);
-    EXPECT_EQ(decoded->images[0].levels, 5);
-    EXPECT_EQ(decoded->images[0].pixels.size(), byteCount(decoded->images[0]));
+    const gltf::Scene decoded = must(import(builder, {.decodeImages = true}));
+    ASSERT_EQ(decoded.images.size(), 1U);
+    EXPECT_EQ(decoded.images[0].levels, 5);
+    EXPECT_EQ(decoded.images[0].pixels.size(), byteCount(decoded.images[0]));
     const auto first =
         gltf::decodeBlocks(TexelFormat::Bc1, false, 16, 8, base::Bytes(blocks.begin(), blocks.begin() + 64));
     ASSERT_TRUE(first);
-    EXPECT_TRUE(std::equal(first->begin(), first->end(), decoded->images[0].pixels.begin()));
-    const Result<gltf::Scene> kept = import(builder, {.keepImageFiles = true});
-    ASSERT_TRUE(kept.ok()) << toString(kept.error());
-    EXPECT_EQ(kept->images[0].file, bc1File());
-    EXPECT_TRUE(kept->images[0].pixels.empty());
-    EXPECT_EQ(kept->images[0].width, 16);
+    EXPECT_TRUE(std::equal(first->begin(), first->end(), decoded.images[0].pixels.begin()));
+    const gltf::Scene kept = must(import(builder, {.keepImageFiles = true}));
+    EXPECT_EQ(kept.images[0].file, bc1File());
+    EXPECT_TRUE(kept.images[0].pixels.empty());
+    EXPECT_EQ(kept.images[0].width, 16);
     base::Bytes damaged = bc1File();
     damaged.resize(130);
-    const Result<gltf::Scene> refused = import(ddsScene(damaged), {.keepImageFiles = true});
-    ASSERT_FALSE(refused.ok());
-    EXPECT_EQ(refused.error().id, "image-decode");
-    EXPECT_NE(refused.error().message.find("DDS"), std::string::npos) << refused.error().message;
+    const Diagnostic refused = mustFail(import(ddsScene(damaged), {.keepImageFiles = true}));
+    EXPECT_EQ(refused.id, "image-decode");
+    EXPECT_NE(refused.message.find("DDS"), std::string::npos) << refused.message;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Attributes of vertices that packs declare.
 #include "materials/declarations.h"
 #include "plan/plan.h"
+#include "support/must.h"
 #include "unit/gltf/only_primitive.h"
 
 #include <gtest/gtest.h>
@@ -67,15 +68,12 @@ TEST(DeclaredAttributes, AreReadAsTheFileHasThem) {
 TEST(DeclaredAttributes, MustFitTheDeclaration) {
     GltfBuilder type;
     type.addTriangle()["attributes"]["_WEAR"] = type.addAccessor<float>(std::vector<float>(9), 3);
-    const Result<gltf::Scene> wrongType = import(type, withWear());
-    ASSERT_FALSE(wrongType);
-    EXPECT_EQ(wrongType.error().id, "attribute-type");
-    EXPECT_TRUE(wrongType.error().where.ends_with("#/meshes/0/primitives/0/attributes/_WEAR"));
+    const Diagnostic wrongType = mustFail(import(type, withWear()));
+    EXPECT_EQ(wrongType.id, "attribute-type");
+    EXPECT_TRUE(wrongType.where.ends_with("#/meshes/0/primitives/0/attributes/_WEAR"));
     GltfBuilder count;
     count.addTriangle()["attributes"]["_WEAR"] = count.addAccessor<float>({1, 2}, 2);
-    const Result<gltf::Scene> wrongCount = import(count, withWear());
-    ASSERT_FALSE(wrongCount);
-    EXPECT_EQ(wrongCount.error().id, "attribute-count");
+    EXPECT_EQ(mustFail(import(count, withWear())).id, "attribute-count");
 }
 
 TEST(DeclaredAttributes, ThatAreNotFiniteAreReplaced) {
@@ -96,15 +94,14 @@ TEST(DeclaredAttributes, DecideAboutKeys) {
     builder.root["materials"] = {{{"extensions", {{"TEST_wear", Json::object()}}}}};
     builder.root["extensionsUsed"] = {"TEST_wear"};
     triangle["material"] = 0;
-    const Result<gltf::Scene> scene = import(builder, withWear());
-    ASSERT_TRUE(scene) << toString(scene.error());
+    const gltf::Scene scene = must(import(builder, withWear()));
     const materials::FeatureMask wear = modelWithWear().mask("wear");
     const auto key = [&](std::uint64_t attributes,
                          std::vector<std::pair<std::string, std::string>>* dropped) {
-        materials::PrimitiveInputs inputs = planningInputs(*scene).front();
+        materials::PrimitiveInputs inputs = planningInputs(scene).front();
         EXPECT_EQ(inputs.attributes, 1U);
         inputs.attributes = attributes;
-        return compiler::makeKey(scene->materials[0], inputs, {}, dropped) & wear;
+        return compiler::makeKey(scene.materials[0], inputs, {}, dropped) & wear;
     };
     EXPECT_NE(key(3, nullptr), 0U);
     std::vector<std::pair<std::string, std::string>> dropped;

@@ -1,5 +1,6 @@
 // Tests files: containers, buffers, URIs, JSON.
 #include "gltf/document/files.h"
+#include "support/must.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -39,15 +40,13 @@ TEST(GltfFiles, OpensRelativeFilesAndRecordsThem) {
     const TemporaryFolder folder;
     for (const char* uri :
          {"a.bin", "./a.bin", "sub%20folder/b.bin", "sub folder/b.bin", "sub%20folder/../a.bin"}) {
-        const Result<gltf::Scene> scene = importWithUri(folder, uri);
-        ASSERT_TRUE(scene.ok()) << toString(scene.error());
-        ASSERT_EQ(scene->files.size(), 2U);
-        EXPECT_EQ(scene->path, (folder.path() / "scenes/scene.gltf").string());
-        EXPECT_EQ(scene->files[0].path, scene->path);
-        const Result<base::Bytes> content = base::readFile(scene->files[1].path);
-        ASSERT_TRUE(content.ok());
-        EXPECT_EQ(scene->files[1].bytes, content->size());
-        EXPECT_EQ(scene->files[1].hash, base::hashBytes(*content));
+        const gltf::Scene scene = must(importWithUri(folder, uri));
+        ASSERT_EQ(scene.files.size(), 2U);
+        EXPECT_EQ(scene.path, (folder.path() / "scenes/scene.gltf").string());
+        EXPECT_EQ(scene.files[0].path, scene.path);
+        const base::Bytes content = must(base::readFile(scene.files[1].path));
+        EXPECT_EQ(scene.files[1].bytes, content.size());
+        EXPECT_EQ(scene.files[1].hash, base::hashBytes(content));
     }
 }
 
@@ -76,9 +75,8 @@ TEST(GltfFiles, FollowsLinksUnlessPathsAreStrict) {
     fs::create_directory_symlink(folder.path(), scenes / "up");
     fs::create_symlink("a.bin", scenes / "inner.bin");
     for (const std::string uri : {"link.bin", "up/outside.bin"}) {
-        const Result<gltf::Scene> followed = importWithUri(folder, uri);
-        ASSERT_TRUE(followed.ok()) << toString(followed.error());
-        EXPECT_EQ(followed->files.at(1).path, (scenes / uri).string());
+        const gltf::Scene followed = must(importWithUri(folder, uri));
+        EXPECT_EQ(followed.files.at(1).path, (scenes / uri).string());
         const Result<gltf::Scene> refused = importWithUri(folder, uri, {.strictPaths = true});
         ASSERT_FALSE(refused.ok()) << uri;
         EXPECT_EQ(refused.error().id, "uri-unsafe");
@@ -95,27 +93,21 @@ TEST(GltfFiles, FollowsLinksUnlessPathsAreStrict) {
 
 TEST(GltfFiles, ExplainsWhatIsMissingOrTooShort) {
     const TemporaryFolder folder;
-    const Result<gltf::Scene> missing = importWithUri(folder, "none.bin");
-    ASSERT_FALSE(missing.ok());
-    EXPECT_EQ(missing.error().id, "file-open");
-    EXPECT_NE(missing.error().message.find("none.bin"), std::string::npos);
-    const Result<gltf::Scene> directory = importWithUri(folder, "sub folder");
-    ASSERT_FALSE(directory.ok());
-    EXPECT_EQ(directory.error().id, "file-open");
+    const Diagnostic missing = mustFail(importWithUri(folder, "none.bin"));
+    EXPECT_EQ(missing.id, "file-open");
+    EXPECT_NE(missing.message.find("none.bin"), std::string::npos);
+    EXPECT_EQ(mustFail(importWithUri(folder, "sub folder")).id, "file-open");
 
     GltfBuilder builder;
     builder.addTriangle();
     builder.root["buffers"] = Json::array({{{"byteLength", 36}, {"uri", "data:;base64,AAAA"}}});
-    const Result<gltf::Scene> tooShort = import(builder);
-    ASSERT_FALSE(tooShort.ok());
-    EXPECT_EQ(tooShort.error().id, "buffer-size");
+    EXPECT_EQ(mustFail(import(builder)).id, "buffer-size");
     // A buffer without a URI is valid, because others may bring its data. Glint has no data to draw then.
     builder.root["buffers"][0].erase("uri");
-    const Result<gltf::Scene> without = import(builder);
-    ASSERT_TRUE(without.ok()) << toString(without.error());
-    EXPECT_EQ(countWarnings(*without, "buffer-external"), 1U);
-    EXPECT_TRUE(findWarning(*without, "buffer-external").where.ends_with("#/meshes/0/primitives/0"));
-    EXPECT_TRUE(without->meshes.at(0).primitives.empty());
+    const gltf::Scene without = must(import(builder));
+    EXPECT_EQ(countWarnings(without, "buffer-external"), 1U);
+    EXPECT_TRUE(findWarning(without, "buffer-external").where.ends_with("#/meshes/0/primitives/0"));
+    EXPECT_TRUE(without.meshes.at(0).primitives.empty());
 
     EXPECT_EQ(gltf::importScene(folder.path() / "none.gltf").error().id, "file-open");
     EXPECT_EQ(gltf::importScene(folder.path()).error().id, "file-open");
@@ -124,9 +116,7 @@ TEST(GltfFiles, ExplainsWhatIsMissingOrTooShort) {
 TEST(GltfFiles, BoundsTheBytesRead) {
     GltfBuilder builder;
     builder.addTriangle();
-    const Result<gltf::Scene> scene = import(builder, {.maxFileBytes = 100});
-    ASSERT_FALSE(scene.ok());
-    EXPECT_EQ(scene.error().id, "file-size");
+    EXPECT_EQ(mustFail(import(builder, {.maxFileBytes = 100})).id, "file-size");
 }
 
 TEST(GltfJson, IsChecked) {
@@ -286,10 +276,9 @@ std::string errorOfBytes(const std::string& bytes) {
 TEST(GltfGlb, IsReadWhateverItsName) {
     GltfBuilder builder;
     builder.addTriangle();
-    const Result<gltf::Scene> scene = importText(builder.glb());
-    ASSERT_TRUE(scene.ok()) << toString(scene.error());
-    EXPECT_EQ(scene->meshes[0].primitives[0].positions[1], (gltf::Float3{1, 0, 0}));
-    EXPECT_EQ(scene->files.size(), 1U);
+    const gltf::Scene scene = must(importText(builder.glb()));
+    EXPECT_EQ(scene.meshes[0].primitives[0].positions[1], (gltf::Float3{1, 0, 0}));
+    EXPECT_EQ(scene.files.size(), 1U);
 }
 
 TEST(GltfGlb, IsChecked) {

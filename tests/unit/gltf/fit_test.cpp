@@ -3,6 +3,7 @@
 
 #include "gltf/codecs/codecs.h"
 #include "gltf/texels/levels.h"
+#include "support/must.h"
 #include "unit/gltf/block_files.h"
 #include "unit/gltf/gltf_builder.h"
 
@@ -147,14 +148,13 @@ TEST(Fit, UsesComeFromTheMaterials) {
         {"occlusionTexture", {{"index", 1}}},
         {"emissiveTexture", {{"index", 3}}},
         {"emissiveFactor", {1, 1, 1}}};
-    const Result<gltf::Scene> scene = import(builder, {.decodeImages = true});
-    ASSERT_TRUE(scene.ok()) << toString(scene.error());
-    const auto uses = imageUses(*scene);
+    const gltf::Scene scene = must(import(builder, {.decodeImages = true}));
+    const auto uses = imageUses(scene);
     ASSERT_EQ(uses.size(), 4U);
     // Images have the order of their first use.
     const auto useOf = [&](const char* pointer) {
         for (std::size_t i = 0; i < uses.size(); ++i) {
-            if (scene->images[i].pointer == pointer) {
+            if (scene.images[i].pointer == pointer) {
                 return uses[i];
             }
         }
@@ -261,14 +261,13 @@ TEST_F(Packing, KeepsTheChannelsThatAreRead) {
                            Row{{false, true, false, false, 2}, TexelFormat::Bc4},
                            Row{{false, true, false, false, 8}, TexelFormat::Bc4}}) {
         SCOPED_TRACE(testing::Message() << infoOf(row.format).name << ", channels " << row.use.channels);
-        const auto fitted =
-            fitImage(scene, image, row.use, {.formats = kDesktop, .compress = true, .decodeEmission = true});
-        ASSERT_TRUE(fitted.ok()) << toString(fitted.error());
-        EXPECT_EQ(fitted->format, row.format);
-        EXPECT_EQ(fitted->levels, 6);
-        EXPECT_EQ(fitted->texels.size(), bytesOfLevels(row.format, 62, 33, 6));
-        EXPECT_TRUE(fitted->decoded.empty());
-        EXPECT_LT(errorOf(*fitted, image.pixels, row.use.isNormals ? 3 : row.use.channels),
+        const auto fitted = must(
+            fitImage(scene, image, row.use, {.formats = kDesktop, .compress = true, .decodeEmission = true}));
+        EXPECT_EQ(fitted.format, row.format);
+        EXPECT_EQ(fitted.levels, 6);
+        EXPECT_EQ(fitted.texels.size(), bytesOfLevels(row.format, 62, 33, 6));
+        EXPECT_TRUE(fitted.decoded.empty());
+        EXPECT_LT(errorOf(fitted, image.pixels, row.use.isNormals ? 3 : row.use.channels),
                   row.format == TexelFormat::Bc7 ? 3.5 : 1.7);
     }
     const gltf::ImageUse emission{true, false, false, true, 7};
@@ -328,11 +327,10 @@ TEST(Fit, BlocksOfFilesStay) {
     const base::Bytes blocks = randomBlocks(TexelFormat::Bc3, 16, 8, 5);
     image.file = makeDds(16, 8, 5, "DXT5", 0, blocks);
     const gltf::ImageUse color{true, false, false, false, 15};
-    const auto fitted = fitImage(scene, image, color, {.formats = kDesktop});
-    ASSERT_TRUE(fitted.ok()) << toString(fitted.error());
-    EXPECT_EQ(fitted->format, TexelFormat::Bc3);
-    EXPECT_EQ(fitted->levels, 5);
-    EXPECT_EQ(fitted->texels, blocks);
+    const auto fitted = must(fitImage(scene, image, color, {.formats = kDesktop}));
+    EXPECT_EQ(fitted.format, TexelFormat::Bc3);
+    EXPECT_EQ(fitted.levels, 5);
+    EXPECT_EQ(fitted.texels, blocks);
     const auto unpacked = fitImage(scene, image, color, {.formats = kMobile});
     ASSERT_TRUE(unpacked.ok());
     EXPECT_EQ(unpacked->format, TexelFormat::Rgba8);
@@ -363,12 +361,11 @@ TEST_F(Packing, LevelsThatAFileLacksArePacked) {
         fitImage(gltf::Scene(), smoothImage(16, 16), color, {.formats = kDesktop, .compress = true});
     ASSERT_TRUE(first.ok());
     image.file = makeDds(16, 16, 1, "", 99, base::Bytes(first->texels.begin(), first->texels.begin() + 256));
-    const auto fitted = fitImage(gltf::Scene(), image, color, {.formats = kDesktop});
-    ASSERT_TRUE(fitted.ok()) << toString(fitted.error());
-    EXPECT_EQ(fitted->format, TexelFormat::Bc7);
-    EXPECT_EQ(fitted->levels, 5);
-    ASSERT_EQ(fitted->texels.size(), bytesOfLevels(TexelFormat::Bc7, 16, 16, 5));
-    EXPECT_TRUE(std::equal(first->texels.begin(), first->texels.begin() + 256, fitted->texels.begin()));
+    const auto fitted = must(fitImage(gltf::Scene(), image, color, {.formats = kDesktop}));
+    EXPECT_EQ(fitted.format, TexelFormat::Bc7);
+    EXPECT_EQ(fitted.levels, 5);
+    ASSERT_EQ(fitted.texels.size(), bytesOfLevels(TexelFormat::Bc7, 16, 16, 5));
+    EXPECT_TRUE(std::equal(first->texels.begin(), first->texels.begin() + 256, fitted.texels.begin()));
 }
 
 // ETC1S and UASTC become what the device has, close to what they are unpacked to.
@@ -407,14 +404,13 @@ TEST_F(Packing, BasisDataAreTranscoded) {
         image.levels = std::string(row.file) == "etc1s_alpha_mips" ? 5 : 1;
         image.file = *bytes;
         gltf::Scene scene;
-        const auto fitted = fitImage(scene, image, row.use, {.formats = row.formats});
-        ASSERT_TRUE(fitted.ok()) << toString(fitted.error());
-        EXPECT_EQ(fitted->format, row.format);
+        const auto fitted = must(fitImage(scene, image, row.use, {.formats = row.formats}));
+        EXPECT_EQ(fitted.format, row.format);
         const auto decoded = fitImage(scene, image, row.use, {.formats = formatsOf({})});
         ASSERT_TRUE(decoded.ok());
         const std::vector<std::uint8_t> pixels(decoded->texels.begin(), decoded->texels.begin() + 4 * 16 * 8);
         const std::uint32_t channels = row.use.isNormals ? 3 : row.use.channels;
-        EXPECT_LT(errorOf(*fitted, pixels, channels), row.error);
+        EXPECT_LT(errorOf(fitted, pixels, channels), row.error);
     }
 }
 

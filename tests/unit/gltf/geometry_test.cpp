@@ -1,4 +1,5 @@
 // Tests accessors, indices, modes and attributes.
+#include "support/must.h"
 #include "unit/gltf/only_primitive.h"
 
 #include <gtest/gtest.h>
@@ -73,11 +74,10 @@ TEST(GltfGeometry, SkipsPointsAndLines) {
     for (const int mode : {0, 1, 2, 3}) {
         GltfBuilder builder;
         builder.addTriangle()["mode"] = mode;
-        const Result<gltf::Scene> scene = import(builder);
-        ASSERT_TRUE(scene.ok());
-        EXPECT_TRUE(scene->meshes[0].primitives.empty());
-        EXPECT_EQ(countWarnings(*scene, "primitive-skipped"), 1U);
-        EXPECT_EQ(scene->defaultMaterial, -1);
+        const gltf::Scene scene = must(import(builder));
+        EXPECT_TRUE(scene.meshes[0].primitives.empty());
+        EXPECT_EQ(countWarnings(scene, "primitive-skipped"), 1U);
+        EXPECT_EQ(scene.defaultMaterial, -1);
     }
     GltfBuilder unknown;
     unknown.addTriangle()["mode"] = 7;
@@ -266,10 +266,9 @@ TEST(GltfGeometry, NeedsPositionsOnlyWhereDrawn) {
     builder.addTriangle()["attributes"].erase("POSITION");
     expectError(import(builder), "position-missing", "/meshes/0/primitives/0/attributes");
     builder.root.erase("nodes");
-    const Result<gltf::Scene> scene = import(builder);
-    ASSERT_TRUE(scene.ok());
-    EXPECT_EQ(countWarnings(*scene, "position-missing"), 1U);
-    EXPECT_TRUE(scene->meshes[0].primitives.empty());
+    const gltf::Scene scene = must(import(builder));
+    EXPECT_EQ(countWarnings(scene, "position-missing"), 1U);
+    EXPECT_TRUE(scene.meshes[0].primitives.empty());
 }
 
 TEST(GltfGeometry, ListsPlanningInputs) {
@@ -280,9 +279,8 @@ TEST(GltfGeometry, ListsPlanningInputs) {
     first["attributes"]["NORMAL"] = builder.addAccessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
     first["attributes"]["TEXCOORD_1"] = builder.addAccessor<float>(std::vector<float>(6), 2);
     builder.addTriangle();
-    const Result<gltf::Scene> scene = import(builder);
-    ASSERT_TRUE(scene.ok());
-    const std::vector<materials::PrimitiveInputs> inputs = planningInputs(*scene);
+    const gltf::Scene scene = must(import(builder));
+    const std::vector<materials::PrimitiveInputs> inputs = planningInputs(scene);
     ASSERT_EQ(inputs.size(), 2U);
     EXPECT_EQ(inputs[0].material, 0);
     EXPECT_TRUE(inputs[0].hasNormals);
@@ -292,7 +290,7 @@ TEST(GltfGeometry, ListsPlanningInputs) {
     EXPECT_EQ(inputs[1].mesh, 1);
     EXPECT_EQ(inputs[1].primitive, 0);
     EXPECT_EQ(inputs[1].material, 1);
-    EXPECT_EQ(scene->defaultMaterial, 1);
+    EXPECT_EQ(scene.defaultMaterial, 1);
     EXPECT_FALSE(inputs[1].hasNormals);
 }
 

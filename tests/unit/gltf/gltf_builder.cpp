@@ -154,9 +154,7 @@ std::string base64(const base::Bytes& bytes) {
 Result<gltf::Scene> importText(const std::string& text, const gltf::ImportOptions& options) {
     const TemporaryFolder folder;
     const fs::path path = folder.path() / "scene.gltf";
-    if (const Status status = base::writeFile(path, text); !status) {
-        return status.error();
-    }
+    GLINT_TRY_DO(base::writeFile(path, text));
     return importScene(path, options);
 }
 

@@ -2,6 +2,7 @@
 // KTX2.
 #include "gltf/texels/levels.h"
 #include "gltf/texels/texel_bounds.h"
+#include "support/must.h"
 #include "unit/gltf/packed_scenes.h"
 #include "unit/gltf/png_writer.h"
 
@@ -81,14 +82,13 @@ TEST(GltfPng, ReadsGrayPaletteAndTransparency) {
 }
 
 TEST(GltfWebp, RoundTrips) {
-    const Result<gltf::Scene> scene = import(webpScene(), kDecode);
-    ASSERT_TRUE(scene.ok()) << toString(scene.error());
-    EXPECT_TRUE(readingWarnings(*scene).empty());
-    ASSERT_EQ(scene->images.size(), 1U);
-    EXPECT_EQ(scene->images[0].width, 2);
-    EXPECT_EQ(scene->images[0].height, 1);
-    EXPECT_EQ(scene->images[0].pixels, base::Bytes(kWebpPixels.begin(), kWebpPixels.end()));
-    EXPECT_EQ(scene->materials[0].texture("baseColorTexture").texture, 0);
+    const gltf::Scene scene = must(import(webpScene(), kDecode));
+    EXPECT_TRUE(readingWarnings(scene).empty());
+    ASSERT_EQ(scene.images.size(), 1U);
+    EXPECT_EQ(scene.images[0].width, 2);
+    EXPECT_EQ(scene.images[0].height, 1);
+    EXPECT_EQ(scene.images[0].pixels, base::Bytes(kWebpPixels.begin(), kWebpPixels.end()));
+    EXPECT_EQ(scene.materials[0].texture("baseColorTexture").texture, 0);
 }
 
 TEST(GltfWebp, IsPreferredToItsFallback) {
@@ -96,10 +96,9 @@ TEST(GltfWebp, IsPreferredToItsFallback) {
     builder.root.erase("extensionsRequired");
     builder.append("images", {{"uri", std::string("data:image/png;base64,") + kPng8}});
     builder.root["textures"][0]["source"] = 1;
-    const Result<gltf::Scene> scene = import(builder, kDecode);
-    ASSERT_TRUE(scene.ok()) << toString(scene.error());
-    ASSERT_EQ(scene->images.size(), 1U);
-    EXPECT_EQ(scene->images[0].pointer, "/images/0");
+    const gltf::Scene scene = must(import(builder, kDecode));
+    ASSERT_EQ(scene.images.size(), 1U);
+    EXPECT_EQ(scene.images[0].pointer, "/images/0");
 }
 
 TEST(GltfWebp, ExplainsDamage) {
@@ -133,10 +132,9 @@ TEST(GltfImages, NamesForeignFormats) {
     for (const auto& [start, name] : {std::pair("DDS ", "DDS"), std::pair("\xABKTX 11\xBB", "KTX 1"),
                                       std::pair("1234ftypavif", "AVIF")}) {
         const std::string text(start);
-        const Result<gltf::Scene> scene =
-            import(sceneWithImage(base::Bytes(text.begin(), text.end())), kDecode);
-        ASSERT_FALSE(scene.ok());
-        EXPECT_NE(scene.error().message.find(name), std::string::npos) << scene.error().message;
+        const Diagnostic scene =
+            mustFail(import(sceneWithImage(base::Bytes(text.begin(), text.end())), kDecode));
+        EXPECT_NE(scene.message.find(name), std::string::npos) << scene.message;
     }
 }
 
@@ -168,9 +166,8 @@ TEST(ImageContent, IsTheLeastAndGreatestOfEachChannel) {
     EXPECT_EQ(content.leastAt[3].x, 0);
     EXPECT_EQ(content.greatestAt[3].x, 1);
     // Nobody has looked.
-    const Result<gltf::Scene> unread = import(sceneWithImage(makePng({})));
-    ASSERT_TRUE(unread.ok());
-    EXPECT_EQ(unread->materials[0].texture("baseColorTexture").content.of[0], materials::kUnitInterval);
+    const gltf::Scene unread = must(import(sceneWithImage(makePng({}))));
+    EXPECT_EQ(unread.materials[0].texture("baseColorTexture").content.of[0], materials::kUnitInterval);
 }
 
 // Devices that cannot filter 16 bits keep 8, which may round to either side.

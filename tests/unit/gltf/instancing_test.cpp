@@ -1,5 +1,6 @@
 // Tests EXT_mesh_gpu_instancing and KHR_node_visibility: what is read, and how planning sees it.
 #include "gltf/motion/transform.h"
+#include "support/must.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -21,12 +22,7 @@ struct Instanced {
         return builder.root["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
     }
     gltf::Scene import() {
-        Result<gltf::Scene> scene = test::import(builder);
-        if (!scene) {
-            ADD_FAILURE() << toString(scene.error());
-            return {};
-        }
-        return std::move(*scene);
+        return must(test::import(builder));
     }
     std::string errorId() {
         const Result<gltf::Scene> scene = test::import(builder);
@@ -115,9 +111,8 @@ TEST(GltfInstancing, CountsForExpectedHits) {
     const double many = planningInputs(instanced.import()).at(0).expectedHits;
     GltfBuilder single;
     single.addTriangle();
-    const Result<gltf::Scene> one = import(single);
-    ASSERT_TRUE(one.ok());
-    EXPECT_NEAR(many / planningInputs(*one).at(0).expectedHits, 4000.0, 1e-6);
+    const gltf::Scene one = must(import(single));
+    EXPECT_NEAR(many / planningInputs(one).at(0).expectedHits, 4000.0, 1e-6);
 }
 
 TEST(GltfVisibility, HidesANodeAndAllBelow) {
@@ -129,15 +124,14 @@ TEST(GltfVisibility, HidesANodeAndAllBelow) {
     builder.root["nodes"][0]["extensions"]["KHR_node_visibility"]["visible"] = true;
     builder.root["nodes"].push_back(
         Json::parse(R"({"children": [0], "extensions": {"KHR_node_visibility": {"visible": false}}})"));
-    const Result<gltf::Scene> scene = import(builder);
-    ASSERT_TRUE(scene.ok()) << toString(scene.error());
-    EXPECT_TRUE(readingWarnings(*scene).empty());
-    const gltf::Node& below = scene->nodes.at(1);
+    const gltf::Scene scene = must(import(builder));
+    EXPECT_TRUE(readingWarnings(scene).empty());
+    const gltf::Node& below = scene.nodes.at(1);
     EXPECT_TRUE(below.visible);
     EXPECT_FALSE(below.shown);
     EXPECT_FALSE(below.canShow);
-    EXPECT_FALSE(scene->lights.at(0).shines());
-    EXPECT_FALSE(scene->lights.at(0).canShine);
+    EXPECT_FALSE(scene.lights.at(0).shines());
+    EXPECT_FALSE(scene.lights.at(0).canShine);
     // The default is visible. A value of another type is an error.
     builder.root["nodes"][1]["extensions"]["KHR_node_visibility"] = Json::object();
     EXPECT_TRUE(import(builder)->nodes.at(1).shown);

@@ -1,6 +1,7 @@
 // Tests KTX2 images (KHR_texture_basisu): which are decoded, which are refused and why, and which source of a
 // texture is used. ktx2/make.py made the files.
 #include "gltf/codecs/codecs.h"
+#include "support/must.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -19,10 +20,8 @@ const gltf::ImportOptions kDecodeKtx2{.decodeImages = true};
 constexpr std::size_t kLevelIndex = 80;
 
 base::Bytes readKtx2File(const std::string& name) {
-    Result<base::Bytes> bytes =
-        base::readFile(std::filesystem::path(GLINT_SOURCE_DIR) / "tests/unit/gltf/ktx2" / (name + ".ktx2"));
-    EXPECT_TRUE(bytes.ok()) << name;
-    return bytes ? *bytes : base::Bytes();
+    return must(
+        base::readFile(std::filesystem::path(GLINT_SOURCE_DIR) / "tests/unit/gltf/ktx2" / (name + ".ktx2")));
 }
 
 // Returns a scene whose base colour is that KTX2 image, without a fallback.
@@ -128,9 +127,8 @@ TEST_F(GltfKtx2, MayLieAnywhereInABuffer) {
         GltfBuilder builder = basisuScene(bytes);
         builder.root["bufferViews"][0]["byteOffset"] = padding;
         builder.buffer.insert(builder.buffer.begin(), padding, std::uint8_t{0});
-        const Result<gltf::Scene> scene = import(builder, kDecodeKtx2);
-        ASSERT_TRUE(scene.ok()) << toString(scene.error());
-        EXPECT_TRUE(isNear(pixelAt(scene->images[0], 0, 1, 1), {200, 24, 24, 255}, 3));
+        const gltf::Scene scene = must(import(builder, kDecodeKtx2));
+        EXPECT_TRUE(isNear(pixelAt(scene.images[0], 0, 1, 1), {200, 24, 24, 255}, 3));
     }
 }
 
@@ -156,11 +154,10 @@ TEST_F(GltfKtx2, IsPreferredToItsFallback) {
     GltfBuilder builder = basisuScene(readKtx2File("etc1s"));
     builder.append("images", {{"uri", std::string("data:image/png;base64,") + kPng8}});
     builder.root["textures"][0]["source"] = 1;
-    const Result<gltf::Scene> scene = import(builder, kDecodeKtx2);
-    ASSERT_TRUE(scene.ok()) << toString(scene.error());
-    ASSERT_EQ(scene->images.size(), 1U);
-    EXPECT_EQ(scene->images[0].pointer, "/images/0");
-    EXPECT_TRUE(readingWarnings(*scene).empty());
+    const gltf::Scene scene = must(import(builder, kDecodeKtx2));
+    ASSERT_EQ(scene.images.size(), 1U);
+    EXPECT_EQ(scene.images[0].pointer, "/images/0");
+    EXPECT_TRUE(readingWarnings(scene).empty());
 }
 
 // Damaged pixels behind a valid header are decoded or refused. The memory stays intact, which builds with
@@ -317,9 +314,8 @@ TEST_F(GltfKtx2, OtherUseThanTheFileSaysIsAWarning) {
         if (!asColor) {
             builder.root["materials"][0] = {{"normalTexture", {{"index", 0}}}};
         }
-        const Result<gltf::Scene> scene = import(builder, kDecodeKtx2);
-        EXPECT_TRUE(scene.ok()) << toString(scene.error());
-        return scene ? findWarning(*scene, "ktx2-metadata").message : std::string();
+        const gltf::Scene scene = must(import(builder, kDecodeKtx2));
+        return findWarning(scene, "ktx2-metadata").message;
     };
     EXPECT_EQ(warningOf("etc1s", true), "");
     EXPECT_EQ(warningOf("uastc_linear", false), "");
@@ -336,11 +332,10 @@ TEST(GltfBasisu, WithoutTranscoderFallsBackOrIsAnError) {
     }
     GltfBuilder builder = basisuScene(readKtx2File("etc1s"));
     const auto expectError = [&] {
-        const Result<gltf::Scene> scene = import(builder, kDecodeKtx2);
-        ASSERT_FALSE(scene.ok());
-        EXPECT_EQ(scene.error().id, "texture-basisu");
-        EXPECT_TRUE(scene.error().where.ends_with("#/textures/0"));
-        EXPECT_NE(scene.error().hint.find("scripts/setup.sh"), std::string::npos);
+        const Diagnostic scene = mustFail(import(builder, kDecodeKtx2));
+        EXPECT_EQ(scene.id, "texture-basisu");
+        EXPECT_TRUE(scene.where.ends_with("#/textures/0"));
+        EXPECT_NE(scene.hint.find("scripts/setup.sh"), std::string::npos);
     };
     expectError();
     builder.append("images", {{"uri", std::string("data:image/png;base64,") + kPng8}});
@@ -349,21 +344,19 @@ TEST(GltfBasisu, WithoutTranscoderFallsBackOrIsAnError) {
     expectError();
 
     builder.root.erase("extensionsRequired");
-    const Result<gltf::Scene> fallback = import(builder, kDecodeKtx2);
-    ASSERT_TRUE(fallback.ok()) << toString(fallback.error());
-    ASSERT_EQ(fallback->images.size(), 1U);
-    EXPECT_EQ(fallback->images[0].pointer, "/images/1");
-    ASSERT_EQ(countWarnings(*fallback, "texture-basisu"), 1U);
-    EXPECT_EQ(findWarning(*fallback, "texture-basisu").severity, Severity::Note);
+    const gltf::Scene fallback = must(import(builder, kDecodeKtx2));
+    ASSERT_EQ(fallback.images.size(), 1U);
+    EXPECT_EQ(fallback.images[0].pointer, "/images/1");
+    ASSERT_EQ(countWarnings(fallback, "texture-basisu"), 1U);
+    EXPECT_EQ(findWarning(fallback, "texture-basisu").severity, Severity::Note);
 }
 
 TEST(GltfBasisu, ExplainsKtxInTheGuiseOfPng) {
     base::Bytes start = readKtx2File("etc1s");
     start.resize(100);
-    const Result<gltf::Scene> scene = import(sceneWithImage(start), kDecodeKtx2);
-    ASSERT_FALSE(scene.ok());
-    EXPECT_EQ(scene.error().id, "image-decode");
-    EXPECT_NE(scene.error().message.find("KTX2"), std::string::npos) << scene.error().message;
+    const Diagnostic scene = mustFail(import(sceneWithImage(start), kDecodeKtx2));
+    EXPECT_EQ(scene.id, "image-decode");
+    EXPECT_NE(scene.message.find("KTX2"), std::string::npos) << scene.message;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // Nothing that a file asks for is lost in silence: pictures without a surface, inputs that primitives lack.
 #include "plan/plan.h"
+#include "support/must.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <glint/session/camera.h>
@@ -14,12 +15,7 @@ namespace glint::test {
 namespace {
 
 gltf::Scene readScene(const GltfBuilder& builder, const gltf::ImportOptions& options = {}) {
-    Result<gltf::Scene> scene = import(builder, options);
-    if (!scene) {
-        ADD_FAILURE() << toString(scene.error());
-        return {};
-    }
-    return std::move(*scene);
+    return must(import(builder, options));
 }
 
 void expectContains(const std::string& text, const std::string& part) {

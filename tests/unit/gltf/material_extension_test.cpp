@@ -1,5 +1,6 @@
 // Tests KHR_materials_*: factors with their ranges, textures slot by slot, and which extension takes
 // precedence.
+#include "support/must.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -21,12 +22,7 @@ GltfBuilder withMaterial(Json material) {
 }
 
 gltf::Scene mustImport(const GltfBuilder& builder) {
-    Result<gltf::Scene> scene = import(builder);
-    if (!scene) {
-        ADD_FAILURE() << toString(scene.error());
-        return {};
-    }
-    return std::move(*scene);
+    return must(import(builder));
 }
 
 gltf::Scene importMaterial(const std::string& extensions) {
@@ -186,13 +182,10 @@ TEST(GltfMaterialExtensions, EverySlotTakesTextureSetAndTransform) {
 TEST(GltfMaterialExtensions, EverySlotIsChecked) {
     for (const SlotPlace& place : kPlaces) {
         SCOPED_TRACE(std::string(place.owner) + " " + place.member);
-        const Result<gltf::Scene> outside = import(withMaterial(materialWith(place, {{"index", 2}})));
-        ASSERT_FALSE(outside.ok());
-        EXPECT_EQ(outside.error().id, "index-range");
-        EXPECT_NE(outside.error().where.find(std::string(place.member) + "/index"), std::string::npos);
-        const Result<gltf::Scene> noObject = import(withMaterial(materialWith(place, 3)));
-        ASSERT_FALSE(noObject.ok());
-        EXPECT_EQ(noObject.error().id, "json-type");
+        const Diagnostic outside = mustFail(import(withMaterial(materialWith(place, {{"index", 2}}))));
+        EXPECT_EQ(outside.id, "index-range");
+        EXPECT_NE(outside.where.find(std::string(place.member) + "/index"), std::string::npos);
+        EXPECT_EQ(mustFail(import(withMaterial(materialWith(place, 3)))).id, "json-type");
     }
 }
 
@@ -283,9 +276,7 @@ TEST(GltfMaterialExtensions, ClampWhatIsOutOfRangeWithAWarning) {
         EXPECT_FALSE(warning.hint.empty());
         // A value of the wrong type is refused.
         material["extensions"][std::string("KHR_materials_") + entry.extension][entry.member] = "much";
-        const Result<gltf::Scene> refused = import(withMaterial(material));
-        ASSERT_FALSE(refused.ok());
-        EXPECT_EQ(refused.error().id, "json-type");
+        EXPECT_EQ(mustFail(import(withMaterial(material))).id, "json-type");
     }
 }
 
@@ -336,9 +327,8 @@ TEST(GltfMaterialExtensions, MayBeRequired) {
         GltfBuilder builder = withMaterial(Json::object());
         builder.root["extensionsRequired"] = {std::string("KHR_materials_") + name};
         builder.root["extensionsUsed"] = builder.root["extensionsRequired"];
-        const Result<gltf::Scene> scene = import(builder);
-        ASSERT_TRUE(scene.ok()) << toString(scene.error());
-        EXPECT_TRUE(readingWarnings(*scene).empty()) << name;
+        const gltf::Scene scene = must(import(builder));
+        EXPECT_TRUE(readingWarnings(scene).empty()) << name;
     }
 }
 

@@ -2,6 +2,7 @@
 #include "gltf/import.h"
 #include "gltf/material_set.h"
 #include "plan/key.h"
+#include "support/must.h"
 #include "support/temporary_folder.h"
 
 #include <fmt/format.h>
@@ -48,46 +49,44 @@ protected:
 };
 
 TEST_F(MaterialLists, GiveASphereToEachMaterial) {
-    const Result<gltf::Scene> scene = read(R"(
+    const gltf::Scene scene = must(read(R"(
         {"name": "paint", "values": {"roughnessFactor": 0.25, "clearcoatFactor": 1, "sheenColorFactor": [0, 0.5, 1]},
          "alphaMode": "MASK", "doubleSided": true, "weight": 4, "attributes": ["NORMAL", "TANGENT", "COLOR_0"]},
         {"name": "sign", "features": ["unlit"]},
-        {"name": "old", "model": "specularGlossiness", "values": {"glossinessFactor": 0.5}})");
-    ASSERT_TRUE(scene) << toString(scene.error());
-    EXPECT_TRUE(scene->warnings.empty()) << toString(scene->warnings.front());
-    ASSERT_EQ(scene->materials.size(), 3U);
-    const materials::Material& paint = scene->materials[0];
+        {"name": "old", "model": "specularGlossiness", "values": {"glossinessFactor": 0.5}})"));
+    EXPECT_TRUE(scene.warnings.empty()) << toString(scene.warnings.front());
+    ASSERT_EQ(scene.materials.size(), 3U);
+    const materials::Material& paint = scene.materials[0];
     EXPECT_EQ(paint.name, "paint");
     EXPECT_EQ(paint["roughnessFactor"][0], 0.25F);
     EXPECT_EQ(paint["sheenColorFactor"][2], 1.0F);
     EXPECT_EQ(paint.alphaMode, materials::AlphaMode::Mask);
     EXPECT_TRUE(paint.doubleSided);
-    EXPECT_TRUE(hasFeature(*scene, "clearcoat"));
-    EXPECT_TRUE(scene->materials[1].isUnlit());
-    EXPECT_EQ(scene->materials[2]["glossinessFactor"][0], 0.5F);
-    ASSERT_EQ(scene->meshes.size(), 3U);
-    EXPECT_EQ(scene->lights.size(), 1U);
+    EXPECT_TRUE(hasFeature(scene, "clearcoat"));
+    EXPECT_TRUE(scene.materials[1].isUnlit());
+    EXPECT_EQ(scene.materials[2]["glossinessFactor"][0], 0.5F);
+    ASSERT_EQ(scene.meshes.size(), 3U);
+    EXPECT_EQ(scene.lights.size(), 1U);
     for (std::size_t i = 0; i < 3; ++i) {
-        ASSERT_EQ(scene->meshes[i].primitives.size(), 1U);
-        EXPECT_EQ(scene->meshes[i].primitives[0].material, static_cast<int>(i));
+        ASSERT_EQ(scene.meshes[i].primitives.size(), 1U);
+        EXPECT_EQ(scene.meshes[i].primitives[0].material, static_cast<int>(i));
     }
-    const gltf::Primitive& primitive = scene->meshes[0].primitives[0];
+    const gltf::Primitive& primitive = scene.meshes[0].primitives[0];
     EXPECT_TRUE(primitive.texCoords0.empty());
     EXPECT_EQ(primitive.tangents.size(), primitive.positions.size());
     EXPECT_EQ(primitive.colorContent, materials::ColorContent::Varying);
-    EXPECT_FALSE(scene->meshes[1].primitives[0].texCoords0.empty());
+    EXPECT_FALSE(scene.meshes[1].primitives[0].texCoords0.empty());
     // The area of the sphere, not its radius, follows the weight.
-    EXPECT_EQ(scene->nodes[0].rest.scale[0], 2.0 * scene->nodes[1].rest.scale[0]);
+    EXPECT_EQ(scene.nodes[0].rest.scale[0], 2.0 * scene.nodes[1].rest.scale[0]);
 }
 
 TEST_F(MaterialLists, KeepFeaturesForEditedValues) {
     for (const bool isEdited : {false, true}) {
-        const Result<gltf::Scene> scene =
-            read(fmt::format(R"({{"name": "a", "edited": [{}]}})", isEdited ? R"("clearcoatFactor")" : ""));
-        ASSERT_TRUE(scene) << toString(scene.error());
-        EXPECT_EQ(hasFeature(*scene, "clearcoat"), isEdited);
-        EXPECT_EQ(scene->materials[0]["clearcoatFactor"][0], 0.0F);
-        ASSERT_EQ(scene->animatedMaterials.size(), isEdited ? 1U : 0U);
+        const gltf::Scene scene = must(
+            read(fmt::format(R"({{"name": "a", "edited": [{}]}})", isEdited ? R"("clearcoatFactor")" : "")));
+        EXPECT_EQ(hasFeature(scene, "clearcoat"), isEdited);
+        EXPECT_EQ(scene.materials[0]["clearcoatFactor"][0], 0.0F);
+        ASSERT_EQ(scene.animatedMaterials.size(), isEdited ? 1U : 0U);
     }
 }
 
@@ -99,10 +98,9 @@ TEST_F(MaterialLists, EditedValuesHaveRanges) {
                                "edited": ["roughnessFactor", {{"parameter": "clearcoatFactor"{}}}]}})",
             range);
     };
-    const Result<gltf::Scene> scene = read(edited(R"(, "range": [0.25, 0.75])"));
-    ASSERT_TRUE(scene) << toString(scene.error());
-    ASSERT_EQ(scene->animatedMaterials.size(), 1U);
-    const materials::Material& planned = scene->animatedMaterials[0].planned;
+    const gltf::Scene scene = must(read(edited(R"(, "range": [0.25, 0.75])")));
+    ASSERT_EQ(scene.animatedMaterials.size(), 1U);
+    const materials::Material& planned = scene.animatedMaterials[0].planned;
     const auto rangeOf = [&](const char* parameter) {
         const int index = planned.model().findParameter(parameter);
         return planned.ranges[static_cast<std::size_t>(
@@ -110,10 +108,9 @@ TEST_F(MaterialLists, EditedValuesHaveRanges) {
     };
     EXPECT_EQ(rangeOf("clearcoatFactor"), (materials::ValueInterval{0.25, 0.75}));
     EXPECT_EQ(rangeOf("roughnessFactor"), (materials::ValueInterval{0.0, 1.0}));
-    const Result<gltf::Scene> metal = read(R"({"name": "a", "values": {"metallicFactor": 1},
-                 "edited": [{"parameter": "metallicFactor", "range": [1, 1]}]})");
-    ASSERT_TRUE(metal) << toString(metal.error());
-    EXPECT_FALSE(hasFeature(*metal, "partialMetal"));
+    const gltf::Scene metal = must(read(R"({"name": "a", "values": {"metallicFactor": 1},
+                 "edited": [{"parameter": "metallicFactor", "range": [1, 1]}]})"));
+    EXPECT_FALSE(hasFeature(metal, "partialMetal"));
     EXPECT_NE(refusal(edited(R"(, "range": [0.75, 0.25])"))
                   .find("/materials/0/edited/1: 0.75 to 0.25 is no range within that of clearcoatFactor"),
               std::string::npos);
@@ -127,14 +124,13 @@ TEST_F(MaterialLists, EditedValuesHaveRanges) {
 
 // A set that a program makes is the scene of the list that says the same.
 TEST_F(MaterialLists, AreSetsOfPrograms) {
-    const Result<gltf::Scene> list = read(R"(
+    const gltf::Scene list = must(read(R"(
         {"name": "paint", "values": {"roughnessFactor": 0.25, "sheenColorFactor": [0, 0.5, 1], "normalScale": 2},
          "textures": {"baseColorTexture": {"name": "colours", "scale": [2, 3], "rotation": 0.5},
                       "normalTexture": "bumps.png"},
          "alphaMode": "BLEND", "doubleSided": true, "weight": 4, "attributes": ["NORMAL", "TANGENT", "TEXCOORD_0"],
          "edited": [{"parameter": "clearcoatFactor", "range": [0, 0.5]}, "metallicFactor"]},
-        {"name": "old", "model": "specularGlossiness", "features": ["unlit"], "alphaMode": "MASK"})");
-    ASSERT_TRUE(list) << toString(list.error());
+        {"name": "old", "model": "specularGlossiness", "features": ["unlit"], "alphaMode": "MASK"})"));
     gltf::MaterialSet set;
     set.path = folder_.path() / "list";
     gltf::MaterialDescription paint;
@@ -153,27 +149,26 @@ TEST_F(MaterialLists, AreSetsOfPrograms) {
     old.features = {"unlit"};
     old.alphaMode = materials::AlphaMode::Mask;
     set.materials = {paint, old};
-    const Result<gltf::Scene> scene = gltf::importMaterials(set);
-    ASSERT_TRUE(scene) << toString(scene.error());
-    ASSERT_EQ(scene->materials.size(), 2U);
+    const gltf::Scene scene = must(gltf::importMaterials(set));
+    ASSERT_EQ(scene.materials.size(), 2U);
     for (std::size_t i = 0; i < 2; ++i) {
-        const materials::Material& one = scene->materials[i];
-        const materials::Material& other = list->materials[i];
+        const materials::Material& one = scene.materials[i];
+        const materials::Material& other = list.materials[i];
         EXPECT_EQ(one.name, other.name);
         EXPECT_EQ(one.values, other.values);
         EXPECT_EQ(one.alphaMode, other.alphaMode);
         EXPECT_EQ(one.doubleSided, other.doubleSided);
-        EXPECT_EQ(compiler::makeKey(gltf::planningMaterials(*scene)[i], gltf::planningInputs(*scene)[i], {}),
-                  compiler::makeKey(gltf::planningMaterials(*list)[i], gltf::planningInputs(*list)[i], {}));
-        EXPECT_EQ(scene->nodes[i].rest.scale, list->nodes[i].rest.scale);
+        EXPECT_EQ(compiler::makeKey(gltf::planningMaterials(scene)[i], gltf::planningInputs(scene)[i], {}),
+                  compiler::makeKey(gltf::planningMaterials(list)[i], gltf::planningInputs(list)[i], {}));
+        EXPECT_EQ(scene.nodes[i].rest.scale, list.nodes[i].rest.scale);
     }
-    ASSERT_EQ(scene->images.size(), 2U);
-    EXPECT_EQ(scene->images[0].name, "colours");
-    EXPECT_TRUE(scene->images[0].isAtRunTime);
-    EXPECT_EQ(scene->images[1].name, "bumps.png");
-    ASSERT_EQ(scene->animatedMaterials.size(), 1U);
-    EXPECT_EQ(scene->animatedMaterials[0].planned.ranges, list->animatedMaterials[0].planned.ranges);
-    EXPECT_EQ(std::filesystem::path(scene->path).stem(), std::filesystem::path(list->path).stem());
+    ASSERT_EQ(scene.images.size(), 2U);
+    EXPECT_EQ(scene.images[0].name, "colours");
+    EXPECT_TRUE(scene.images[0].isAtRunTime);
+    EXPECT_EQ(scene.images[1].name, "bumps.png");
+    ASSERT_EQ(scene.animatedMaterials.size(), 1U);
+    EXPECT_EQ(scene.animatedMaterials[0].planned.ranges, list.animatedMaterials[0].planned.ranges);
+    EXPECT_EQ(std::filesystem::path(scene.path).stem(), std::filesystem::path(list.path).stem());
 }
 
 TEST_F(MaterialLists, RefuseSetsThatNoListCouldSay) {
@@ -198,18 +193,17 @@ TEST_F(MaterialLists, TrustNoTextureThatComesAtRunTime) {
     gltf::ImportOptions options;
     options.trustTextures = true;
     options.decodeImages = true;
-    const Result<gltf::Scene> scene =
-        read(R"({"name": "a", "textures": {"baseColorTexture": {}, "normalTexture": {"name": "bumps"}},
+    const gltf::Scene scene =
+        must(read(R"({"name": "a", "textures": {"baseColorTexture": {}, "normalTexture": {"name": "bumps"}},
                  "values": {"normalScale": 0.5}})",
-             options);
-    ASSERT_TRUE(scene) << toString(scene.error());
-    EXPECT_TRUE(hasFeature(*scene, "baseColorTexture"));
-    EXPECT_TRUE(hasFeature(*scene, "normalTexture"));
-    ASSERT_EQ(scene->images.size(), 2U);
-    EXPECT_EQ(scene->images[0].name, "baseColorTexture");
-    EXPECT_EQ(scene->images[0].pixels, (std::vector<std::uint8_t>{255, 255, 255, 255}));
-    EXPECT_EQ(scene->images[1].name, "bumps");
-    EXPECT_EQ(scene->images[1].pixels, (std::vector<std::uint8_t>{128, 128, 255, 255}));
+                  options));
+    EXPECT_TRUE(hasFeature(scene, "baseColorTexture"));
+    EXPECT_TRUE(hasFeature(scene, "normalTexture"));
+    ASSERT_EQ(scene.images.size(), 2U);
+    EXPECT_EQ(scene.images[0].name, "baseColorTexture");
+    EXPECT_EQ(scene.images[0].pixels, (std::vector<std::uint8_t>{255, 255, 255, 255}));
+    EXPECT_EQ(scene.images[1].name, "bumps");
+    EXPECT_EQ(scene.images[1].pixels, (std::vector<std::uint8_t>{128, 128, 255, 255}));
 }
 
 TEST_F(MaterialLists, RefuseWhatNoDeclarationHas) {
@@ -255,19 +249,16 @@ TEST_F(MaterialLists, RefuseWhatNoDeclarationHas) {
 
 // Messages of what reads glTF name the places of the list.
 TEST_F(MaterialLists, MessagesNameTheirPlaces) {
-    const Result<gltf::Scene> high = read(R"({"name": "a", "values": {"clearcoatFactor": 2}})");
-    ASSERT_TRUE(high) << toString(high.error());
-    ASSERT_EQ(high->warnings.size(), 1U);
-    EXPECT_TRUE(high->warnings[0].where.ends_with("list.json#/materials/0/values/clearcoatFactor"))
-        << high->warnings[0].where;
+    const gltf::Scene high = must(read(R"({"name": "a", "values": {"clearcoatFactor": 2}})"));
+    ASSERT_EQ(high.warnings.size(), 1U);
+    EXPECT_TRUE(high.warnings[0].where.ends_with("list.json#/materials/0/values/clearcoatFactor"))
+        << high.warnings[0].where;
     gltf::ImportOptions options;
     options.decodeImages = true;
-    const Result<gltf::Scene> missing =
-        read(R"({"name": "a", "textures": {"baseColorTexture": "none.png"}})", options);
-    ASSERT_FALSE(missing);
-    EXPECT_NE(missing.error().where.find("list.json#/materials/0/textures/baseColorTexture"),
-              std::string::npos)
-        << missing.error().where;
+    const Diagnostic missing =
+        mustFail(read(R"({"name": "a", "textures": {"baseColorTexture": "none.png"}})", options));
+    EXPECT_NE(missing.where.find("list.json#/materials/0/textures/baseColorTexture"), std::string::npos)
+        << missing.where;
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // Tests materials, textures, images and extensions.
+#include "support/must.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -24,12 +25,7 @@ GltfBuilder texturedMaterial() {
 }
 
 gltf::Scene mustImport(const GltfBuilder& builder, const gltf::ImportOptions& options = {}) {
-    Result<gltf::Scene> scene = import(builder, options);
-    if (!scene) {
-        ADD_FAILURE() << toString(scene.error());
-        return {};
-    }
-    return std::move(*scene);
+    return must(import(builder, options));
 }
 
 TEST(GltfMaterials, HaveTheDefaultsOfTheSpecification) {

@@ -1,6 +1,7 @@
 // MaterialX files, which become lists of materials.
 #include "gltf/import.h"
 #include "materials/declarations.h"
+#include "support/must.h"
 #include "support/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -53,7 +54,7 @@ protected:
 };
 
 TEST_F(MaterialX, OpenPbrHasItsConstants) {
-    const Result<gltf::Scene> scene = readOpenPbr(
+    const gltf::Scene scene = must(readOpenPbr(
         R"(<input name="base_color" type="color3" value="0.2, 0.4,0.6"/>
            <input name="coat_weight" type="float" value="0.5"/>
            <input name="geometry_opacity" type="float" value="0.25"/>
@@ -63,11 +64,10 @@ TEST_F(MaterialX, OpenPbrHasItsConstants) {
         R"(<surfacematerial name="Paint" type="material"/>
            <nodegraph name="g"><constant name="c" type="color3">
              <input name="value" type="color3" value="1, 0.5, 0.25"/></constant>
-             <output name="o" type="color3" nodename="c"/></nodegraph>)");
-    ASSERT_TRUE(scene) << toString(scene.error());
-    EXPECT_TRUE(scene->warnings.empty()) << toString(scene->warnings.front());
-    ASSERT_EQ(scene->materials.size(), 1U);
-    const materials::Material& material = scene->materials[0];
+             <output name="o" type="color3" nodename="c"/></nodegraph>)"));
+    EXPECT_TRUE(scene.warnings.empty()) << toString(scene.warnings.front());
+    ASSERT_EQ(scene.materials.size(), 1U);
+    const materials::Material& material = scene.materials[0];
     EXPECT_EQ(material.name, "Paint");
     EXPECT_TRUE(material.gives("EXAMPLE_materials_openpbr"));
     expectNear(material, "baseColorFactor", {0.2, 0.4, 0.6, 1.0});
@@ -85,17 +85,16 @@ TEST_F(MaterialX, OpenPbrHasItsConstants) {
 
 // White has the same numbers in both spaces, and red of ACEScg is beyond that of Rec. 709.
 TEST_F(MaterialX, ColoursAreInRec709) {
-    const Result<gltf::Scene> scene = read(R"(<materialx colorspace="acescg"><open_pbr_surface name="s">
+    const gltf::Scene scene = must(read(R"(<materialx colorspace="acescg"><open_pbr_surface name="s">
                <input name="base_color" type="color3" value="0.5, 0.5, 0.5"/>
-               <input name="coat_color" type="color3" value="0.2, 0.1, 0.1"/></open_pbr_surface></materialx>)");
-    ASSERT_TRUE(scene) << toString(scene.error());
-    expectNear(scene->materials[0], "baseColorFactor", {0.5, 0.5, 0.5});
-    expectNear(scene->materials[0], "coatColor", {0.270505, 0.086973, 0.0976});
+               <input name="coat_color" type="color3" value="0.2, 0.1, 0.1"/></open_pbr_surface></materialx>)"));
+    expectNear(scene.materials[0], "baseColorFactor", {0.5, 0.5, 0.5});
+    expectNear(scene.materials[0], "coatColor", {0.270505, 0.086973, 0.0976});
 }
 
 // The published translation, with numbers worked out by hand.
 TEST_F(MaterialX, StandardSurfaceIsTranslated) {
-    const Result<gltf::Scene> scene = read(
+    const gltf::Scene scene = must(read(
         R"(<materialx><standard_surface name="s">
            <input name="base" type="float" value="0.5"/>
            <input name="base_color" type="color3" value="0.8, 0.6, 0.4"/>
@@ -104,9 +103,8 @@ TEST_F(MaterialX, StandardSurfaceIsTranslated) {
            <input name="sheen_roughness" type="float" value="0.5"/>
            <input name="thin_film_thickness" type="float" value="400"/>
            <input name="emission" type="float" value="2"/>
-           <input name="opacity" type="color3" value="1, 1, 1"/></standard_surface></materialx>)");
-    ASSERT_TRUE(scene) << toString(scene.error());
-    const materials::Material& material = scene->materials[0];
+           <input name="opacity" type="color3" value="1, 1, 1"/></standard_surface></materialx>)"));
+    const materials::Material& material = scene.materials[0];
     expectNear(material, "baseWeight", {0.5});
     expectNear(material, "baseColorFactor", {0.6, 0.6, 0.4, 1.0});
     expectNear(material, "coatWeight", {0.5});
@@ -122,15 +120,14 @@ TEST_F(MaterialX, StandardSurfaceIsTranslated) {
 }
 
 TEST_F(MaterialX, ImagesFillTheTexturesOfThePack) {
-    const Result<gltf::Scene> scene = readOpenPbr(
+    const gltf::Scene scene = must(readOpenPbr(
         R"(<input name="base_color" type="color3" nodename="wood"/>
            <input name="specular_roughness" type="float" nodename="rough"/>)",
         R"(<tiledimage name="wood" type="color3" fileprefix="maps/">
              <input name="file" type="filename" value="wood.png" colorspace="srgb_texture"/>
              <input name="uvtiling" type="vector2" value="2, 4"/></tiledimage>
-           <image name="rough" type="float"><input name="file" type="filename" value="rough.png"/></image>)");
-    ASSERT_TRUE(scene) << toString(scene.error());
-    const materials::Material& material = scene->materials[0];
+           <image name="rough" type="float"><input name="file" type="filename" value="rough.png"/></image>)"));
+    const materials::Material& material = scene.materials[0];
     EXPECT_GE(material.texture("baseColorTexture").texture, 0);
     EXPECT_GE(material.texture("metallicRoughnessTexture").texture, 0);
     expectNear(material, "baseColorFactor", {1.0, 1.0, 1.0, 1.0});

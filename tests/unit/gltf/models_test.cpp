@@ -5,6 +5,7 @@
 #include "gltf/import.h"
 #include "plan/plan.h"
 #include "support/features.h"
+#include "support/must.h"
 
 #include <gtest/gtest.h>
 
@@ -110,10 +111,9 @@ TEST(GltfModels, LampHasItsKtx2Textures) {
     if (!gltf::hasBasisu() || !fs::exists(path)) {
         GTEST_SKIP() << "no model, or this build does not decode KTX2";
     }
-    const Result<gltf::Scene> scene = gltf::importScene(path, {.decodeImages = true});
-    ASSERT_TRUE(scene.ok()) << toString(scene.error());
-    EXPECT_TRUE(scene->warnings.empty()) << toString(scene->warnings[0]);
-    ASSERT_EQ(scene->images.size(), 4U);
+    const gltf::Scene scene = must(gltf::importScene(path, {.decodeImages = true}));
+    EXPECT_TRUE(scene.warnings.empty()) << toString(scene.warnings[0]);
+    ASSERT_EQ(scene.images.size(), 4U);
     // The means of the channels show copper, and normals that point out of the surface.
     const auto meanOf = [](const gltf::Image& image, std::size_t channel) {
         double sum = 0;
@@ -122,14 +122,14 @@ TEST(GltfModels, LampHasItsKtx2Textures) {
         }
         return sum / static_cast<double>(pixelCount(image, 0));
     };
-    for (const gltf::Image& image : scene->images) {
+    for (const gltf::Image& image : scene.images) {
         EXPECT_EQ(image.width, 2048) << image.name;
         EXPECT_EQ(image.height, 2048) << image.name;
     }
-    const gltf::Image& color = scene->images[0];
+    const gltf::Image& color = scene.images[0];
     EXPECT_GT(meanOf(color, 0), meanOf(color, 1) + 15);
     EXPECT_GT(meanOf(color, 1), meanOf(color, 2) + 10);
-    const gltf::Image& normals = scene->images[2];
+    const gltf::Image& normals = scene.images[2];
     EXPECT_NEAR(meanOf(normals, 0), 128, 3);
     EXPECT_NEAR(meanOf(normals, 1), 128, 3);
     EXPECT_GT(meanOf(normals, 2), 250);
@@ -220,36 +220,30 @@ TEST(GltfModels, HaveTheirKnownContent) {
     if (!fs::exists(features)) {
         GTEST_SKIP() << noModels(kModels);
     }
-    const Result<gltf::Scene> multi =
-        gltf::importScene(features / "TextureTransformMultiTest/TextureTransformMultiTest.glb");
-    ASSERT_TRUE(multi.ok());
-    EXPECT_EQ(multi->materials.size(), 29U);
-    EXPECT_EQ(planningInputs(*multi).size(), 29U);
-    const Result<gltf::Scene> modes =
-        gltf::importScene(features / "MeshPrimitiveModes/MeshPrimitiveModes.gltf");
-    ASSERT_TRUE(modes.ok());
-    EXPECT_EQ(planningInputs(*modes).size(), 3U);
-    EXPECT_EQ(modes->defaultMaterial, 0);
-    const Result<gltf::Scene> sparse =
-        gltf::importScene(features / "SimpleSparseAccessor/SimpleSparseAccessor.gltf");
-    ASSERT_TRUE(sparse.ok());
-    EXPECT_EQ(sparse->meshes.at(0).primitives.at(0).positions.at(8), (gltf::Float3{1.0F, 2.0F, 0.0F}));
-    const Result<gltf::Scene> avocado = gltf::importScene(features / "Avocado-draco/Avocado.gltf");
-    ASSERT_TRUE(avocado.ok());
-    EXPECT_EQ(avocado->meshes.at(0).primitives.at(0).positions.size(), 406U);
-    EXPECT_EQ(avocado->meshes.at(0).primitives.at(0).indices.size(), 2046U);
-    const Result<gltf::Scene> pirate = gltf::importScene(features / "pirate/pirate.glb");
-    ASSERT_TRUE(pirate.ok());
-    EXPECT_EQ(pirate->meshes.at(0).primitives.at(0).positions.size(), 2887U);
-    EXPECT_EQ(pirate->meshes.at(0).primitives.at(0).indices.size(), 15030U);
-    const Result<gltf::Scene> spheres =
-        gltf::importScene(kModels / "large/MetalRoughSpheresNoTextures/MetalRoughSpheresNoTextures.glb");
-    ASSERT_TRUE(spheres.ok());
+    const gltf::Scene multi =
+        must(gltf::importScene(features / "TextureTransformMultiTest/TextureTransformMultiTest.glb"));
+    EXPECT_EQ(multi.materials.size(), 29U);
+    EXPECT_EQ(planningInputs(multi).size(), 29U);
+    const gltf::Scene modes =
+        must(gltf::importScene(features / "MeshPrimitiveModes/MeshPrimitiveModes.gltf"));
+    EXPECT_EQ(planningInputs(modes).size(), 3U);
+    EXPECT_EQ(modes.defaultMaterial, 0);
+    const gltf::Scene sparse =
+        must(gltf::importScene(features / "SimpleSparseAccessor/SimpleSparseAccessor.gltf"));
+    EXPECT_EQ(sparse.meshes.at(0).primitives.at(0).positions.at(8), (gltf::Float3{1.0F, 2.0F, 0.0F}));
+    const gltf::Scene avocado = must(gltf::importScene(features / "Avocado-draco/Avocado.gltf"));
+    EXPECT_EQ(avocado.meshes.at(0).primitives.at(0).positions.size(), 406U);
+    EXPECT_EQ(avocado.meshes.at(0).primitives.at(0).indices.size(), 2046U);
+    const gltf::Scene pirate = must(gltf::importScene(features / "pirate/pirate.glb"));
+    EXPECT_EQ(pirate.meshes.at(0).primitives.at(0).positions.size(), 2887U);
+    EXPECT_EQ(pirate.meshes.at(0).primitives.at(0).indices.size(), 15030U);
+    const gltf::Scene spheres = must(
+        gltf::importScene(kModels / "large/MetalRoughSpheresNoTextures/MetalRoughSpheresNoTextures.glb"));
     std::size_t triangles = 0;
-    for (const gltf::Node& node : spheres->nodes) {
+    for (const gltf::Node& node : spheres.nodes) {
         if (node.mesh >= 0) {
             for (const gltf::Primitive& primitive :
-                 spheres->meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+                 spheres.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
                 triangles += primitive.indices.size() / 3;
             }
         }

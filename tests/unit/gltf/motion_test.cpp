@@ -1,4 +1,5 @@
 // Tests animations, skins and morph targets: what is read, and the messages about bad ones.
+#include "support/must.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -10,12 +11,7 @@ namespace glint::test {
 namespace {
 
 gltf::Scene importMotion(const GltfBuilder& builder) {
-    Result<gltf::Scene> scene = import(builder);
-    if (!scene) {
-        ADD_FAILURE() << toString(scene.error());
-        return {};
-    }
-    return std::move(*scene);
+    return must(import(builder));
 }
 
 const gltf::Primitive& primitiveOf(const gltf::Scene& scene) {

@@ -1,4 +1,5 @@
 // Tests hierarchy, transforms, cameras and lights.
+#include "support/must.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -14,12 +15,7 @@ Result<gltf::Scene> importMembers(const std::string& members) {
 }
 
 gltf::Scene mustImport(const std::string& members) {
-    Result<gltf::Scene> scene = importMembers(members);
-    if (!scene) {
-        ADD_FAILURE() << toString(scene.error());
-        return {};
-    }
-    return std::move(*scene);
+    return must(importMembers(members));
 }
 
 std::string errorId(const std::string& members) {
@@ -85,15 +81,14 @@ TEST(GltfNodes, TakesTheSceneThatIsAskedFor) {
     EXPECT_EQ(drawn("0", R"(, "scene": 2)"), "a");
     EXPECT_EQ(drawn("Room"), "c");
     EXPECT_EQ(drawn("1"), "b");  // a number comes before a name
-    const Result<gltf::Scene> room = read("Room");
-    ASSERT_TRUE(room);
-    EXPECT_EQ(room->sceneInFile, 2);
-    EXPECT_EQ(room->scenesInFile, (std::vector<std::string>{"First", "", "Room", "1"}));
+    const gltf::Scene room = must(read("Room"));
+    EXPECT_EQ(room.sceneInFile, 2);
+    EXPECT_EQ(room.scenesInFile, (std::vector<std::string>{"First", "", "Room", "1"}));
     // Only a choice that the file leaves open is worth a note.
     EXPECT_EQ(findWarning(*read(""), "scene-choice").message,
               "the file names none of its 4 scenes as the default; scene 0 \"First\" is read");
     EXPECT_EQ(countWarnings(*read("", R"(, "scene": 0)"), "scene-choice"), 0U);
-    EXPECT_EQ(countWarnings(*room, "scene-choice"), 0U);
+    EXPECT_EQ(countWarnings(room, "scene-choice"), 0U);
 
     for (const char* const wrong : {"4", "-1", "Roon", "2x", "18446744073709551616"}) {
         const Result<gltf::Scene> refused = read(wrong);
@@ -104,10 +99,8 @@ TEST(GltfNodes, TakesTheSceneThatIsAskedFor) {
             << refused.error().message;
     }
     EXPECT_NE(read("Roon").error().message.find("did you mean Room?"), std::string::npos);
-    const Result<gltf::Scene> none =
-        importText(R"({"asset": {"version": "2.0"}, "nodes": [{}]})", {.scene = "0"});
-    ASSERT_FALSE(none);
-    EXPECT_EQ(none.error().id, "scene-unknown");
+    EXPECT_EQ(mustFail(importText(R"({"asset": {"version": "2.0"}, "nodes": [{}]})", {.scene = "0"})).id,
+              "scene-unknown");
 }
 
 TEST(GltfNodes, DrawsEachNodeOnce) {

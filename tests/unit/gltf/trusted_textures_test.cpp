@@ -2,6 +2,7 @@
 #include "gltf/trusted_textures.h"
 
 #include "gltf/texels/levels.h"
+#include "support/must.h"
 #include "unit/gltf/packed_scenes.h"
 #include "unit/gltf/png_writer.h"
 
@@ -52,9 +53,7 @@ public:
     }
     gltf::Scene read(gltf::ImportOptions options = {}) const {
         options.trustTextures = true;
-        Result<gltf::Scene> scene = import(builder, options);
-        EXPECT_TRUE(scene.ok()) << toString(scene.error());
-        return scene ? std::move(*scene) : gltf::Scene{};
+        return must(import(builder, options));
     }
 
     GltfBuilder builder;

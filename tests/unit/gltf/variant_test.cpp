@@ -1,4 +1,5 @@
 // Tests KHR_materials_variants.
+#include "support/must.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -45,41 +46,36 @@ std::vector<int> materialsOf(const gltf::Scene& scene) {
 }
 
 TEST(GltfVariants, DecideTheMaterialsOfPrimitives) {
-    const Result<gltf::Scene> day = import(withVariants(), with("Day"));
-    ASSERT_TRUE(day.ok()) << toString(day.error());
-    EXPECT_EQ(materialsOf(*day), (std::vector<int>{1, 0, 1}));
-    EXPECT_EQ(day->variant, "Day");
+    const gltf::Scene day = must(import(withVariants(), with("Day")));
+    EXPECT_EQ(materialsOf(day), (std::vector<int>{1, 0, 1}));
+    EXPECT_EQ(day.variant, "Day");
     // A primitive without a material has that of glTF's default when no variant is chosen, which an edit may
     // do.
-    EXPECT_EQ(day->defaultMaterial, 3);
-    const Result<gltf::Scene> night = import(withVariants(), with("Night"));
-    ASSERT_TRUE(night.ok()) << toString(night.error());
-    EXPECT_EQ(materialsOf(*night), (std::vector<int>{2, 2, 1}));
+    EXPECT_EQ(day.defaultMaterial, 3);
+    const gltf::Scene night = must(import(withVariants(), with("Night")));
+    EXPECT_EQ(materialsOf(night), (std::vector<int>{2, 2, 1}));
 }
 
 TEST(GltfVariants, WithoutOneTheDefaultsHold) {
-    const Result<gltf::Scene> scene = import(withVariants());
-    ASSERT_TRUE(scene.ok()) << toString(scene.error());
-    EXPECT_EQ(materialsOf(*scene), (std::vector<int>{0, 0, 3}));
-    EXPECT_EQ(scene->defaultMaterial, 3);
-    EXPECT_EQ(scene->variants, (std::vector<std::string>{"Day", "Night"}));
-    EXPECT_TRUE(scene->variant.empty());
-    EXPECT_TRUE(scene->warnings.empty());
+    const gltf::Scene scene = must(import(withVariants()));
+    EXPECT_EQ(materialsOf(scene), (std::vector<int>{0, 0, 3}));
+    EXPECT_EQ(scene.defaultMaterial, 3);
+    EXPECT_EQ(scene.variants, (std::vector<std::string>{"Day", "Night"}));
+    EXPECT_TRUE(scene.variant.empty());
+    EXPECT_TRUE(scene.warnings.empty());
 }
 
 TEST(GltfVariants, AnUnknownNameListsThoseOfTheFile) {
-    const Result<gltf::Scene> scene = import(withVariants(), with("Nihgt"));
-    ASSERT_FALSE(scene.ok());
-    EXPECT_EQ(scene.error().id, "variant-unknown");
-    EXPECT_NE(scene.error().message.find("did you mean Night?"), std::string::npos);
-    EXPECT_NE(scene.error().hint.find("Day, Night"), std::string::npos);
-    EXPECT_TRUE(scene.error().where.ends_with("#/extensions/KHR_materials_variants/variants"));
+    const Diagnostic scene = mustFail(import(withVariants(), with("Nihgt")));
+    EXPECT_EQ(scene.id, "variant-unknown");
+    EXPECT_NE(scene.message.find("did you mean Night?"), std::string::npos);
+    EXPECT_NE(scene.hint.find("Day, Night"), std::string::npos);
+    EXPECT_TRUE(scene.where.ends_with("#/extensions/KHR_materials_variants/variants"));
     GltfBuilder without;
     without.addTriangle();
-    const Result<gltf::Scene> none = import(without, with("Day"));
-    ASSERT_FALSE(none.ok());
-    EXPECT_EQ(none.error().id, "variant-unknown");
-    EXPECT_NE(none.error().message.find("KHR_materials_variants"), std::string::npos);
+    const Diagnostic none = mustFail(import(without, with("Day")));
+    EXPECT_EQ(none.id, "variant-unknown");
+    EXPECT_NE(none.message.find("KHR_materials_variants"), std::string::npos);
 }
 
 TEST(GltfVariants, AreChecked) {

@@ -4,6 +4,7 @@
 #include "base/image_limits.h"
 #include "image/exr.h"
 #include "image/tone.h"
+#include "support/must.h"
 
 #include <gtest/gtest.h>
 
@@ -49,11 +50,10 @@ LinearImage ramp(std::uint32_t width, std::uint32_t height) {
 TEST_F(ImageFile, ExrKeepsEveryBit) {
     const LinearImage image = ramp(13, 7);
     ASSERT_TRUE(image::writeImage(path("a.exr"), image, 3.0));
-    const Result<LinearImage> read = image::readImage(path("a.exr"));
-    ASSERT_TRUE(read) << toString(read.error());
-    EXPECT_EQ(read->width, 13U);
-    EXPECT_EQ(read->height, 7U);
-    EXPECT_EQ(read->pixels, image.pixels);
+    const LinearImage read = must(image::readImage(path("a.exr")));
+    EXPECT_EQ(read.width, 13U);
+    EXPECT_EQ(read.height, 7U);
+    EXPECT_EQ(read.pixels, image.pixels);
 }
 
 TEST_F(ImageFile, ExrKeepsNanAndInfinity) {
@@ -61,10 +61,9 @@ TEST_F(ImageFile, ExrKeepsNanAndInfinity) {
     image.pixels = {{std::numeric_limits<float>::quiet_NaN(), 0.0F, 0.0F, 1.0F},
                     {std::numeric_limits<float>::infinity(), 0.0F, 0.0F, 1.0F}};
     ASSERT_TRUE(image::writeImage(path("a.exr"), image, 0.0));
-    const Result<LinearImage> read = image::readImage(path("a.exr"));
-    ASSERT_TRUE(read);
-    EXPECT_TRUE(std::isnan(read->pixels[0][0]));
-    EXPECT_TRUE(std::isinf(read->pixels[1][0]));
+    const LinearImage read = must(image::readImage(path("a.exr")));
+    EXPECT_TRUE(std::isnan(read.pixels[0][0]));
+    EXPECT_TRUE(std::isinf(read.pixels[1][0]));
 }
 
 TEST_F(ImageFile, PngRoundTripsDisplayColours) {
@@ -74,23 +73,21 @@ TEST_F(ImageFile, PngRoundTripsDisplayColours) {
         image.pixels.push_back({level, static_cast<std::uint8_t>(255 - i), 7});
     }
     ASSERT_TRUE(writeImage(path("a.png"), image));
-    const Result<LinearImage> read = image::readImage(path("a.png"));
-    ASSERT_TRUE(read) << toString(read.error());
+    const LinearImage read = must(image::readImage(path("a.png")));
     for (std::size_t i = 0; i < 256; ++i) {
-        EXPECT_NEAR(image::linearToSrgb(read->pixels[i][0]) * 255.0F, image.pixels[i][0], 0.01F);
-        EXPECT_NEAR(image::linearToSrgb(read->pixels[i][1]) * 255.0F, image.pixels[i][1], 0.01F);
-        EXPECT_EQ(read->pixels[i][3], 1.0F);
+        EXPECT_NEAR(image::linearToSrgb(read.pixels[i][0]) * 255.0F, image.pixels[i][0], 0.01F);
+        EXPECT_NEAR(image::linearToSrgb(read.pixels[i][1]) * 255.0F, image.pixels[i][1], 0.01F);
+        EXPECT_EQ(read.pixels[i][3], 1.0F);
     }
 }
 
 TEST_F(ImageFile, PngIsToneMapped) {
     LinearImage image{1, 1, {{0.5F, 0.3F, 0.2F, 1.0F}}};
     ASSERT_TRUE(image::writeImage(path("a.PNG"), image, -1.0));
-    const Result<LinearImage> read = image::readImage(path("a.PNG"));
-    ASSERT_TRUE(read);
+    const LinearImage read = must(image::readImage(path("a.PNG")));
     const image::Rgb expected = image::toneMapNeutral({0.25F, 0.15F, 0.1F});
-    EXPECT_NEAR(read->pixels[0][0], expected[0], 4e-3F);
-    EXPECT_NEAR(read->pixels[0][2], expected[2], 4e-3F);
+    EXPECT_NEAR(read.pixels[0][0], expected[0], 4e-3F);
+    EXPECT_NEAR(read.pixels[0][2], expected[2], 4e-3F);
 }
 
 TEST_F(ImageFile, WritesTheSameBytesEveryTime) {
@@ -131,11 +128,10 @@ TEST_F(ImageFile, RefusesMissingAndBrokenFiles) {
 TEST_F(ImageFile, SurvivesTruncation) {
     for (const char* name : {"a.png", "a.exr"}) {
         ASSERT_TRUE(image::writeImage(path(name), ramp(9, 9), 0.0));
-        const Result<base::Bytes> whole = base::readFile(path(name));
-        ASSERT_TRUE(whole);
+        const base::Bytes whole = must(base::readFile(path(name)));
         int refused = 0;
-        for (std::size_t size = 0; size < whole->size(); size += 7) {
-            const base::Bytes part(whole->begin(), whole->begin() + static_cast<std::ptrdiff_t>(size));
+        for (std::size_t size = 0; size < whole.size(); size += 7) {
+            const base::Bytes part(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
             ASSERT_TRUE(base::writeFile(path(name), part));
             refused += image::readImage(path(name)) ? 0 : 1;
         }

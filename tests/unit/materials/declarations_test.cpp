@@ -3,6 +3,7 @@
 
 #include "materials/declaration_files.h"
 #include "plan/plan.h"
+#include "support/must.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -65,28 +66,26 @@ TEST(Declarations, DoNotDependOnTheOrderOfFiles) {
         files.push_back({file.name, file.text});
     }
     std::ranges::reverse(files);
-    const Result<materials::MaterialModel> model = readDeclarations(files);
-    ASSERT_TRUE(model.ok()) << toString(model.error());
-    EXPECT_EQ(model->featureDefines(), materials::builtinMaterialModel().featureDefines());
-    EXPECT_EQ(model->order, materials::builtinMaterialModel().order);
-    for (std::size_t i = 0; i < model->parameters.size(); ++i) {
-        EXPECT_EQ(model->parameters[i].name, materials::builtinMaterialModel().parameters[i].name);
+    const materials::MaterialModel model = must(readDeclarations(files));
+    EXPECT_EQ(model.featureDefines(), materials::builtinMaterialModel().featureDefines());
+    EXPECT_EQ(model.order, materials::builtinMaterialModel().order);
+    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+        EXPECT_EQ(model.parameters[i].name, materials::builtinMaterialModel().parameters[i].name);
     }
 }
 
 // A user's feature is in keys like Glint's own, from one file alone.
 TEST(Declarations, OneFileAddsAFeature) {
-    const Result<materials::MaterialModel> model = modelWith(R"({
+    const materials::MaterialModel model = must(modelWith(R"({
         "name": "wet", "extension": "EXT_wet", "stage": "layer",
         "parameters": [{"name": "wetness", "type": "float", "default": 0, "range": [0, 1]}],
         "textures": [{"name": "wetTexture", "scales": ["wetness"]}],
         "neutral": [{"when": "wetness == 0", "because": "wetness is 0"}],
-        "effects": [{"does": "reflects", "when": "wetness > 0", "roughness": "0.02", "text": "is wet"}]})");
-    ASSERT_TRUE(model.ok()) << toString(model.error());
-    const materials::FeatureMask wet = model->mask("wet");
+        "effects": [{"does": "reflects", "when": "wetness > 0", "roughness": "0.02", "text": "is wet"}]})"));
+    const materials::FeatureMask wet = model.mask("wet");
     EXPECT_NE(wet & materials::builtinMaterialModel().lobes, 0U);
-    EXPECT_NE(model->featureDefines().find("#define GLINT_WET_TEXTURE "), std::string::npos);
-    materials::Material material(*model);
+    EXPECT_NE(model.featureDefines().find("#define GLINT_WET_TEXTURE "), std::string::npos);
+    materials::Material material(model);
     material["metallicFactor"] = 0.0F;
     materials::PrimitiveInputs primitive;
     primitive.hasTexCoords0 = true;
@@ -96,11 +95,11 @@ TEST(Declarations, OneFileAddsAFeature) {
     material["wetness"] = 0.5F;
     material.texture("wetTexture").texture = 0;
     EXPECT_EQ(compiler::makeKey(material, primitive, {}),
-              wet | model->mask("wetTexture") | model->mask("texCoord0"));
+              wet | model.mask("wetTexture") | model.mask("texCoord0"));
     EXPECT_TRUE(compiler::sendsRays(reflection, material, primitive, 0.3F));
     // Existing features keep their bits.
     for (const materials::Feature& feature : materials::builtinMaterialModel().features) {
-        EXPECT_EQ(model->mask(feature.name), feature.mask()) << feature.name;
+        EXPECT_EQ(model.mask(feature.name), feature.mask()) << feature.name;
     }
 }
 
@@ -284,11 +283,10 @@ TEST(Declarations, ScaledParametersAreThoseThatAliasesFill) {
               std::string::npos);
     EXPECT_NE(refusal(scaling(R"(["wetIor.r", "wetIor.g"])")).find("\"wetIor\" is scaled twice"),
               std::string::npos);
-    const Result<materials::MaterialModel> model = modelWith(scaling(R"(["wetIor.r"])"));
-    ASSERT_TRUE(model.ok()) << toString(model.error());
+    const materials::MaterialModel model = must(modelWith(scaling(R"(["wetIor.r"])")));
     for (const char* const name : {"ior", "wetIor"}) {
-        EXPECT_EQ(model->parameters[static_cast<std::size_t>(model->findParameter(name))].scaledBy,
-                  model->findTexture("wetTexture"))
+        EXPECT_EQ(model.parameters[static_cast<std::size_t>(model.findParameter(name))].scaledBy,
+                  model.findTexture("wetTexture"))
             << name;
     }
 }
@@ -330,11 +328,10 @@ TEST(Declarations, NumbersAreInTheirRanges) {
 
 // Without words for explain, a reflection counted as none.
 TEST(Declarations, ReflectionsNeedNoWords) {
-    const Result<materials::MaterialModel> model =
-        modelWith(R"({"name": "wet", "extension": "EXT_wet", "stage": "layer",
-            "effects": [{"does": "reflects", "when": "raysBlend or not raysBlend", "roughness": "0.02"}]})");
-    ASSERT_TRUE(model.ok()) << toString(model.error());
-    materials::Material material(*model);
+    const materials::MaterialModel model =
+        must(modelWith(R"({"name": "wet", "extension": "EXT_wet", "stage": "layer",
+            "effects": [{"does": "reflects", "when": "raysBlend or not raysBlend", "roughness": "0.02"}]})"));
+    materials::Material material(model);
     material["metallicFactor"] = 0.0F;
     EXPECT_TRUE(compiler::sendsRays(materials::builtinMaterialModel().effects[2], material, {}, 0.3F));
 }
@@ -365,9 +362,8 @@ TEST(Declarations, MacrosOfPacksMeetNoneOfGlints) {
         "wet.json",
         R"({"name": "paths", "extension": "EXT_paths", "stage": "layer", "textures": [{"name": "frame"}]})",
         true};
-    const Result<materials::MaterialModel> model = materials::readDeclarations({&file, 1});
-    ASSERT_TRUE(model.ok()) << toString(model.error());
-    const std::string defines = model->featureDefines();
+    const materials::MaterialModel model = must(materials::readDeclarations({&file, 1}));
+    const std::string defines = model.featureDefines();
     EXPECT_NE(defines.find("#define GLINT_PACK_PATHS 0x1u\n#define GLINT_HAS_PATHS(features) hasLobe("),
               std::string::npos)
         << defines;
@@ -396,10 +392,9 @@ TEST(Declarations, FeaturesOfPacksCostSomething) {
         "textures": [{"name": "wetTexture"}, {"name": "dampTexture", "cost": {"instructions": 7, "fetches": 2}}]})";
     for (const bool isOfPack : {true, false}) {
         const materials::DeclarationFile file{"wet.json", text, isOfPack};
-        const Result<materials::MaterialModel> model = materials::readDeclarations({&file, 1});
-        ASSERT_TRUE(model.ok()) << toString(model.error());
+        const materials::MaterialModel model = must(materials::readDeclarations({&file, 1}));
         const auto cost = [&](std::string_view name) {
-            return model->features[static_cast<std::size_t>(model->findFeature(name))].cost;
+            return model.features[static_cast<std::size_t>(model.findFeature(name))].cost;
         };
         EXPECT_EQ(cost("wet").instructions > 0.0, isOfPack);
         EXPECT_EQ(cost("wetTexture").fetches, isOfPack ? 1.0 : 0.0);
@@ -446,10 +441,9 @@ std::string glowWith(std::string_view part, std::string_view other) {
 
 TEST(Declarations, OfEffectsAreRead) {
     const materials::DeclarationFile file{"packs/glow/glow.json", kGlow, true};
-    const Result<materials::MaterialModel> model = materials::readDeclarations({&file, 1});
-    ASSERT_TRUE(model) << toString(model.error());
-    ASSERT_EQ(model->effects.size(), 1U);
-    const materials::EffectDeclaration& glow = model->effects[0];
+    const materials::MaterialModel model = must(materials::readDeclarations({&file, 1}));
+    ASSERT_EQ(model.effects.size(), 1U);
+    const materials::EffectDeclaration& glow = model.effects[0];
     EXPECT_EQ(glow.sample, "packs/glow/glow.glsl");
     EXPECT_EQ(glow.call.behaviour, materials::Behaviour::Emits);
     EXPECT_EQ(glow.function(), "Glow");

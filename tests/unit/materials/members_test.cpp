@@ -3,6 +3,7 @@
 #include "materials/declaration_json.h"
 #include "materials/declaration_members.h"
 #include "materials/declarations.h"
+#include "support/must.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -235,9 +236,8 @@ TEST(DeclarationMembers, ChangeTheModelOrAreRefusedWhereverTheyStand) {
     std::set<std::pair<std::string_view, Place>> accepted;
     for (const Case& one : kCases) {
         const Json declaration = Json::parse(one.declaration);
-        const Result<MaterialModel> plain = modelOf(declaration);
-        ASSERT_TRUE(plain.ok()) << toString(plain.error());
-        const std::string before = Listing(*plain).text();
+        const MaterialModel plain = must(modelOf(declaration));
+        const std::string before = Listing(plain).text();
         for (const auto& [member, values] : kValues) {
             for (const char* const value : values) {
                 Json changed = declaration;

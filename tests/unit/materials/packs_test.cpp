@@ -3,6 +3,7 @@
 #include "materials/declarations.h"
 #include "materials/material.h"
 #include "plan/plan.h"
+#include "support/must.h"
 #include "support/temporary_folder.h"
 
 #include <fmt/format.h>
@@ -32,11 +33,10 @@ protected:
 
     // Expects that the pack is refused with this error at a place that ends so.
     void expectError(std::string_view id, std::string_view place, std::string_view message) const {
-        const Result<const materials::MaterialModel*> model = load();
-        ASSERT_FALSE(model);
-        EXPECT_EQ(model.error().id, id);
-        EXPECT_TRUE(model.error().where.ends_with(place)) << model.error().where;
-        EXPECT_NE(model.error().message.find(message), std::string::npos) << model.error().message;
+        const Diagnostic model = mustFail(load());
+        EXPECT_EQ(model.id, id);
+        EXPECT_TRUE(model.where.ends_with(place)) << model.where;
+        EXPECT_NE(model.message.find(message), std::string::npos) << model.message;
     }
 
     test::TemporaryFolder folder_;
@@ -54,31 +54,27 @@ constexpr std::string_view kMud = R"({
 TEST_F(MaterialPacks, AddFeaturesAfterThoseOfGlint) {
     write("mud/mud.json", kMud);
     write("mud/mud.glsl", "// mud\n");
-    const Result<const materials::MaterialModel*> model = load();
-    ASSERT_TRUE(model) << toString(model.error());
+    const materials::MaterialModel* model = must(load());
     for (const materials::Feature& feature : materials::builtinMaterialModel().features) {
-        EXPECT_EQ((*model)->mask(feature.name), feature.mask()) << feature.name;
+        EXPECT_EQ(model->mask(feature.name), feature.mask()) << feature.name;
     }
-    materials::Material material(**model);
-    EXPECT_EQ(compiler::makeKey(material, {}, {}) & (*model)->mask("mud"), 0U);
+    materials::Material material(*model);
+    EXPECT_EQ(compiler::makeKey(material, {}, {}) & model->mask("mud"), 0U);
     material["mudAmount"] = 0.5F;
-    EXPECT_NE(compiler::makeKey(material, {}, {}) & (*model)->mask("mud"), 0U);
-    ASSERT_EQ((*model)->sources.size(), 1U);
-    EXPECT_EQ((*model)->sources.front().text, "// mud\n");
+    EXPECT_NE(compiler::makeKey(material, {}, {}) & model->mask("mud"), 0U);
+    ASSERT_EQ(model->sources.size(), 1U);
+    EXPECT_EQ(model->sources.front().text, "// mud\n");
 }
 
 TEST_F(MaterialPacks, WithoutFoldersTheModelIsThatOfGlint) {
-    const Result<const materials::MaterialModel*> model = materials::loadMaterialModel({});
-    ASSERT_TRUE(model);
-    EXPECT_EQ(*model, &materials::builtinMaterialModel());
+    const materials::MaterialModel* model = must(materials::loadMaterialModel({}));
+    EXPECT_EQ(model, &materials::builtinMaterialModel());
 }
 
 TEST_F(MaterialPacks, AFolderMustHaveADeclaration) {
     expectError("materials-folder", folder_.path().filename().string(), "holds no declaration");
-    const Result<const materials::MaterialModel*> none =
-        materials::loadMaterialModel(std::vector<std::string>{"/nowhere"});
-    ASSERT_FALSE(none);
-    EXPECT_EQ(none.error().id, "materials-folder");
+    EXPECT_EQ(mustFail(materials::loadMaterialModel(std::vector<std::string>{"/nowhere"})).id,
+              "materials-folder");
 }
 
 TEST_F(MaterialPacks, DeclaredGlslMustBeThere) {
@@ -139,13 +135,12 @@ TEST_F(MaterialPacks, AttributesOfVerticesAreAnApplicationsOwn) {
     write("mud/mud.glsl", "");
     write("mud/mud.json",
           withAttributes(R"([{"name": "wet", "at": "_WET", "type": "vec3", "default": [1, 2, 3]}])"));
-    const Result<const materials::MaterialModel*> model = load();
-    ASSERT_TRUE(model) << toString(model.error());
-    ASSERT_EQ((*model)->attributes.size(), 1U);
-    const materials::VertexAttribute& wet = (*model)->attributes.front();
+    const materials::MaterialModel* model = must(load());
+    ASSERT_EQ(model->attributes.size(), 1U);
+    const materials::VertexAttribute& wet = model->attributes.front();
     EXPECT_EQ(wet.channels, 3);
     EXPECT_EQ(wet.fallback, (std::array<float, 4>{1, 2, 3, 0}));
-    EXPECT_EQ((*model)->features[static_cast<std::size_t>(wet.feature)].name, "mud");
+    EXPECT_EQ(model->features[static_cast<std::size_t>(wet.feature)].name, "mud");
 
     write("mud/mud.json", withAttributes(R"([{"name": "wet", "at": "WET", "type": "float"}])"));
     expectError("declaration", "mud.json#/attributes/0/at", "underscore");
@@ -171,15 +166,14 @@ TEST_F(MaterialPacks, NeedsAreFramesAndCoordinates) {
     mud.insert(mud.find("\"parameters\""), R"("needs": ["tangents", "texCoord0"], )");
     write("mud/mud.json", mud);
     write("mud/mud.glsl", "");
-    const Result<const materials::MaterialModel*> model = load();
-    ASSERT_TRUE(model) << toString(model.error());
-    materials::Material material(**model);
+    const materials::MaterialModel* model = must(load());
+    materials::Material material(*model);
     material["mudAmount"] = 0.5F;
     materials::PrimitiveInputs inputs;
-    EXPECT_EQ(compiler::makeKey(material, inputs, {}) & (*model)->mask("mud"), 0U);
+    EXPECT_EQ(compiler::makeKey(material, inputs, {}) & model->mask("mud"), 0U);
     inputs.hasTexCoords0 = true;
-    EXPECT_EQ(compiler::makeKey(material, inputs, {}) & ((*model)->mask("mud") | (*model)->mask("texCoord0")),
-              (*model)->mask("mud") | (*model)->mask("texCoord0"));
+    EXPECT_EQ(compiler::makeKey(material, inputs, {}) & (model->mask("mud") | model->mask("texCoord0")),
+              model->mask("mud") | model->mask("texCoord0"));
     mud.replace(mud.find("texCoord0"), 9, "texCoord7");
     write("mud/mud.json", mud);
     expectError("declaration", "mud.json#/needs", "texCoord7");
@@ -192,14 +186,13 @@ TEST_F(MaterialPacks, OpacityKeepsMasks) {
                               "parameters": [{"name": "mudAmount", "at": "mud", "type": "float", "default": 0}],
                               "neutral": [{"when": "mudAmount == 0", "because": "there is no mud"}]})");
     write("mud/mud.glsl", "");
-    const Result<const materials::MaterialModel*> model = load();
-    ASSERT_TRUE(model) << toString(model.error());
-    materials::Material material(**model);
+    const materials::MaterialModel* model = must(load());
+    materials::Material material(*model);
     material.alphaMode = materials::AlphaMode::Mask;
     const materials::KeyOptions tested{.alpha = package::AlphaPolicy::Tested};
-    EXPECT_EQ(compiler::makeKey(material, {}, tested) & (*model)->mask("alphaMask"), 0U);
+    EXPECT_EQ(compiler::makeKey(material, {}, tested) & model->mask("alphaMask"), 0U);
     material["mudAmount"] = 1.0F;
-    EXPECT_NE(compiler::makeKey(material, {}, tested) & (*model)->mask("alphaMask"), 0U);
+    EXPECT_NE(compiler::makeKey(material, {}, tested) & model->mask("alphaMask"), 0U);
 }
 
 // A division by an interval with 0 is unknown, so it drops nothing.
@@ -208,9 +201,8 @@ TEST_F(MaterialPacks, DivisionByZeroDropsNothing) {
     mud.replace(mud.find("mudAmount == 0"), 14, "1 / mudAmount > 5");
     write("mud/mud.json", mud);
     write("mud/mud.glsl", "");
-    const Result<const materials::MaterialModel*> model = load();
-    ASSERT_TRUE(model) << toString(model.error());
-    EXPECT_NE(compiler::makeKey(materials::Material(**model), {}, {}) & (*model)->mask("mud"), 0U);
+    const materials::MaterialModel* model = must(load());
+    EXPECT_NE(compiler::makeKey(materials::Material(*model), {}, {}) & model->mask("mud"), 0U);
 }
 
 // Inputs that find no place among the inputs take bits of the lobes' word, and there is an end to these, too.
@@ -220,16 +212,15 @@ TEST_F(MaterialPacks, FeaturesFillTheKey) {
         write(fmt::format("f{}.json", i),
               fmt::format(R"({{"name": "f{}", "extension": "EXT_f{}", "stage": "surface"}})", i, i));
     }
-    const Result<const materials::MaterialModel*> model = load();
-    ASSERT_TRUE(model) << toString(model.error());
+    const materials::MaterialModel* model = must(load());
     materials::FeatureMask all = 0;
-    for (const materials::Feature& feature : (*model)->features) {
+    for (const materials::Feature& feature : model->features) {
         EXPECT_EQ(all & feature.mask(), 0U) << feature.name;
-        EXPECT_EQ(feature.isLobe, ((*model)->lobes & feature.mask()) != 0) << feature.name;
+        EXPECT_EQ(feature.isLobe, (model->lobes & feature.mask()) != 0) << feature.name;
         all |= feature.mask();
     }
     EXPECT_EQ(all, ~std::uint64_t{0});
-    EXPECT_EQ((*model)->lobes, materials::builtinMaterialModel().lobes);
+    EXPECT_EQ(model->lobes, materials::builtinMaterialModel().lobes);
     write("more.json", R"({"name": "more", "extension": "EXT_more", "stage": "surface"})");
     expectError("declaration", "#", "more features than");
 }

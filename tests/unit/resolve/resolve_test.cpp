@@ -3,6 +3,7 @@
 
 #include "render/scene_builder.h"
 #include "settings/descriptor.h"
+#include "support/must.h"
 
 #include <glint/measure/settings.h>
 
@@ -22,11 +23,6 @@
 namespace glint::compiler {
 namespace {
 
-using testing::addInstance;
-using testing::addMaterial;
-using testing::addMesh;
-using testing::makeQuad;
-
 materials::Material lamp() {
     materials::Material material;
     material["metallicFactor"] = 0.0F;
@@ -35,8 +31,7 @@ materials::Material lamp() {
 }
 
 void addQuad(gltf::Scene& scene, const materials::Material& material) {
-    addInstance(scene,
-                addMesh(scene, makeQuad(addMaterial(scene, material), {-1, -1, -2}, {2, 0, 0}, {0, 2, 0})));
+    testing::addQuad(scene, material, {-1, -1, -2}, {2, 0, 0}, {0, 2, 0});
 }
 
 // Returns a scene in which nothing but triangles shines.
@@ -79,9 +74,7 @@ gltf::Scene richScene() {
 }
 
 Build resolved(const gltf::Scene& scene, const Settings& settings, const Target& target = {}) {
-    Result<Build> build = resolve(std::span(&scene, 1), settings, target);
-    EXPECT_TRUE(build) << toString(build.error());
-    return build ? std::move(*build) : Build{};
+    return must(resolve(std::span(&scene, 1), settings, target));
 }
 
 const Target& drawing() {

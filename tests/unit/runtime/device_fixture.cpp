@@ -1,5 +1,7 @@
 #include "device_fixture.h"
 
+#include "support/must.h"
+
 // Drivers and layers keep memory when they are unloaded, and no suppression can name them then. HostDevice's
 // test detects what Glint leaves behind on a device. Only AddressSanitizer calls this.
 extern "C" const char*
@@ -80,12 +82,7 @@ Package DeviceTest::load(const PackageSpec& spec) {
 }
 
 std::unique_ptr<GpuScene> DeviceTest::upload(const Package& package, TestScene& scene) {
-    Result<std::unique_ptr<GpuScene>> uploaded = GpuScene::upload(context(), package, scene.view());
-    if (!uploaded) {
-        ADD_FAILURE() << toString(uploaded.error());
-        return nullptr;
-    }
-    return std::move(*uploaded);
+    return must(GpuScene::upload(context(), package, scene.view()));
 }
 
 std::unique_ptr<Renderer> DeviceTest::makeRenderer(const Package& package, GpuScene& scene,
@@ -95,12 +92,7 @@ std::unique_ptr<Renderer> DeviceTest::makeRenderer(const Package& package, GpuSc
     options.strategy = strategy;
     options.width = width;
     options.height = height;
-    Result<std::unique_ptr<Renderer>> renderer = Renderer::create(context(), package, scene, options);
-    if (!renderer) {
-        ADD_FAILURE() << toString(renderer.error());
-        return nullptr;
-    }
-    return std::move(*renderer);
+    return must(Renderer::create(context(), package, scene, options));
 }
 
 }  // namespace glint::test

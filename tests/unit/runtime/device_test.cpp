@@ -5,6 +5,7 @@
 #include "host_device.h"
 #include "interop/scene.h"
 #include "scene/scene_store.h"
+#include "support/must.h"
 
 #include <functional>
 #include <limits>
@@ -29,10 +30,9 @@ TEST_F(ContextTest, NamesItsDeviceAndDriver) {
 TEST_F(ContextTest, UnknownDeviceNamesListTheDevices) {
     HeadlessOptions options;
     options.deviceName = "no such device";
-    const auto other = Context::createHeadless(options);
-    ASSERT_FALSE(other);
-    EXPECT_EQ(other.error().id, "device-missing");
-    EXPECT_NE(other.error().hint.find(context().deviceName()), std::string::npos);
+    const Diagnostic other = mustFail(Context::createHeadless(options));
+    EXPECT_EQ(other.id, "device-missing");
+    EXPECT_NE(other.hint.find(context().deviceName()), std::string::npos);
 }
 
 // A device may have one type of memory for everything.
@@ -40,12 +40,10 @@ TEST_F(ContextTest, MemoryThatTheHostReachesIsMapped) {
     Context::State& state = context().state();
     MemoryPool pool(state);
     const VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-    const auto device = createBuffer(state, pool, 256, usage);
-    ASSERT_TRUE(device) << toString(device.error());
+    const auto device = must(createBuffer(state, pool, 256, usage));
     for (const MemoryUse use : {MemoryUse::Upload, MemoryUse::Readback}) {
-        const auto buffer = createBuffer(state, pool, 256, usage, use);
-        ASSERT_TRUE(buffer) << toString(buffer.error());
-        EXPECT_NE(buffer->mapped, nullptr);
+        const auto buffer = must(createBuffer(state, pool, 256, usage, use));
+        EXPECT_NE(buffer.mapped, nullptr);
     }
 }
 
@@ -116,14 +114,12 @@ TEST_F(ContextTest, RenderersNameTheModuleAndTheFeatureThatTheDeviceLacks) {
     const std::unique_ptr<GpuScene> uploaded = upload(package, scene);
     ASSERT_NE(uploaded, nullptr);
     std::erase(context().state().features, "shaderStorageImageExtendedFormats");
-    const auto renderer =
-        Renderer::create(context(), package, *uploaded, {package::kStrategyVisibility, 8, 8});
-    ASSERT_FALSE(renderer);
-    EXPECT_EQ(renderer.error().id, "module-features");
-    EXPECT_NE(
-        renderer.error().message.find(" needs shaderStorageImageExtendedFormats, which the device lacks"),
-        std::string::npos)
-        << renderer.error().message;
+    const Diagnostic renderer =
+        mustFail(Renderer::create(context(), package, *uploaded, {package::kStrategyVisibility, 8, 8}));
+    EXPECT_EQ(renderer.id, "module-features");
+    EXPECT_NE(renderer.message.find(" needs shaderStorageImageExtendedFormats, which the device lacks"),
+              std::string::npos)
+        << renderer.message;
 }
 
 class AdoptedContextTest : public ContextTest, public ::testing::WithParamInterface<std::uint32_t> {};
@@ -141,20 +137,16 @@ TEST_P(AdoptedContextTest, RendersAndTheDeviceOutlivesIt) {
     for (const bool debugUtils : {false, true}) {
         DeviceHandles handles = host.handles();
         handles.debugUtils = debugUtils && host.handles().debugUtils;
-        auto adopted = Context::adopt(handles);
-        ASSERT_TRUE(adopted) << toString(adopted.error());
-        EXPECT_EQ((*adopted)->handles().device, host.handles().device);
-        EXPECT_TRUE((*adopted)->validationMessages().empty());
-        auto uploaded = GpuScene::upload(**adopted, package, scene.view());
-        ASSERT_TRUE(uploaded) << toString(uploaded.error());
+        auto adopted = must(Context::adopt(handles));
+        EXPECT_EQ(adopted->handles().device, host.handles().device);
+        EXPECT_TRUE(adopted->validationMessages().empty());
+        auto uploaded = must(GpuScene::upload(*adopted, package, scene.view()));
         auto renderer =
-            Renderer::create(**adopted, package, **uploaded, {package::kStrategyVisibility, 16, 16});
-        ASSERT_TRUE(renderer) << toString(renderer.error());
+            must(Renderer::create(*adopted, package, *uploaded, {package::kStrategyVisibility, 16, 16}));
         FrameOptions frame;
         frame.camera = test::makeCamera(1.0F);
-        const auto image = (*renderer)->render(frame);
-        ASSERT_TRUE(image) << toString(image.error());
-        EXPECT_EQ(image->pixels[8 * 16 + 8][0], 1.0F);
+        const auto image = must(renderer->render(frame));
+        EXPECT_EQ(image.pixels[8 * 16 + 8][0], 1.0F);
     }
     EXPECT_NE(upload(package, scene), nullptr);
     // The layers also report objects of a context that still exist when the device is destroyed.
@@ -177,15 +169,11 @@ TEST_F(ContextTest, AdoptChecksItsHandles) {
     for (const auto& change : breaks) {
         DeviceHandles handles = good;
         change(handles);
-        const auto adopted = Context::adopt(handles);
-        ASSERT_FALSE(adopted);
-        EXPECT_EQ(adopted.error().id, "context-handles");
+        EXPECT_EQ(mustFail(Context::adopt(handles)).id, "context-handles");
     }
     DeviceHandles handles = good;
     handles.queueFamily = 99;
-    const auto adopted = Context::adopt(handles);
-    ASSERT_FALSE(adopted);
-    EXPECT_EQ(adopted.error().id, "context-queue");
+    EXPECT_EQ(mustFail(Context::adopt(handles)).id, "context-queue");
 }
 
 class UploadTest : public test::DeviceTest {

@@ -3,6 +3,7 @@
 #include "host_device.h"
 #include "renderer/background_pipelines.h"
 #include "renderer/renderer.h"
+#include "support/must.h"
 #include "vulkan_hooks.h"
 
 #include <condition_variable>
@@ -210,27 +211,23 @@ TEST_F(EngineServices, NothingBypassesThem) {
     const auto other = std::make_shared<const Package>(load(test::makeOtherSpec()));
     TestScene scene = test::squareScene();
     {
-        auto adopted = Context::adopt(host_.handles(), services_);
-        ASSERT_TRUE(adopted) << toString(adopted.error());
-        VulkanHooks hooks(**adopted);
+        auto adopted = must(Context::adopt(host_.handles(), services_));
+        VulkanHooks hooks(*adopted);
         hooks.allocation = services_.allocation;
         hooks.pipelineCache = services_.pipelineCache;
         hooks.namePrefix = services_.namePrefix;
         hooks.isLocked = [this] { return locked_; };
         hooks.pipelineThreads = {std::this_thread::get_id(), pool_.id()};
-        auto uploaded = GpuScene::upload(**adopted, *package, scene.view());
-        ASSERT_TRUE(uploaded) << toString(uploaded.error());
+        auto uploaded = must(GpuScene::upload(*adopted, *package, scene.view()));
         RendererOptions options{package::kStrategyVisibility, 16, 16};
         options.pipelineThreads = 1;
-        auto renderer = Renderer::create(**adopted, *package, **uploaded, options);
-        ASSERT_TRUE(renderer) << toString(renderer.error());
+        auto renderer = must(Renderer::create(*adopted, *package, *uploaded, options));
         FrameOptions frame;
         frame.camera = test::makeCamera(1.0F);
         for (int pictures = 0; pictures < 2; ++pictures) {
-            const auto image = (*renderer)->render(frame);
-            ASSERT_TRUE(image) << toString(image.error());
-            EXPECT_EQ(image->pixels[8 * 16 + 8][0], 1.0F);
-            ASSERT_TRUE((*renderer)->replacePackage(other));
+            const auto image = must(renderer->render(frame));
+            EXPECT_EQ(image.pixels[8 * 16 + 8][0], 1.0F);
+            ASSERT_TRUE(renderer->replacePackage(other));
         }
         pool_.drain();  // it destroys the replaced pipelines
         EXPECT_GT(pool_.done, 0);
@@ -251,17 +248,16 @@ TEST_F(EngineServices, NothingBypassesThem) {
             EXPECT_TRUE(name.starts_with("engine/")) << name;
         }
         EXPECT_GT(hostMemory_.calls, 0U);
-        EXPECT_FALSE((*adopted)->addPipelineCache(*(*adopted)->pipelineCacheData()));
+        EXPECT_FALSE(adopted->addPipelineCache(*adopted->pipelineCacheData()));
         // The caller's allocator is full: an error, and everything stays.
         memory_.full = true;
-        const auto refused = Renderer::create(**adopted, *other, **uploaded, options);
-        ASSERT_FALSE(refused);
-        EXPECT_EQ(refused.error().kind, ErrorKind::OutOfDeviceMemory);
+        EXPECT_EQ(mustFail(Renderer::create(*adopted, *other, *uploaded, options)).kind,
+                  ErrorKind::OutOfDeviceMemory);
         memory_.full = false;
-        EXPECT_TRUE((*renderer)->render(frame));
-        renderer->reset();
-        uploaded->reset();
-        (*adopted)->state().vk = hooks.real();
+        EXPECT_TRUE(renderer->render(frame));
+        renderer.reset();
+        uploaded.reset();
+        adopted->state().vk = hooks.real();
     }
     EXPECT_TRUE(memory_.live.empty());
     EXPECT_EQ(hostMemory_.blocks, 0);
@@ -314,9 +310,7 @@ TEST_F(EngineServices, PartsAreRefused) {
              [](HostServices& services) { services.lockQueue = nullptr; }}) {
         HostServices services = services_;
         change(services);
-        const auto adopted = Context::adopt(host_.handles(), services);
-        ASSERT_FALSE(adopted);
-        EXPECT_EQ(adopted.error().id, "context-services");
+        EXPECT_EQ(mustFail(Context::adopt(host_.handles(), services)).id, "context-services");
     }
 }
 
@@ -346,9 +340,7 @@ TEST_F(EngineServices, ClaimsAreComparedWithTheDevice) {
         DeviceHandles one = host_.handles();
         EXPECT_TRUE(checkClaims(one, without));
         one.*claim = true;
-        const Status status = checkClaims(one, without);
-        ASSERT_FALSE(status);
-        EXPECT_EQ(status.error().id, "device-features");
+        EXPECT_EQ(mustFail(checkClaims(one, without)).id, "device-features");
         ++refused;
     }
     EXPECT_EQ(refused, 6U);

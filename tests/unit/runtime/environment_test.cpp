@@ -2,6 +2,7 @@
 #include "sample_maps.h"
 #include "sky/map_filter.h"
 #include "sky/radiance_map.h"
+#include "support/must.h"
 
 #include <gtest/gtest.h>
 
@@ -23,11 +24,10 @@ LinearImage imageOf(std::uint32_t width, std::uint32_t height) {
 TEST(MapCheck, SaysWhichPixelIsWrong) {
     LinearImage image = imageOf(5, 3);
     image.pixels[2 * 5 + 4][1] = std::numeric_limits<float>::quiet_NaN();
-    const Result<CheckedMap> nan = checkMap(image);
-    ASSERT_FALSE(nan);
-    EXPECT_EQ(nan.error().id, "environment-radiance");
-    EXPECT_NE(nan.error().message.find("column 4, row 2"), std::string::npos) << nan.error().message;
-    EXPECT_NE(nan.error().message.find("NaN"), std::string::npos) << nan.error().message;
+    const Diagnostic nan = mustFail(checkMap(image));
+    EXPECT_EQ(nan.id, "environment-radiance");
+    EXPECT_NE(nan.message.find("column 4, row 2"), std::string::npos) << nan.message;
+    EXPECT_NE(nan.message.find("NaN"), std::string::npos) << nan.message;
     image.pixels[2 * 5 + 4][1] = std::numeric_limits<float>::infinity();
     EXPECT_NE(checkMap(image).error().message.find("infinite"), std::string::npos);
     image.pixels[2 * 5 + 4][1] = 2e18F;
@@ -38,10 +38,9 @@ TEST(MapCheck, TakesNegativeRadianceAsNone) {
     LinearImage image = imageOf(4, 2);
     image.pixels[3] = {-1.0F, 2.0F, -3.0F, 1.0F};
     image.pixels[6][2] = -0.5F;
-    const Result<CheckedMap> checked = checkMap(image);
-    ASSERT_TRUE(checked);
-    EXPECT_EQ(checked->negativePixels, 2U);
-    EXPECT_EQ(checked->map.texels[3], (Radiance{0.0F, 2.0F, 0.0F}));
+    const CheckedMap checked = must(checkMap(image));
+    EXPECT_EQ(checked.negativePixels, 2U);
+    EXPECT_EQ(checked.map.texels[3], (Radiance{0.0F, 2.0F, 0.0F}));
 }
 
 TEST(MapCheck, WantsEveryPixel) {

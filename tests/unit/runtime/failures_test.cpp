@@ -1,6 +1,7 @@
 // The device is lost, memory runs out: errors tell them apart, and leave everything usable or destroyable.
 #include "device_fixture.h"
 #include "host_device.h"
+#include "support/must.h"
 #include "vulkan_hooks.h"
 
 #include <glint/environment.h>
@@ -111,13 +112,12 @@ TEST_F(Failures, LostDevicesAreAKindOfTheirOwnAtEachCall) {
     std::vector<std::pair<std::string, std::uint64_t>> strikes{{"", 0}};
     for (std::size_t round = 0; round < strikes.size(); ++round) {
         const auto [function, at] = strikes[round];
-        auto context = Context::adopt(host.handles(), services);
-        ASSERT_TRUE(context) << toString(context.error());
-        VulkanHooks hooks(**context);
+        auto context = must(Context::adopt(host.handles(), services));
+        VulkanHooks hooks(*context);
         hooks.failing = function;
         hooks.failAt = at;
         hooks.failsOn = true;
-        const Status status = useAll(**context, package, other, scene_, options(), frameWith(nullptr));
+        const Status status = useAll(*context, package, other, scene_, options(), frameWith(nullptr));
         ASSERT_EQ(status.ok(), at == 0) << "call " << at << " of " << function;
         if (at == 0) {
             for (const std::string& name : hooks.canFail) {
@@ -128,7 +128,7 @@ TEST_F(Failures, LostDevicesAreAKindOfTheirOwnAtEachCall) {
             EXPECT_EQ(status.error().kind, ErrorKind::DeviceLost) << toString(status.error());
             EXPECT_EQ(status.error().code, VK_ERROR_DEVICE_LOST);
         }
-        (*context)->state().vk = hooks.real();
+        context->state().vk = hooks.real();
     }
     EXPECT_GT(strikes.size(), 40U);
     const auto last = Context::adopt(host.handles());
@@ -138,10 +138,9 @@ TEST_F(Failures, LostDevicesAreAKindOfTheirOwnAtEachCall) {
 TEST_F(Failures, WithoutDeviceMemoryNothingChanges) {
     const auto uploaded = upload(*package_, scene_);
     const auto environment = std::move(*Environment::create(context(), sky()));
-    const auto renderer = Renderer::create(context(), *package_, *uploaded, options());
-    ASSERT_TRUE(renderer) << toString(renderer.error());
+    const auto renderer = must(Renderer::create(context(), *package_, *uploaded, options()));
     const FrameOptions frame = frameWith(environment.get());
-    const auto picture = (*renderer)->render(frame);
+    const auto picture = renderer->render(frame);
     ASSERT_TRUE(picture);
     const std::function<Status()> attempts[] = {
         [&]() -> Status {
@@ -157,14 +156,14 @@ TEST_F(Failures, WithoutDeviceMemoryNothingChanges) {
             return okStatus();
         },
         [&]() -> Status {
-            GLINT_TRY(auto made, (*renderer)->render(frame));
+            GLINT_TRY(auto made, renderer->render(frame));
             return okStatus();
         },
         [&]() -> Status {
             // The switch itself is given up, and the renderer says so.
-            GLINT_TRY(auto begun, (*renderer)->replacePackage(other_));
-            GLINT_TRY_DO((*renderer)->renderSamples(frame, 1));
-            const std::optional<Diagnostic> error = (*renderer)->replacementProgress().error;
+            GLINT_TRY(auto begun, renderer->replacePackage(other_));
+            GLINT_TRY_DO(renderer->renderSamples(frame, 1));
+            const std::optional<Diagnostic> error = renderer->replacementProgress().error;
             return error ? Status(*error) : okStatus();
         },
     };
@@ -193,9 +192,8 @@ TEST_F(Failures, WithoutDeviceMemoryNothingChanges) {
                     EXPECT_EQ(status.error().kind, ErrorKind::OutOfDeviceMemory) << toString(status.error());
                     EXPECT_EQ(status.error().code, VK_ERROR_OUT_OF_DEVICE_MEMORY);
                 }
-                const auto again = (*renderer)->render(frame);
-                ASSERT_TRUE(again) << toString(again.error());
-                EXPECT_EQ(again->pixels, picture->pixels) << &attempt - attempts << ", allocation " << at;
+                const auto again = must(renderer->render(frame));
+                EXPECT_EQ(again.pixels, picture->pixels) << &attempt - attempts << ", allocation " << at;
             }
         }
     }
@@ -242,8 +240,7 @@ TEST_F(Failures, AnotherHeapThatFitsIsTaken) {
     };
     const auto uploaded = upload(*package_, scene_);
     ASSERT_NE(uploaded, nullptr);
-    const auto renderer = Renderer::create(context(), *package_, *uploaded, options());
-    ASSERT_TRUE(renderer) << toString(renderer.error());
+    const auto renderer = must(Renderer::create(context(), *package_, *uploaded, options()));
     EXPECT_GT(inSecondHeap, 3);
     state.vk = oneHeap;
 }
@@ -252,10 +249,9 @@ TEST_F(Failures, AnotherHeapThatFitsIsTaken) {
 TEST_F(Failures, NoExceptionLeaves) {
     const auto uploaded = upload(*package_, scene_);
     const auto environment = std::move(*Environment::create(context(), sky()));
-    const auto renderer = Renderer::create(context(), *package_, *uploaded, options());
-    ASSERT_TRUE(renderer) << toString(renderer.error());
+    const auto renderer = must(Renderer::create(context(), *package_, *uploaded, options()));
     const FrameOptions frame = frameWith(environment.get());
-    const auto picture = (*renderer)->render(frame);
+    const auto picture = renderer->render(frame);
     const LinearImage map = sky();
     const DeviceHandles handles = context().handles();
     const std::function<Status()> attempts[] = {
@@ -276,12 +272,12 @@ TEST_F(Failures, NoExceptionLeaves) {
             return okStatus();
         },
         [&]() -> Status {
-            GLINT_TRY(auto made, (*renderer)->render(frame));
+            GLINT_TRY(auto made, renderer->render(frame));
             return okStatus();
         },
         [&]() -> Status {
-            GLINT_TRY(auto begun, (*renderer)->replacePackage(other_));
-            return (*renderer)->renderSamples(frame, 1);
+            GLINT_TRY(auto begun, renderer->replacePackage(other_));
+            return renderer->renderSamples(frame, 1);
         },
     };
     std::uint64_t errors = 0;
@@ -298,7 +294,7 @@ TEST_F(Failures, NoExceptionLeaves) {
                 EXPECT_EQ(status.error().kind, ErrorKind::OutOfHostMemory) << toString(status.error());
             }
         }
-        const auto again = (*renderer)->render(frame);
+        const auto again = renderer->render(frame);
         ASSERT_TRUE(again) << &attempt - attempts << ": " << toString(again.error());
         EXPECT_EQ(again->pixels, picture->pixels);
     }

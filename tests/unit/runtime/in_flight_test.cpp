@@ -2,6 +2,7 @@
 #include "device_fixture.h"
 #include "frame/motion_history.h"
 #include "renderer/renderer.h"
+#include "support/must.h"
 #include "vulkan_hooks.h"
 
 #include <glint/environment.h>
@@ -76,9 +77,8 @@ TEST_F(InFlight, OutgrownHistoryIsFreed) {
     TestScene scene = test::squareScene();
     SceneView view = scene.view();
     view.moves = true;
-    const auto uploaded = GpuScene::upload(context(), package, view);
-    ASSERT_TRUE(uploaded) << toString(uploaded.error());
-    GpuScene::State& state = (*uploaded)->state();
+    const auto uploaded = must(GpuScene::upload(context(), package, view));
+    GpuScene::State& state = uploaded->state();
     const auto history = MotionHistory::create(state);
     ASSERT_TRUE(history);
     Buffer few;
@@ -187,9 +187,8 @@ TEST_F(InFlight, RenderersOfASceneSwitchTogether) {
         EXPECT_EQ(renderer->replacementProgress().inUse, 1U);
         EXPECT_EQ(renderer->state().size.bucketCount, other->bucketCount());
     }
-    const auto stale = Renderer::create(context(), *package, *uploaded, {package::kStrategyUber, 8, 8});
-    ASSERT_FALSE(stale);
-    EXPECT_EQ(stale.error().id, "scene-package");
+    EXPECT_EQ(mustFail(Renderer::create(context(), *package, *uploaded, {package::kStrategyUber, 8, 8})).id,
+              "scene-package");
     EXPECT_NE(makeRenderer(*other, *uploaded, package::kStrategyUber, 8, 8), nullptr);
 }
 

@@ -1,6 +1,7 @@
 // Tests what renderer and scene report about their memory.
 #include "device_fixture.h"
 #include "scene/gpu_scene_state.h"
+#include "support/must.h"
 
 #include <algorithm>
 #include <numeric>
@@ -87,10 +88,8 @@ TEST_F(MemoryReports, ListMicromaps) {
     EXPECT_EQ(find(before, "opacity micromaps"), nullptr);
     GpuScene::State& state = gpuScene->state();
     const auto make = [&](VkDeviceSize bytes) {
-        Result<Buffer> buffer = createBuffer(state.context, state.pool, bytes,
-                                             VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::Device);
-        EXPECT_TRUE(buffer);
-        return buffer ? std::move(*buffer) : Buffer{};
+        return must(createBuffer(state.context, state.pool, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                 MemoryUse::Device));
     };
     state.micromaps[0].buffer = make(512);
     state.micromaps[0].indices = make(64);

@@ -1,5 +1,6 @@
 // A package loads from memory as from its folder, and is refused for the same reasons.
 #include "package_builder.h"
+#include "support/must.h"
 
 #include <glint/package.h>
 
@@ -85,26 +86,24 @@ TEST(PackageMemory, IsThePackageOfTheFolder) {
     const PackageSpec spec = makeScene();
     const test::TemporaryFolder folder;
     test::writePackage(spec, folder.path());
-    const Result<Package> fromFolder = Package::load(folder.path());
-    ASSERT_TRUE(fromFolder) << toString(fromFolder.error());
-    const Result<Package> fromMemory = Files(spec).load();  // the files are gone by now
-    ASSERT_TRUE(fromMemory) << toString(fromMemory.error());
+    const Package fromFolder = must(Package::load(folder.path()));
+    const Package fromMemory = must(Files(spec).load());  // the files are gone by now
 
-    EXPECT_EQ(fromMemory->caseCount(), fromFolder->caseCount());
-    ASSERT_EQ(fromMemory->sceneCount(), 1U);
-    const PackageScene scene = fromMemory->scene(0);
-    EXPECT_EQ(scene.name, fromFolder->scene(0).name);
-    EXPECT_EQ(bytesOf(scene.materials.bytes), bytesOf(fromFolder->scene(0).materials.bytes));
-    EXPECT_EQ(bytesOf(scene.primitives), bytesOf(fromFolder->scene(0).primitives));
-    EXPECT_EQ(bytesOf(scene.textures), bytesOf(fromFolder->scene(0).textures));
-    EXPECT_EQ(bytesOf(scene.samplers), bytesOf(fromFolder->scene(0).samplers));
-    EXPECT_EQ(bytesOf(fromMemory->cases()), bytesOf(fromFolder->cases()));
-    EXPECT_EQ(bytesOf(fromMemory->modules()), bytesOf(fromFolder->modules()));
-    ASSERT_EQ(fromMemory->modules().size(), spec.modules.size());
-    for (const package::ModuleEntry& module : fromMemory->modules()) {
+    EXPECT_EQ(fromMemory.caseCount(), fromFolder.caseCount());
+    ASSERT_EQ(fromMemory.sceneCount(), 1U);
+    const PackageScene scene = fromMemory.scene(0);
+    EXPECT_EQ(scene.name, fromFolder.scene(0).name);
+    EXPECT_EQ(bytesOf(scene.materials.bytes), bytesOf(fromFolder.scene(0).materials.bytes));
+    EXPECT_EQ(bytesOf(scene.primitives), bytesOf(fromFolder.scene(0).primitives));
+    EXPECT_EQ(bytesOf(scene.textures), bytesOf(fromFolder.scene(0).textures));
+    EXPECT_EQ(bytesOf(scene.samplers), bytesOf(fromFolder.scene(0).samplers));
+    EXPECT_EQ(bytesOf(fromMemory.cases()), bytesOf(fromFolder.cases()));
+    EXPECT_EQ(bytesOf(fromMemory.modules()), bytesOf(fromFolder.modules()));
+    ASSERT_EQ(fromMemory.modules().size(), spec.modules.size());
+    for (const package::ModuleEntry& module : fromMemory.modules()) {
         const package::ModuleKey key{module.role, module.index, module.tracer};
-        EXPECT_FALSE(fromMemory->spirv(key).empty());
-        EXPECT_EQ(bytesOf(fromMemory->spirv(key)), bytesOf(fromFolder->spirv(key)));
+        EXPECT_FALSE(fromMemory.spirv(key).empty());
+        EXPECT_EQ(bytesOf(fromMemory.spirv(key)), bytesOf(fromFolder.spirv(key)));
     }
 }
 
@@ -121,10 +120,9 @@ TEST(PackageMemory, BytesMayBeginAnywhere) {
     for (const test::ModuleSpec& module : spec.modules) {
         add(module.file, bytesOf(std::span(module.words)));
     }
-    const Result<Package> loaded = Package::load(views);
-    ASSERT_TRUE(loaded) << toString(loaded.error());
+    const Package loaded = must(Package::load(views));
     const test::ModuleSpec& module = spec.modules[0];
-    EXPECT_EQ(bytesOf(loaded->spirv(module.key)), bytesOf(std::span(module.words)));
+    EXPECT_EQ(bytesOf(loaded.spirv(module.key)), bytesOf(std::span(module.words)));
 }
 
 TEST(PackageMemory, WhatIsMissingIsNamed) {
@@ -132,10 +130,9 @@ TEST(PackageMemory, WhatIsMissingIsNamed) {
     EXPECT_EQ(Package::load(std::span<const package::EmbeddedFile>{}).error().id, "package-missing");
     Files files(spec);
     files.remove(spec.modules[3].file);
-    const Result<Package> loaded = files.load();
-    ASSERT_FALSE(loaded);
-    EXPECT_EQ(loaded.error().id, "package-module-missing");
-    EXPECT_NE(loaded.error().where.find(spec.modules[3].file), std::string::npos);
+    const Diagnostic loaded = mustFail(files.load());
+    EXPECT_EQ(loaded.id, "package-module-missing");
+    EXPECT_NE(loaded.where.find(spec.modules[3].file), std::string::npos);
 }
 
 TEST(PackageMemory, FilesThatNoTableNamesAreIgnored) {

@@ -2,6 +2,7 @@
 #include "package/package.h"
 
 #include "package_builder.h"
+#include "support/must.h"
 
 #include <glint/package.h>
 
@@ -73,9 +74,8 @@ TEST_F(PackageTest, LoadsAValidPackage) {
     spec.primitives[1].shaderId = 1;
     spec.primitives[1].key.lobes = 0b11;
     write(spec);
-    const Result<Package> loaded = Package::load(folder_.path());
-    ASSERT_TRUE(loaded) << toString(loaded.error());
-    const Package& package = *loaded;
+    const Package loaded = must(Package::load(folder_.path()));
+    const Package& package = loaded;
     EXPECT_TRUE(package.supports(package::kStrategyUber));
     EXPECT_TRUE(package.supports(package::kStrategyVisibility));
     EXPECT_TRUE(package.alphaTested());
@@ -107,14 +107,13 @@ TEST_F(PackageTest, ScenesHaveTheirOwnTables) {
     spec.primitives[2].materialIndex = 1;
     spec.scenes = {{"one", 1, 1, 0, 0}, {"two", 2, 2, 0, 0}};
     write(spec);
-    const Result<Package> package = Package::load(folder_.path());
-    ASSERT_TRUE(package) << toString(package.error());
-    ASSERT_EQ(package->sceneCount(), 2U);
-    EXPECT_EQ(package->scene(0).name, "one");
-    EXPECT_EQ(package->scene(0).findPrimitive(0, 1), nullptr);
-    ASSERT_EQ(package->findScene("two"), 1U);
-    EXPECT_FALSE(package->findScene("three"));
-    const PackageScene two = package->scene(1);
+    const Package package = must(Package::load(folder_.path()));
+    ASSERT_EQ(package.sceneCount(), 2U);
+    EXPECT_EQ(package.scene(0).name, "one");
+    EXPECT_EQ(package.scene(0).findPrimitive(0, 1), nullptr);
+    ASSERT_EQ(package.findScene("two"), 1U);
+    EXPECT_FALSE(package.findScene("three"));
+    const PackageScene two = package.scene(1);
     ASSERT_EQ(two.materials.size(), 2U);
     EXPECT_EQ(test::materialAt(two.materials, 0).roughnessFactor, 0.25F);
     ASSERT_NE(two.findPrimitive(0, 1), nullptr);
@@ -181,16 +180,13 @@ TEST_F(PackageTest, RetiredCasesNeedNoModules) {
     spec.caseCount = 2;
     spec.cases.push_back({0, 0, "Retired", 0});
     write(spec);
-    const Result<Package> package = Package::load(folder_.path());
-    ASSERT_TRUE(package) << toString(package.error());
-    EXPECT_EQ(package->bucketCount(), 3U);
-    EXPECT_EQ(package->shape().retired, std::vector<std::uint32_t>{1});
+    const Package package = must(Package::load(folder_.path()));
+    EXPECT_EQ(package.bucketCount(), 3U);
+    EXPECT_EQ(package.shape().retired, std::vector<std::uint32_t>{1});
 
     spec.primitives[0].shaderId = 1;
     write(spec);
-    const Result<Package> used = Package::load(folder_.path());
-    ASSERT_FALSE(used);
-    EXPECT_EQ(used.error().id, "package-altered");
+    EXPECT_EQ(mustFail(Package::load(folder_.path())).id, "package-altered");
 }
 
 // Runs the checks without files. Returns the ID of the error, or "".
@@ -249,9 +245,7 @@ TEST_F(PackageTest, ResealedGarbageIsNoCrash) {
 
 TEST_F(PackageTest, FoldersThatAreNoPackage) {
     EXPECT_EQ(load(), "package-missing");
-    const Result<Package> nowhere = Package::load(folder_.path() / "nowhere");
-    ASSERT_FALSE(nowhere);
-    EXPECT_EQ(nowhere.error().id, "package-missing");
+    EXPECT_EQ(mustFail(Package::load(folder_.path() / "nowhere")).id, "package-missing");
     EXPECT_EQ(loadTables({'P', 'N', 'G', ' ', 'f', 'i', 'l', 'e', '!'}), "package-foreign");
     EXPECT_EQ(loadTables(std::vector<std::uint8_t>(4096, 0)), "package-foreign");
     std::filesystem::remove(folder_.path() / package::kTablesFile);
@@ -263,10 +257,9 @@ TEST_F(PackageTest, OtherVersionsAreNamed) {
     PackageSpec spec = test::makeSpec();
     spec.version = package::kVersion + 1;
     write(spec);
-    const Result<Package> newer = Package::load(folder_.path());
-    ASSERT_FALSE(newer);
-    EXPECT_EQ(newer.error().id, "package-version");
-    EXPECT_NE(newer.error().message.find(std::to_string(package::kVersion + 1)), std::string::npos);
+    const Diagnostic newer = mustFail(Package::load(folder_.path()));
+    EXPECT_EQ(newer.id, "package-version");
+    EXPECT_NE(newer.message.find(std::to_string(package::kVersion + 1)), std::string::npos);
     spec = test::makeSpec();
     spec.interopHash ^= 1;
     write(spec);
@@ -324,9 +317,7 @@ TEST_F(PackageTest, LinksThatLeaveTheFolderAreRefused) {
     test::writeModules(spec, folder_.path());
     std::filesystem::remove(inside / spec.modules[0].file);
     std::filesystem::create_symlink(folder_.path() / spec.modules[0].file, inside / spec.modules[0].file);
-    const Result<Package> loaded = Package::load(inside);
-    ASSERT_FALSE(loaded);
-    EXPECT_EQ(loaded.error().id, "package-file-name");
+    EXPECT_EQ(mustFail(Package::load(inside)).id, "package-file-name");
 }
 
 // Each change breaks one promise of an otherwise valid package.
@@ -415,10 +406,9 @@ TEST_F(PackageTest, OneStrategyIsEnough) {
         }
     }
     write(spec);
-    const Result<Package> loaded = Package::load(folder_.path());
-    ASSERT_TRUE(loaded) << toString(loaded.error());
-    EXPECT_FALSE(loaded->supports(package::kStrategyVisibility));
-    EXPECT_TRUE(loaded->spirv({ModuleRole::Trace, 0, package::kTracerRayQuery}).empty());
+    const Package loaded = must(Package::load(folder_.path()));
+    EXPECT_FALSE(loaded.supports(package::kStrategyVisibility));
+    EXPECT_TRUE(loaded.spirv({ModuleRole::Trace, 0, package::kTracerRayQuery}).empty());
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Tests that data which a driver stored for pipelines is told from anything else before the driver gets it.
 #include "context/context.h"
 #include "device_fixture.h"
+#include "support/must.h"
 
 #include <algorithm>
 #include <cstring>
@@ -30,9 +31,8 @@ std::string idOf(const PipelineCacheOwner& owner, std::span<const std::uint8_t> 
 TEST(PipelineCacheWrapping, GivesBackWhatItWasGiven) {
     const std::vector<std::uint8_t> data = driverData(kOwner);
     const std::vector<std::uint8_t> wrapped = wrapPipelineCache(kOwner, data);
-    const auto found = unwrapPipelineCache(kOwner, wrapped);
-    ASSERT_TRUE(found) << toString(found.error());
-    EXPECT_TRUE(std::ranges::equal(*found, data));
+    const auto found = must(unwrapPipelineCache(kOwner, wrapped));
+    EXPECT_TRUE(std::ranges::equal(found, data));
 }
 
 TEST(PipelineCacheWrapping, RefusesEveryLengthButTheWhole) {
@@ -84,30 +84,24 @@ TEST(PipelineCacheWrapping, RefusesDataWithoutVulkansHeader) {
 using PipelineCacheOfDevice = DeviceTest;
 
 TEST_F(PipelineCacheOfDevice, IsTakenByTheDeviceThatGaveIt) {
-    const auto data = context().pipelineCacheData();
-    ASSERT_TRUE(data) << toString(data.error());
+    const auto data = must(context().pipelineCacheData());
     HeadlessOptions options;
     options.validation = Validation::On;
-    auto other = Context::createHeadless(options);
-    ASSERT_TRUE(other) << toString(other.error());
-    EXPECT_EQ((*other)->pipelineCacheName(), context().pipelineCacheName());
-    const Status added = (*other)->addPipelineCache(*data);
+    auto other = must(Context::createHeadless(options));
+    EXPECT_EQ(other->pipelineCacheName(), context().pipelineCacheName());
+    const Status added = other->addPipelineCache(data);
     EXPECT_TRUE(added) << toString(added.error());
     // It continues with the data that it has now.
-    const auto again = (*other)->pipelineCacheData();
-    ASSERT_TRUE(again) << toString(again.error());
-    EXPECT_TRUE((*other)->addPipelineCache(*again));
-    EXPECT_EQ((*other)->validationMessages(), std::vector<std::string>());
+    const auto again = must(other->pipelineCacheData());
+    EXPECT_TRUE(other->addPipelineCache(again));
+    EXPECT_EQ(other->validationMessages(), std::vector<std::string>());
 }
 
 TEST_F(PipelineCacheOfDevice, IsAsItWasAfterARefusal) {
-    auto data = context().pipelineCacheData();
-    ASSERT_TRUE(data) << toString(data.error());
+    auto data = must(context().pipelineCacheData());
     const VkPipelineCache before = context().state().pipelineCache;
-    data->back() ^= 1U;
-    const Status added = context().addPipelineCache(*data);
-    ASSERT_FALSE(added);
-    EXPECT_EQ(added.error().id, "pipeline-cache");
+    data.back() ^= 1U;
+    EXPECT_EQ(mustFail(context().addPipelineCache(data)).id, "pipeline-cache");
     EXPECT_EQ(context().state().pipelineCache, before);
 }
 

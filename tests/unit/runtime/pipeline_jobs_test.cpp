@@ -2,6 +2,7 @@
 #include "renderer/pipeline_jobs.h"
 
 #include "renderer/background_pipelines.h"
+#include "support/must.h"
 
 #include <gtest/gtest.h>
 
@@ -46,9 +47,7 @@ TEST(PipelineJobs, ComeInTheirOrderWhateverTheirSizesAndThreads) {
 TEST(PipelineJobs, FirstErrorInOrderIsToldWhicheverCameFirst) {
     const std::vector<PipelineJob> jobs{job(0, 1), job(1, 2, true), job(2, 9, true), job(3, 3, true)};
     for (const std::uint32_t threads : {1U, 4U}) {
-        const auto made = makePipelines(jobs, 0, threads);
-        ASSERT_FALSE(made);
-        EXPECT_EQ(made.error().message, "1");
+        EXPECT_EQ(mustFail(makePipelines(jobs, 0, threads)).message, "1");
     }
 }
 

@@ -4,6 +4,7 @@
 #include "renderer/pipeline_jobs.h"
 #include "renderer/pipelines.h"
 #include "renderer/renderer.h"
+#include "support/must.h"
 
 #include <algorithm>
 #include <cstring>
@@ -80,10 +81,9 @@ TEST(PipelineExecutables, AreReadWhole) {
     pretend(context);
     for (const bool incomplete : {false, true}) {
         isIncompleteOnce = incomplete;
-        const auto read = readExecutables(context, VK_NULL_HANDLE);
-        ASSERT_TRUE(read) << toString(read.error());
-        ASSERT_EQ(read->size(), 2U);
-        const PipelineExecutable& first = read->front();
+        const auto read = must(readExecutables(context, VK_NULL_HANDLE));
+        ASSERT_EQ(read.size(), 2U);
+        const PipelineExecutable& first = read.front();
         EXPECT_EQ(first.name, "main");
         EXPECT_EQ(first.description, "the code");
         EXPECT_EQ(first.stages, VK_SHADER_STAGE_COMPUTE_BIT);
@@ -95,14 +95,12 @@ TEST(PipelineExecutables, AreReadWhole) {
         EXPECT_EQ(std::get<std::int64_t>(first.statistics[1].value), -5);
         EXPECT_EQ(std::get<double>(first.statistics[2].value), 0.25);
         EXPECT_TRUE(std::get<bool>(first.statistics[3].value));
-        EXPECT_EQ(read->back().name, std::string(VK_MAX_DESCRIPTION_SIZE, 'x'));
-        EXPECT_TRUE(read->back().statistics.empty());
+        EXPECT_EQ(read.back().name, std::string(VK_MAX_DESCRIPTION_SIZE, 'x'));
+        EXPECT_TRUE(read.back().statistics.empty());
     }
     EXPECT_EQ(askedExecutables, 2U);
     context.vk.GetPipelineExecutablePropertiesKHR = lost;
-    const auto failed = readExecutables(context, VK_NULL_HANDLE);
-    ASSERT_FALSE(failed);
-    EXPECT_EQ(failed.error().id, "vulkan-call");
+    EXPECT_EQ(mustFail(readExecutables(context, VK_NULL_HANDLE)).id, "vulkan-call");
 }
 
 TEST(PipelineExecutables, AreAskedOfTheDeviceWithTheRest) {
@@ -136,18 +134,15 @@ TEST_F(StatisticsOfARenderer, NameEveryPipeline) {
     ASSERT_NE(gpuScene, nullptr);
     const auto renderer = makeRenderer(package, *gpuScene, package::kStrategyVisibility, 8, 8);
     ASSERT_NE(renderer, nullptr);
-    const auto refused = renderer->pipelineStatistics();
-    ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.error().id, "pipeline-statistics");
+    EXPECT_EQ(mustFail(renderer->pipelineStatistics()).id, "pipeline-statistics");
 
     pretend(context().state());
     renderer->state().pipelines.captureStatistics = true;
-    const auto told = renderer->pipelineStatistics();
-    ASSERT_TRUE(told) << toString(told.error());
-    EXPECT_EQ(told->size(), renderer->footprint().pipelines);
-    EXPECT_EQ(askedExecutables, told->size());
+    const auto told = must(renderer->pipelineStatistics());
+    EXPECT_EQ(told.size(), renderer->footprint().pipelines);
+    EXPECT_EQ(askedExecutables, told.size());
     std::vector<std::string> names;
-    for (const PipelineStatistics& pipeline : *told) {
+    for (const PipelineStatistics& pipeline : told) {
         EXPECT_EQ(pipeline.executables.size(), 2U);
         names.push_back(pipeline.name);
     }
@@ -169,9 +164,7 @@ TEST_F(StatisticsOfARenderer, AreRefusedWhereTheDeviceHasNone) {
     options.width = 8;
     options.height = 8;
     options.pipelineStatistics = true;
-    const auto renderer = Renderer::create(context(), package, *gpuScene, options);
-    ASSERT_FALSE(renderer);
-    EXPECT_EQ(renderer.error().id, "pipeline-statistics");
+    EXPECT_EQ(mustFail(Renderer::create(context(), package, *gpuScene, options)).id, "pipeline-statistics");
 }
 
 }  // namespace

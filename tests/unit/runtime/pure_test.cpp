@@ -8,6 +8,7 @@
 #include "frame/frame_constants.h"
 #include "materials/material_model.h"
 #include "support/features.h"
+#include "support/must.h"
 #include "unit/runtime/package_builder.h"
 
 #include <gtest/gtest.h>
@@ -76,20 +77,19 @@ TEST(SceneMaterialTest, TakesValuesAndKeepsTextures) {
     given.textures[1].rowU = {1.0F, 2.0F, 3.0F};
     const std::span<const std::uint8_t> bytes(reinterpret_cast<const std::uint8_t*>(&given), sizeof(given));
     const std::array views{MaterialView{2, bytes}};
-    Result<std::vector<ChangingMaterial>> changing = replaceMaterials(views, table, all);
-    ASSERT_TRUE(changing.ok());
+    std::vector<ChangingMaterial> changing = must(replaceMaterials(views, table, all));
     EXPECT_EQ(records[2].roughnessFactor, 0.25F);
     EXPECT_EQ(records[2].textures[1].textureIndex, 7U);
     EXPECT_EQ(records[2].textures[1].texels.x, 64.0F);
     EXPECT_EQ(records[2].textures[1].rowU.z, 3.0F);
     given.roughnessFactor = 0.5F;
-    ASSERT_TRUE(takeMaterials(views, table, *changing).ok());
-    const MaterialTable taken{(*changing)[0].record, sizeof(test::TestMaterial), table.textureOffset, 2};
+    ASSERT_TRUE(takeMaterials(views, table, changing).ok());
+    const MaterialTable taken{changing[0].record, sizeof(test::TestMaterial), table.textureOffset, 2};
     EXPECT_EQ(test::materialAt(taken, 0).roughnessFactor, 0.5F);
     for (const std::vector<MaterialView>& wrong :
          {std::vector<MaterialView>{{3, bytes}}, {{2, bytes.first(8)}}, {{1, bytes}, {1, bytes}}}) {
         EXPECT_EQ(replaceMaterials(wrong, table, all).error().id, "scene-material");
-        EXPECT_EQ(takeMaterials(wrong, table, *changing).error().id, "scene-material");
+        EXPECT_EQ(takeMaterials(wrong, table, changing).error().id, "scene-material");
     }
 }
 

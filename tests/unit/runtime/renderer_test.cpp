@@ -1,5 +1,6 @@
 // Tests frames of passes that show their inputs: the raster pass and the rays must see the same.
 #include "device_fixture.h"
+#include "support/must.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,9 +28,7 @@ protected:
                        std::uint32_t sampleCount = 1) {
         gpuScene_ = upload(package, scene);
         renderer_ = makeRenderer(package, *gpuScene_, GetParam(), kWidth, kHeight);
-        Result<LinearImage> image = renderer_->render(frame, sampleCount);
-        EXPECT_TRUE(image) << toString(image.error());
-        return image ? std::move(*image) : LinearImage{};
+        return must(renderer_->render(frame, sampleCount));
     }
     void TearDown() override {
         renderer_.reset();
@@ -109,11 +108,10 @@ TEST_P(RendererTest, RaysAgreeWithTheRaster) {
             frame.camera.halfHeight = 1.2F;
             frame.camera.far = 100.0F;
         }
-        const Result<LinearImage> image = renderer_->render(frame, 1);
-        ASSERT_TRUE(image) << toString(image.error());
+        const LinearImage image = must(renderer_->render(frame, 1));
         std::size_t seen = 0;
         std::size_t different = 0;
-        for (const std::array<float, 4>& pixel : image->pixels) {
+        for (const std::array<float, 4>& pixel : image.pixels) {
             seen += pixel[0] > 0.0F ? 1 : 0;
             different += pixel[0] != pixel[1] ? 1 : 0;
         }
@@ -169,12 +167,11 @@ TEST_P(RendererTest, CountersAndTimingsNameThePasses) {
     EXPECT_GT(renderer_->pipelineMaking().milliseconds, 0.0);
     FrameOptions frame = makeFrame(4.0F);
     ASSERT_TRUE(renderer_->render(frame));
-    const Result<std::vector<PassTiming>> stretches = renderer_->timings();
-    ASSERT_TRUE(stretches) << toString(stretches.error());
-    ASSERT_EQ(stretches->size(), 2U);
-    EXPECT_EQ((*stretches)[0].name, "frame");
-    EXPECT_EQ((*stretches)[1].name, "hits");
-    EXPECT_GE((*stretches)[0].milliseconds, (*stretches)[1].milliseconds);
+    const std::vector<PassTiming> stretches = must(renderer_->timings());
+    ASSERT_EQ(stretches.size(), 2U);
+    EXPECT_EQ(stretches[0].name, "frame");
+    EXPECT_EQ(stretches[1].name, "hits");
+    EXPECT_GE(stretches[0].milliseconds, stretches[1].milliseconds);
     frame.timing = Timing::Passes;
     std::vector<std::size_t> timed;  // of each sample: only the last has its passes measured
     ASSERT_TRUE(renderer_->render(frame, 2, [&] {
@@ -185,15 +182,13 @@ TEST_P(RendererTest, CountersAndTimingsNameThePasses) {
     EXPECT_EQ(timed[0], 2U);
     EXPECT_GT(timed[1], 2U);
 
-    const Result<FrameCounters> counters = renderer_->counters();
-    ASSERT_TRUE(counters);
-    EXPECT_EQ(counters->rays, kWidth * kHeight);
-    EXPECT_EQ(counters->unknownShader, 0U);
-    EXPECT_EQ(counters->pixelCounts, (std::vector<std::uint32_t>{560, 400}));
-    const Result<std::vector<PassTiming>> timings = renderer_->timings();
-    ASSERT_TRUE(timings) << toString(timings.error());
+    const FrameCounters counters = must(renderer_->counters());
+    EXPECT_EQ(counters.rays, kWidth * kHeight);
+    EXPECT_EQ(counters.unknownShader, 0U);
+    EXPECT_EQ(counters.pixelCounts, (std::vector<std::uint32_t>{560, 400}));
+    const std::vector<PassTiming> timings = must(renderer_->timings());
     std::vector<std::string> names;
-    for (const PassTiming& timing : *timings) {
+    for (const PassTiming& timing : timings) {
         names.push_back(timing.name);
         EXPECT_GE(timing.milliseconds, 0.0);
         EXPECT_LT(timing.milliseconds, 60000.0);
@@ -202,11 +197,11 @@ TEST_P(RendererTest, CountersAndTimingsNameThePasses) {
                                       "first miss", "first Plain", "reflection rays", "ray dispatch"};
     if (GetParam() == kStrategyUber) {
         expected.insert(expected.end(), {"uber", "compose"});
-        EXPECT_TRUE(counters->bucketCounts.empty());
+        EXPECT_TRUE(counters.bucketCounts.empty());
     } else {
         expected.insert(expected.end(),
                         {"trace", "count", "offset", "copy", "shade miss", "shade Plain", "compose"});
-        EXPECT_EQ(counters->bucketCounts, (std::vector<std::uint32_t>{560, 400}));
+        EXPECT_EQ(counters.bucketCounts, (std::vector<std::uint32_t>{560, 400}));
     }
     EXPECT_EQ(names, expected);
 }
@@ -217,10 +212,9 @@ TEST_P(RendererTest, WithoutReflectionsThereAreNone) {
     FrameOptions frame = makeFrame(4.0F);
     render(package, scene, frame);
     frame.effects = 0;
-    const Result<LinearImage> image = renderer_->render(frame);
-    ASSERT_TRUE(image);
-    EXPECT_EQ(countPixels(*image, 0, 1.0F), 400U);
-    EXPECT_EQ(countPixels(*image, 1, 0.0F), kWidth * kHeight);
+    const LinearImage image = must(renderer_->render(frame));
+    EXPECT_EQ(countPixels(image, 0, 1.0F), 400U);
+    EXPECT_EQ(countPixels(image, 1, 0.0F), kWidth * kHeight);
     EXPECT_EQ(renderer_->timings()->size(), 1U);
     EXPECT_EQ(renderer_->counters()->rays, 0U);
     frame.timing = Timing::Passes;
@@ -285,13 +279,11 @@ TEST_P(RendererTest, BadRequestsAreErrors) {
     TestScene scene;
     gpuScene_ = upload(package, scene);
     for (const auto& [width, height] : {std::pair(0U, 8U), std::pair(8U, 0U), std::pair(1U << 20, 8U)}) {
-        const auto renderer = Renderer::create(context(), package, *gpuScene_, {GetParam(), width, height});
-        ASSERT_FALSE(renderer);
-        EXPECT_EQ(renderer.error().id, "render-size");
+        EXPECT_EQ(mustFail(Renderer::create(context(), package, *gpuScene_, {GetParam(), width, height})).id,
+                  "render-size");
     }
-    const auto noStrategy = Renderer::create(context(), package, *gpuScene_, {package::Strategy{3}, 8, 8});
-    ASSERT_FALSE(noStrategy);
-    EXPECT_EQ(noStrategy.error().id, "renderer-options");
+    EXPECT_EQ(mustFail(Renderer::create(context(), package, *gpuScene_, {package::Strategy{3}, 8, 8})).id,
+              "renderer-options");
     renderer_ = makeRenderer(package, *gpuScene_, GetParam(), 8, 8);
     EXPECT_FALSE(renderer_->render(makeFrame(4.0F), 0));
     FrameOptions frame = makeFrame(4.0F);

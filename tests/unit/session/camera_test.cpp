@@ -1,4 +1,5 @@
 #include "base/vectors.h"
+#include "support/must.h"
 
 #include <glint/session/camera.h>
 
@@ -140,30 +141,26 @@ gltf::Scene sceneWithCameras() {
 }
 
 TEST(SceneCamera, KeepsTheVerticalFieldOfView) {
-    const Result<CameraView> camera = sceneCamera(sceneWithCameras(), 0, 2.0);
-    ASSERT_TRUE(camera) << toString(camera.error());
-    expectFrame(*camera);
-    EXPECT_EQ(camera->position, (std::array<double, 3>{1, 2, 3}));
-    EXPECT_NEAR(camera->forward[0], -1.0F, 1e-6F);
-    EXPECT_NEAR(camera->up[1], 1.0F, 1e-6F);
-    EXPECT_NEAR(camera->halfHeight, std::tan(0.5), 1e-6);
-    EXPECT_NEAR(camera->halfWidth, 2.0 * std::tan(0.5), 1e-6);
-    EXPECT_FLOAT_EQ(camera->near, 0.1F);
-    EXPECT_FLOAT_EQ(camera->far, 50.0F);
+    const CameraView camera = must(sceneCamera(sceneWithCameras(), 0, 2.0));
+    expectFrame(camera);
+    EXPECT_EQ(camera.position, (std::array<double, 3>{1, 2, 3}));
+    EXPECT_NEAR(camera.forward[0], -1.0F, 1e-6F);
+    EXPECT_NEAR(camera.up[1], 1.0F, 1e-6F);
+    EXPECT_NEAR(camera.halfHeight, std::tan(0.5), 1e-6);
+    EXPECT_NEAR(camera.halfWidth, 2.0 * std::tan(0.5), 1e-6);
+    EXPECT_FLOAT_EQ(camera.near, 0.1F);
+    EXPECT_FLOAT_EQ(camera.far, 50.0F);
 }
 
 TEST(SceneCamera, OrthographicKeepsItsHeight) {
-    const Result<CameraView> camera = sceneCamera(sceneWithCameras(), 1, 2.0);
-    ASSERT_TRUE(camera);
-    EXPECT_TRUE(camera->orthographic);
-    EXPECT_FLOAT_EQ(camera->halfHeight, 3.0F);
-    EXPECT_FLOAT_EQ(camera->halfWidth, 6.0F);
+    const CameraView camera = must(sceneCamera(sceneWithCameras(), 1, 2.0));
+    EXPECT_TRUE(camera.orthographic);
+    EXPECT_FLOAT_EQ(camera.halfHeight, 3.0F);
+    EXPECT_FLOAT_EQ(camera.halfWidth, 6.0F);
 }
 
 TEST(SceneCamera, FlatNodeIsAnError) {
-    const Result<CameraView> camera = sceneCamera(sceneWithCameras(), 2, 1.0);
-    ASSERT_FALSE(camera);
-    EXPECT_EQ(camera.error().id, "camera-matrix");
+    EXPECT_EQ(mustFail(sceneCamera(sceneWithCameras(), 2, 1.0)).id, "camera-matrix");
 }
 
 TEST(ChooseCamera, ByNameNumberAutoOrDefault) {
@@ -179,9 +176,8 @@ TEST(ChooseCamera, ByNameNumberAutoOrDefault) {
     EXPECT_EQ(name(""), "Wide");
     EXPECT_EQ(name("3"), "camera-unknown");
     EXPECT_EQ(name("Wyde"), "camera-unknown");
-    const Result<session::CameraChoice> none = chooseCamera(gltf::Scene{}, {}, "", 1.0);
-    ASSERT_TRUE(none);
-    EXPECT_EQ(none->name, "auto");
+    const session::CameraChoice none = must(chooseCamera(gltf::Scene{}, {}, "", 1.0));
+    EXPECT_EQ(none.name, "auto");
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // Tests what edits make of a scene. tests/cli/edits_test.cpp tests what a device makes of it.
+#include "support/must.h"
+
 #include <glint/session/edits.h>
 #include <glint/session/scene_view.h>
 
@@ -138,17 +140,16 @@ TEST(Edits, AddedScenesKeepTheirParts) {
     SceneFiles files;
     files["room.glb"] = std::make_shared<const gltf::Scene>(editedRoom());
     const Edit add{.kind = EditKind::Add, .translation = {0, 0, 9}, .name = "Second", .file = "room.glb"};
-    const Result<int> holder = applyEdit(add, files, scene);
-    ASSERT_TRUE(holder.ok());
+    const int holder = must(applyEdit(add, files, scene));
     moveTo(Moment{{0, 1}, 1.0}, scene);
-    EXPECT_EQ(scene.nodes[static_cast<std::size_t>(*holder)].source, 5);
-    const gltf::Node& arm = scene.nodes[static_cast<std::size_t>(*holder) + 2];
+    EXPECT_EQ(scene.nodes[static_cast<std::size_t>(holder)].source, 5);
+    const gltf::Node& arm = scene.nodes[static_cast<std::size_t>(holder) + 2];
     EXPECT_EQ(arm.name, "Arm");
     EXPECT_EQ(arm.world[13], 3.0);
     EXPECT_EQ(arm.world[14], 9.0);
-    const gltf::Node& body = scene.nodes[static_cast<std::size_t>(*holder) + 4];
+    const gltf::Node& body = scene.nodes[static_cast<std::size_t>(holder) + 4];
     EXPECT_EQ(body.mesh, 1);
-    EXPECT_EQ(scene.skins[static_cast<std::size_t>(body.skin)].joints[0], *holder + 1);
+    EXPECT_EQ(scene.skins[static_cast<std::size_t>(body.skin)].joints[0], holder + 1);
     EXPECT_EQ(scene.meshes[1].primitives[1].variantMaterials, (std::vector<int>{3, 2}));
     EXPECT_EQ(scene.variants.size(), 1U);
     EXPECT_EQ(scene.lights[1].position[2], 9.0);
@@ -171,11 +172,10 @@ TEST(Edits, PlanningHasEveryMaterialOfAPrimitive) {
     EXPECT_TRUE(needsShaders(light, scene));
     hidden.lights[0].canShine = true;
     EXPECT_FALSE(needsShaders(light, hidden));
-    const Result<gltf::Scene> planned = plannedScene(scene, edits, {});
-    ASSERT_TRUE(planned.ok());
-    ASSERT_EQ(planned->meshes.size(), 2U);
-    EXPECT_EQ(planned->meshes[0].primitives[1].material, 1);
-    EXPECT_EQ(planned->meshes[1].primitives[1].material, 0);
+    const gltf::Scene planned = must(plannedScene(scene, edits, {}));
+    ASSERT_EQ(planned.meshes.size(), 2U);
+    EXPECT_EQ(planned.meshes[0].primitives[1].material, 1);
+    EXPECT_EQ(planned.meshes[1].primitives[1].material, 0);
 }
 
 }  // namespace

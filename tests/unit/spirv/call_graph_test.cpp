@@ -1,6 +1,7 @@
 #include "spirv/compiler.h"
 #include "spirv/reader.h"
 #include "spirv/statistics.h"
+#include "support/must.h"
 
 #include <gtest/gtest.h>
 
@@ -52,9 +53,8 @@ const compiler::SpirvFunction* find(const std::vector<compiler::SpirvFunction>& 
 }
 
 TEST(CallGraph, NamesFunctionsAndWhatTheyCall) {
-    const auto words = compileShader(source({"shadeFirst", "shadeSecond"}), {.debugInfo = true});
-    ASSERT_TRUE(words) << toString(words.error());
-    const std::vector<compiler::SpirvFunction> functions = compiler::findFunctions(*words);
+    const auto words = must(compileShader(source({"shadeFirst", "shadeSecond"}), {.debugInfo = true}));
+    const std::vector<compiler::SpirvFunction> functions = compiler::findFunctions(words);
     ASSERT_EQ(functions.size(), 3U);
     const compiler::SpirvFunction* const main = find(functions, "main");
     const compiler::SpirvFunction* const first = find(functions, "shadeFirst");

@@ -3,6 +3,7 @@
 #include "spirv/optimize.h"
 #include "spirv/reader.h"
 #include "spirv/statistics.h"
+#include "support/must.h"
 
 #include <glint/internal/package_modules.h>
 
@@ -56,9 +57,8 @@ std::string computeShader(const std::string& body) {
 
 TEST(CompileShader, FoldsDecidedFeaturesAway) {
     const auto words =
-        compiler::compileShader({"three.comp", compiler::ShaderStage::Compute, kThreeCases}, {});
-    ASSERT_TRUE(words) << toString(words.error());
-    const auto statistics = compiler::measureSpirv(*words);
+        must(compiler::compileShader({"three.comp", compiler::ShaderStage::Compute, kThreeCases}, {}));
+    const auto statistics = compiler::measureSpirv(words);
     ASSERT_TRUE(statistics);
     EXPECT_EQ(statistics->textureFetches, 4U);
     // There is one branch on the mask, for the feature that some keys have.
@@ -122,9 +122,7 @@ void main() {
 
 std::string disassembled(const compiler::ShaderSource& source) {
     const auto words = compileShader(source, {});
-    const auto text = words ? compiler::disassemble(*words) : Result<std::string>(words.error());
-    EXPECT_TRUE(text) << toString(text.error());
-    return text ? *text : std::string();
+    return must(words ? compiler::disassemble(*words) : Result<std::string>(words.error()));
 }
 
 // glslang declares what the source declares, and code that is folded away needs no feature of a device.
@@ -156,9 +154,9 @@ void main() {
 )";
     };
     const auto featuresOf = [](const std::string& glsl) {
-        const auto words = compiler::compileShader({"wide.comp", compiler::ShaderStage::Compute, glsl}, {});
-        EXPECT_TRUE(words) << toString(words.error());
-        return words ? package::featuresOf(*words) : std::vector<std::string>{"none"};
+        const auto words =
+            must(compiler::compileShader({"wide.comp", compiler::ShaderStage::Compute, glsl}, {}));
+        return package::featuresOf(words);
     };
     EXPECT_EQ(featuresOf(shader("false")), std::vector<std::string>{});
     EXPECT_EQ(featuresOf(shader("true")),
@@ -193,37 +191,33 @@ TEST(CompileShader, LeavesPayloadsWhole) {
 
 TEST(CompileShader, MakesSpirv15) {
     const auto words =
-        compiler::compileShader({"a.comp", compiler::ShaderStage::Compute, computeShader("")}, {});
-    ASSERT_TRUE(words) << toString(words.error());
-    EXPECT_EQ(words->at(1), 0x00010500U);
+        must(compiler::compileShader({"a.comp", compiler::ShaderStage::Compute, computeShader("")}, {}));
+    EXPECT_EQ(words.at(1), 0x00010500U);
 }
 
 TEST(CompileShader, NamesFileAndLineOfAnError) {
-    const auto words = compiler::compileShader(
-        {"a.comp", compiler::ShaderStage::Compute, computeShader("    float x = missing;\n")}, {});
-    ASSERT_FALSE(words);
-    EXPECT_EQ(words.error().id, "glsl");
-    EXPECT_EQ(words.error().where, "passes/test.comp:4");
-    EXPECT_NE(words.error().message.find("missing"), std::string::npos) << words.error().message;
-    EXPECT_NE(words.error().message.find("a.comp"), std::string::npos);
+    const Diagnostic words = mustFail(compiler::compileShader(
+        {"a.comp", compiler::ShaderStage::Compute, computeShader("    float x = missing;\n")}, {}));
+    EXPECT_EQ(words.id, "glsl");
+    EXPECT_EQ(words.where, "passes/test.comp:4");
+    EXPECT_NE(words.message.find("missing"), std::string::npos) << words.message;
+    EXPECT_NE(words.message.find("a.comp"), std::string::npos);
 }
 
 TEST(CompileShader, ReportsLinkErrors) {
-    const auto words =
-        compiler::compileShader({"a.comp", compiler::ShaderStage::Compute,
-                                 "#version 460\nvoid undefined();\nvoid main() { undefined(); }\n"},
-                                {});
-    ASSERT_FALSE(words);
-    EXPECT_EQ(words.error().id, "glsl");
-    EXPECT_FALSE(words.error().message.empty());
+    const Diagnostic words =
+        mustFail(compiler::compileShader({"a.comp", compiler::ShaderStage::Compute,
+                                          "#version 460\nvoid undefined();\nvoid main() { undefined(); }\n"},
+                                         {}));
+    EXPECT_EQ(words.id, "glsl");
+    EXPECT_FALSE(words.message.empty());
 }
 
 TEST(CompileShader, KeepsNamesForDebugInfoOnly) {
     for (const bool debugInfo : {false, true}) {
-        const auto words = compiler::compileShader(
-            {"three.comp", compiler::ShaderStage::Compute, kThreeCases}, {.debugInfo = debugInfo});
-        ASSERT_TRUE(words) << toString(words.error());
-        const auto text = compiler::disassemble(*words);
+        const auto words = must(compiler::compileShader(
+            {"three.comp", compiler::ShaderStage::Compute, kThreeCases}, {.debugInfo = debugInfo}));
+        const auto text = compiler::disassemble(words);
         ASSERT_TRUE(text);
         EXPECT_EQ(text->find("OpMemberName") != std::string::npos, debugInfo);
     }
@@ -313,14 +307,13 @@ TEST(WideLoads, LeaveWhatIsApartOrMayHaveChanged) {
 
 // glslang takes the alignment of the words that the address points to.
 TEST(CompileShader, LoadsAddressesWithTheirAlignment) {
-    const auto words = compiler::compileShader(
+    const auto words = must(compiler::compileShader(
         {"records.comp", compiler::ShaderStage::Compute,
          kRecords + std::string("pushed.results.data[i] = pushed.records.data[i].words.data[0]; }\n")},
-        {});
-    ASSERT_TRUE(words) << toString(words.error());
+        {}));
     std::set<std::uint32_t> pointers;
     std::vector<std::uint32_t> alignments;
-    ASSERT_TRUE(compiler::visitSpirv(*words, [&](const compiler::SpirvInstruction& it) {
+    ASSERT_TRUE(compiler::visitSpirv(words, [&](const compiler::SpirvInstruction& it) {
         if (it.opcode == spv::OpTypePointer) {
             pointers.insert(it.operands[0]);
         } else if (it.opcode == spv::OpLoad && it.operands.size() == 5 && pointers.contains(it.operands[0])) {
@@ -359,9 +352,8 @@ TEST(WideLoads, JoinInTheLastBlock) {
             Record r = pushed.from.data[gl_GlobalInvocationID.x];
             results.sums[gl_GlobalInvocationID.x] = r.place.x + r.size;
         })";
-    const auto words = compiler::compileShader({"last.comp", compiler::ShaderStage::Compute, glsl}, {});
-    ASSERT_TRUE(words) << toString(words.error());
-    const Status valid = compiler::validateSpirv(*words, "last.comp");
+    const auto words = must(compiler::compileShader({"last.comp", compiler::ShaderStage::Compute, glsl}, {}));
+    const Status valid = compiler::validateSpirv(words, "last.comp");
     EXPECT_TRUE(valid) << toString(valid.error());
 }
 
@@ -379,10 +371,9 @@ TEST(ValidateSpirv, RefusesWhatIsNotValid) {
     EXPECT_TRUE(compiler::validateSpirv(*words, "three.comp"));
     // The bound on IDs is below the IDs in use.
     words->at(3) = 2;
-    const Status status = compiler::validateSpirv(*words, "three.comp");
-    ASSERT_FALSE(status);
-    EXPECT_EQ(status.error().id, "spirv-validate");
-    EXPECT_EQ(status.error().where, "three.comp");
+    const Diagnostic status = mustFail(compiler::validateSpirv(*words, "three.comp"));
+    EXPECT_EQ(status.id, "spirv-validate");
+    EXPECT_EQ(status.where, "three.comp");
 }
 
 TEST(ValidateSpirv, AllowsScalarLayout) {
@@ -397,9 +388,7 @@ void main() { data.b = vec3(data.a, data.c[0], data.c[2]); }
 }
 
 TEST(Disassemble, RefusesGarbage) {
-    const auto text = compiler::disassemble({1, 2, 3});
-    ASSERT_FALSE(text);
-    EXPECT_EQ(text.error().id, "spirv-format");
+    EXPECT_EQ(mustFail(compiler::disassemble({1, 2, 3})).id, "spirv-format");
 }
 
 }  // namespace

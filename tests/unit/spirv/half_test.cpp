@@ -1,5 +1,6 @@
 // mediump becomes 16-bit arithmetic, and nothing else does.
 #include "spirv/compiler.h"
+#include "support/must.h"
 
 #include <gtest/gtest.h>
 
@@ -31,9 +32,7 @@ void main() {
 
 std::string disassembled(const std::string& glsl, const compiler::ShaderCompileOptions& options = {}) {
     const auto words = compileShader({"half.comp", compiler::ShaderStage::Compute, glsl}, options);
-    const auto text = words ? compiler::disassemble(*words) : Result<std::string>(words.error());
-    EXPECT_TRUE(text) << toString(text.error());
-    return text ? *text : std::string();
+    return must(words ? compiler::disassemble(*words) : Result<std::string>(words.error()));
 }
 
 int count(const std::string& text, const std::string& pattern) {
@@ -76,9 +75,8 @@ TEST(HalfPrecision, CanBeThatOfEverything) {
 TEST(HalfPrecision, HoldsAcrossFunctionsThatStay) {
     compiler::ShaderSource source{
         "half.comp", compiler::ShaderStage::Compute, lightShader("mediump"), {"tinted"}};
-    const auto words = compileShader(source, {});
-    ASSERT_TRUE(words) << toString(words.error());
-    const auto text = compiler::disassemble(*words);
+    const auto words = must(compileShader(source, {}));
+    const auto text = compiler::disassemble(words);
     ASSERT_TRUE(text);
     EXPECT_EQ(count(*text, "= OpFunction "), 2) << *text;
     EXPECT_GE(count(*text, "%v3half"), 1) << *text;

@@ -6,6 +6,7 @@
 #include "spirv/optimize.h"
 #include "spirv/reader.h"
 #include "spirv/statistics.h"
+#include "support/must.h"
 
 #include <glslang/SPIRV/spirv.hpp>
 #include <gtest/gtest.h>
@@ -38,10 +39,8 @@ constexpr const char* kShared =
 
 Words compilePart(const std::string& glsl, const compiler::LinkNames& names,
                   const compiler::ShaderCompileOptions& options = {}) {
-    auto words =
-        compiler::compilePart({"part", compiler::ShaderStage::Compute, kShared + glsl, {}}, names, options);
-    EXPECT_TRUE(words) << toString(words.error());
-    return words ? *words : Words();
+    return must(
+        compiler::compilePart({"part", compiler::ShaderStage::Compute, kShared + glsl, {}}, names, options));
 }
 
 // A part with a function that returns `value`, a float.
@@ -92,10 +91,9 @@ TEST(Join, HasWhatAWholeShaderHas) {
     const std::string bodies =
         "float first(Hit hit) { return hit.place.x * pushed.first.value; }\n"
         "float second(Hit hit) { return data.x[hit.number] + sqrt(hit.place.y); }\n";
-    const auto joined = join({headOf(), partOf("first", "hit.place.x * pushed.first.value"),
-                              partOf("second", "data.x[hit.number] + sqrt(hit.place.y)")});
-    ASSERT_TRUE(joined) << toString(joined.error());
-    const auto whole = compiler::compileShader(
+    const auto joined = must(join({headOf(), partOf("first", "hit.place.x * pushed.first.value"),
+                                   partOf("second", "data.x[hit.number] + sqrt(hit.place.y)")}));
+    const auto whole = must(compiler::compileShader(
         {"whole",
          compiler::ShaderStage::Compute,
          kShared + bodies +
@@ -103,20 +101,18 @@ TEST(Join, HasWhatAWholeShaderHas) {
              "  float sum = pushed.first.next.value;\n  if (pushed.number == 1u) { sum += first(hit); }\n"
              "  else { sum += second(hit); }\n  data.x[1] = sum;\n}\n",
          {"first", "second"}},
-        {});
-    ASSERT_TRUE(whole) << toString(whole.error());
-    EXPECT_LE(countGlobals(*joined), countGlobals(*whole));
+        {}));
+    EXPECT_LE(countGlobals(joined), countGlobals(whole));
     for (const std::uint32_t opcode :
          {spv::OpFunction, spv::OpFunctionCall, spv::OpVariable, spv::OpTypeStruct, spv::OpTypePointer,
           spv::OpLoad, spv::OpStore, spv::OpFAdd}) {
-        EXPECT_EQ(opcodesOf(*joined)[opcode], opcodesOf(*whole)[opcode]) << opcode;
+        EXPECT_EQ(opcodesOf(joined)[opcode], opcodesOf(whole)[opcode]) << opcode;
     }
-    EXPECT_LE(joined->size(), whole->size());
-    const Result<std::string> text = compiler::disassemble(*joined);
-    ASSERT_TRUE(text);
-    EXPECT_EQ(text->find("Linkage"), std::string::npos);
-    EXPECT_EQ(opcodesOf(*joined)[spv::OpName], 0);
-    EXPECT_EQ(opcodesOf(*joined)[spv::OpTypeForwardPointer], 1);
+    EXPECT_LE(joined.size(), whole.size());
+    const std::string text = must(compiler::disassemble(joined));
+    EXPECT_EQ(text.find("Linkage"), std::string::npos);
+    EXPECT_EQ(opcodesOf(joined)[spv::OpName], 0);
+    EXPECT_EQ(opcodesOf(joined)[spv::OpTypeForwardPointer], 1);
 }
 
 TEST(Join, EqualFunctionsBecomeOne) {
@@ -145,33 +141,28 @@ TEST(Join, FunctionsWithOtherDecorationsStayApart) {
         }
         return compilePart(glsl, {{name}, {}, false});
     };
-    const auto joined = join({headOf(), part("first", "precise"), part("second", "")});
-    ASSERT_TRUE(joined) << toString(joined.error());
-    EXPECT_EQ(opcodesOf(*joined)[spv::OpFunction], 3);
-    const Result<std::string> text = compiler::disassemble(*joined);
-    ASSERT_TRUE(text);
-    EXPECT_NE(text->find("NoContraction"), std::string::npos);
-    const auto alike = join({headOf(), part("first", "precise"), part("second", "precise")});
-    ASSERT_TRUE(alike) << toString(alike.error());
-    EXPECT_EQ(opcodesOf(*alike)[spv::OpFunction], 2);
+    const auto joined = must(join({headOf(), part("first", "precise"), part("second", "")}));
+    EXPECT_EQ(opcodesOf(joined)[spv::OpFunction], 3);
+    const std::string text = must(compiler::disassemble(joined));
+    EXPECT_NE(text.find("NoContraction"), std::string::npos);
+    const auto alike = must(join({headOf(), part("first", "precise"), part("second", "precise")}));
+    EXPECT_EQ(opcodesOf(alike)[spv::OpFunction], 2);
 }
 
 TEST(Join, KeepsNamesForDebuggers) {
     const compiler::ShaderCompileOptions options{.debugInfo = true};
-    const auto joined = join({headOf(true, options), partOf("first", "hit.place.x", "", options),
-                              partOf("second", "hit.place.x", "", options)},
-                             options);
-    ASSERT_TRUE(joined) << toString(joined.error());
-    const Result<std::string> text = compiler::disassemble(*joined);
-    ASSERT_TRUE(text);
+    const auto joined = must(join({headOf(true, options), partOf("first", "hit.place.x", "", options),
+                                   partOf("second", "hit.place.x", "", options)},
+                                  options));
+    const std::string text = must(compiler::disassemble(joined));
     for (const char* const name : {"%Hit = ", "%main = ", "%first", "%second", "%Node = "}) {
-        EXPECT_NE(text->find(name), std::string::npos) << name << "\n" << *text;
+        EXPECT_NE(text.find(name), std::string::npos) << name << "\n" << text;
     }
     // Functions that compute the same keep their own names.
-    EXPECT_EQ(opcodesOf(*joined)[spv::OpFunction], 3);
+    EXPECT_EQ(opcodesOf(joined)[spv::OpFunction], 3);
     std::set<std::pair<std::uint32_t, std::string>> names;
     int count = 0;
-    EXPECT_TRUE(compiler::visitSpirv(*joined, [&](const compiler::SpirvInstruction& instruction) {
+    EXPECT_TRUE(compiler::visitSpirv(joined, [&](const compiler::SpirvInstruction& instruction) {
         if (instruction.opcode == spv::OpName) {
             ++count;
             names.emplace(instruction.operands[0], compiler::spirvString(instruction.operands.subspan(1)));
@@ -221,16 +212,14 @@ std::vector<Words> partsWithUnreadMembers() {
 TEST(Join, ClearsLikeTheOptimiser) {
     const std::vector<Words> parts = partsWithUnreadMembers();
     const std::vector<std::span<const std::uint32_t>> spans(parts.begin(), parts.end());
-    const Result<Words> joined = compiler::joinModules(spans, "joined", false);
-    ASSERT_TRUE(joined) << toString(joined.error());
-    const auto parsed = compiler::parseModule(*joined, "joined");
-    ASSERT_TRUE(parsed) << toString(parsed.error());
+    const Words joined = must(compiler::joinModules(spans, "joined", false));
+    const auto parsed = must(compiler::parseModule(joined, "joined"));
     for (const bool keepMembers : {false, true}) {
-        const std::optional<Words> cleared = compiler::clearGlobals(*parsed, keepMembers);
+        const std::optional<Words> cleared = compiler::clearGlobals(parsed, keepMembers);
         ASSERT_TRUE(cleared);
-        Words expected = *joined;
+        Words expected = joined;
         ASSERT_TRUE(compiler::clearJoined(expected, "joined", keepMembers));
-        EXPECT_LT(cleared->size(), joined->size());
+        EXPECT_LT(cleared->size(), joined.size());
         EXPECT_EQ(*cleared, expected) << keepMembers;
     }
 }
@@ -246,9 +235,7 @@ Words largeShader() {
         }
         parts.push_back(partOf(name, "long_" + name + "(hit.place.x)", before + "return x;\n}\n"));
     }
-    const auto joined = join(parts);
-    EXPECT_TRUE(joined) << toString(joined.error());
-    return joined ? *joined : Words();
+    return must(join(parts));
 }
 
 TEST(Join, ValidatesGroupsOfFunctions) {
@@ -274,37 +261,31 @@ TEST(Join, ValidatesGroupsOfFunctions) {
         invalid += compiler::validateSpirv(copy, "copy") ? 0 : 1;
     }
     EXPECT_EQ(invalid, 1);
-    const Status found = compiler::validateJoined(shader, "shader", 2);
-    ASSERT_FALSE(found);
-    EXPECT_EQ(found.error().message, compiler::validateSpirv(shader, "shader").error().message);
+    EXPECT_EQ(mustFail(compiler::validateJoined(shader, "shader", 2)).message,
+              compiler::validateSpirv(shader, "shader").error().message);
 }
 
 TEST(Join, RefusesWhatDoesNotFit) {
     const Words first = partOf("first", "hit.place.x");
     const Words second = partOf("second", "hit.place.y");
-    const auto missing = join({headOf(), first});
-    ASSERT_FALSE(missing);
-    EXPECT_EQ(missing.error().id, "spirv-join");
-    EXPECT_NE(missing.error().message.find("second"), std::string::npos);
+    const Diagnostic missing = mustFail(join({headOf(), first}));
+    EXPECT_EQ(missing.id, "spirv-join");
+    EXPECT_NE(missing.message.find("second"), std::string::npos);
 
-    const auto twice = join({headOf(), first, second, first});
-    ASSERT_FALSE(twice);
-    EXPECT_NE(twice.error().message.find("two parts have a function first"), std::string::npos);
+    const Diagnostic twice = mustFail(join({headOf(), first, second, first}));
+    EXPECT_NE(twice.message.find("two parts have a function first"), std::string::npos);
 
     const Words other = compilePart("float second(float hit) { return hit; }\nvoid main() { second(1.0); }\n",
                                     {{"second"}, {}, false});
-    const auto type = join({headOf(), first, other});
-    ASSERT_FALSE(type);
-    EXPECT_NE(type.error().message.find("second"), std::string::npos);
+    const Diagnostic type = mustFail(join({headOf(), first, other}));
+    EXPECT_NE(type.message.find("second"), std::string::npos);
 
     const auto entry = join({headOf(false), first, headOf(false)});
     ASSERT_FALSE(entry);
 
     Words torn = second;
     torn[compiler::kSpirvHeaderWords] += 1U << 20U;  // an instruction that is longer than it can be
-    const auto damaged = join({headOf(), first, torn});
-    ASSERT_FALSE(damaged);
-    EXPECT_EQ(damaged.error().id, "spirv-join");
+    EXPECT_EQ(mustFail(join({headOf(), first, torn})).id, "spirv-join");
 }
 
 // Two parts that disagree about a resource were not made of the same sources.
@@ -317,15 +298,14 @@ TEST(Join, RefusesResourcesThatAreDeclaredDifferently) {
                                             {"uint number; } pushed", "int number; } pushed"}}) {
         std::string changed = glsl;
         changed.replace(changed.find(from), from.size(), to);
-        const auto part = compiler::compilePart(
+        const auto part = must(compiler::compilePart(
             {"part",
              compiler::ShaderStage::Compute,
              changed + "float first(Hit hit) { return float(data.x[pushed.number].x); }\n"
                        "void main() { Hit hit; first(hit); }\n",
              {}},
-            {{"first"}, {}, false}, {});
-        ASSERT_TRUE(part) << toString(part.error());
-        const auto joined = join({headOf(false), *part});
+            {{"first"}, {}, false}, {}));
+        const auto joined = join({headOf(false), part});
         ASSERT_FALSE(joined) << to;
         EXPECT_EQ(joined.error().id, "spirv-join");
         EXPECT_NE(joined.error().message.find("declare"), std::string::npos) << joined.error().message;
@@ -354,13 +334,12 @@ TEST(Join, VariablesThatEntryPointsUseAreShared) {
                                        "  state[pushed.number] = data.x[2];\n  data.x[1] = first(hit);\n}\n",
                                    {{}, {"first"}, true});
     ASSERT_TRUE(compiler::isJoinable(part));
-    const auto joined = join({head, part});
-    ASSERT_TRUE(joined) << toString(joined.error());
+    const auto joined = must(join({head, part}));
     std::set<std::uint32_t> variables;
     std::map<std::uint32_t, std::uint32_t> places;  // pointers into them
     int stores = 0;
     int loads = 0;
-    ASSERT_TRUE(compiler::visitSpirv(*joined, [&](const compiler::SpirvInstruction& instruction) {
+    ASSERT_TRUE(compiler::visitSpirv(joined, [&](const compiler::SpirvInstruction& instruction) {
         const auto& words = instruction.operands;
         if (instruction.opcode == spv::OpVariable && words[2] == spv::StorageClassPrivate) {
             variables.insert(words[1]);

@@ -1,5 +1,6 @@
 #include "spirv/compiler.h"
 #include "spirv/reader.h"
+#include "support/must.h"
 
 #include <glslang/SPIRV/spirv.hpp>
 #include <gtest/gtest.h>
@@ -40,10 +41,10 @@ Contents contentsOf(const std::vector<std::uint32_t>& words) {
 }
 
 TEST(Linkage, ALibraryHasExportsAndImportsAndNoEntryPoint) {
-    const auto words = compiler::compileLinkable({"library", compiler::ShaderStage::Compute, kSource, {}},
-                                                 {{"scaled"}, {"hostValue", "hostUnused"}}, {});
-    ASSERT_TRUE(words) << toString(words.error());
-    Contents contents = contentsOf(*words);
+    const auto words =
+        must(compiler::compileLinkable({"library", compiler::ShaderStage::Compute, kSource, {}},
+                                       {{"scaled"}, {"hostValue", "hostUnused"}}, {}));
+    Contents contents = contentsOf(words);
     EXPECT_EQ(contents.linkage, (std::map<std::string, std::uint32_t>{{"hostValue", spv::LinkageTypeImport},
                                                                       {"scaled", spv::LinkageTypeExport}}));
     EXPECT_EQ(contents.opcodes[spv::OpEntryPoint], 0);
@@ -52,10 +53,9 @@ TEST(Linkage, ALibraryHasExportsAndImportsAndNoEntryPoint) {
     EXPECT_EQ(contents.opcodes[spv::OpVariable], 0);
     EXPECT_EQ(contents.opcodes[spv::OpFunction], 2);
     EXPECT_EQ(contents.opcodes[spv::OpLabel], 1);
-    const Result<std::string> text = compiler::disassemble(*words);
-    ASSERT_TRUE(text);
+    const std::string text = must(compiler::disassemble(words));
     // Parameters are passed by value, so that another front end can write the same signature.
-    EXPECT_EQ(text->find("OpTypePointer"), std::string::npos) << *text;
+    EXPECT_EQ(text.find("OpTypePointer"), std::string::npos) << text;
 }
 
 TEST(Linkage, AProgramKeepsItsEntryPoint) {
@@ -71,10 +71,9 @@ TEST(Linkage, AProgramKeepsItsEntryPoint) {
 }
 
 TEST(Linkage, RefusesToExportWhatIsNotThere) {
-    const auto words = compiler::compileLinkable({"library", compiler::ShaderStage::Compute, kSource, {}},
-                                                 {{"hostUnused"}, {}}, {});
-    ASSERT_FALSE(words);
-    EXPECT_EQ(words.error().id, "spirv-linkage");
+    const Diagnostic words = mustFail(compiler::compileLinkable(
+        {"library", compiler::ShaderStage::Compute, kSource, {}}, {{"hostUnused"}, {}}, {}));
+    EXPECT_EQ(words.id, "spirv-linkage");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "spirv/compiler.h"
 #include "spirv/lint.h"
+#include "support/must.h"
 
 #include <gtest/gtest.h>
 
@@ -34,9 +35,7 @@ inline Words compile(compiler::ShaderStage stage, const std::string& glsl,
                      std::vector<std::string> apart = {}) {
     compiler::ShaderSource source{"lint", stage, glsl};
     source.functionsApart = std::move(apart);
-    const auto words = compileShader(source, {.debugInfo = true});
-    EXPECT_TRUE(words) << toString(words.error());
-    return words ? *words : Words();
+    return must(compileShader(source, {.debugInfo = true}));
 }
 
 inline Words compileQuery(const std::string& body, std::vector<std::string> apart = {}) {
@@ -44,9 +43,8 @@ inline Words compileQuery(const std::string& body, std::vector<std::string> apar
 }
 
 inline std::vector<compiler::LintFinding> findings(const Words& words) {
-    const Result<compiler::SpirvLint> lint = compiler::lintSpirv(words);
-    EXPECT_TRUE(lint) << toString(lint.error());
-    return lint ? lint->findings : std::vector<compiler::LintFinding>();
+    const compiler::SpirvLint lint = must(compiler::lintSpirv(words));
+    return lint.findings;
 }
 
 // Returns the findings as "error query-proceeds", sorted.

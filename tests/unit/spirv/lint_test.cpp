@@ -1,5 +1,6 @@
 #include "spirv/lint.h"
 
+#include "support/must.h"
 #include "unit/spirv/lint_shaders.h"
 
 #include <gtest/gtest.h>
@@ -58,20 +59,18 @@ TEST(LintPipelines, MeasuresPayloads) {
 }
 
 TEST(Lint, CountsAndNamesStages) {
-    const Result<compiler::SpirvLint> lint =
-        compiler::lintSpirv(compileQuery(functionsWith("t"), {"isVisible"}));
-    ASSERT_TRUE(lint);
-    EXPECT_EQ(lint->stages, std::vector<std::string>{"GLCompute"});
-    EXPECT_EQ(lint->statistics.functions, 2U);
-    EXPECT_EQ(lint->statistics.rayQueries, 2U);
-    EXPECT_EQ(lint->statistics.traces, 0U);
-    const Result<compiler::SpirvLint> traces = compiler::lintSpirv(compile(
+    const compiler::SpirvLint lint =
+        must(compiler::lintSpirv(compileQuery(functionsWith("t"), {"isVisible"})));
+    EXPECT_EQ(lint.stages, std::vector<std::string>{"GLCompute"});
+    EXPECT_EQ(lint.statistics.functions, 2U);
+    EXPECT_EQ(lint.statistics.rayQueries, 2U);
+    EXPECT_EQ(lint.statistics.traces, 0U);
+    const compiler::SpirvLint traces = must(compiler::lintSpirv(compile(
         compiler::ShaderStage::RayGeneration, std::string(kTraceHead) +
                                                   "layout(location = 0) rayPayloadEXT vec4 payload;\n"
-                                                  "void main() { payload = vec4(0); TRACE(0); TRACE(0); }"));
-    ASSERT_TRUE(traces);
-    EXPECT_EQ(traces->stages, std::vector<std::string>{"RayGenerationKHR"});
-    EXPECT_EQ(traces->statistics.traces, 2U);
+                                                  "void main() { payload = vec4(0); TRACE(0); TRACE(0); }")));
+    EXPECT_EQ(traces.stages, std::vector<std::string>{"RayGenerationKHR"});
+    EXPECT_EQ(traces.statistics.traces, 2U);
 }
 
 TEST(Lint, ReportsWhatIsNotValid) {
@@ -81,15 +80,12 @@ TEST(Lint, ReportsWhatIsNotValid) {
     Words operand = good;
     operand.back() = 2U << 16U | 253U;  // the end of the function, as a return of two words
     for (const Words& words : {bound, Words(good.begin(), good.end() - 1)}) {
-        const Result<compiler::SpirvLint> lint = compiler::lintSpirv(words);
-        ASSERT_FALSE(lint);
-        EXPECT_EQ(lint.error().id, "spirv-invalid");
-        EXPECT_FALSE(lint.error().hint.empty());
+        const Diagnostic lint = mustFail(compiler::lintSpirv(words));
+        EXPECT_EQ(lint.id, "spirv-invalid");
+        EXPECT_FALSE(lint.hint.empty());
     }
     for (const Words& words : {Words(), Words(5, 7U), operand}) {
-        const Result<compiler::SpirvLint> lint = compiler::lintSpirv(words);
-        ASSERT_FALSE(lint);
-        EXPECT_EQ(lint.error().id, "spirv-format");
+        EXPECT_EQ(mustFail(compiler::lintSpirv(words)).id, "spirv-format");
     }
 }
 

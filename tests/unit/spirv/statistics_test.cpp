@@ -1,6 +1,7 @@
 #include "spirv/statistics.h"
 
 #include "spirv/reader.h"
+#include "support/must.h"
 
 #include <gtest/gtest.h>
 
@@ -36,13 +37,12 @@ TEST(SpirvStatistics, CountsWithinFunctionsAlone) {
         first(56, 1),                               // OpFunctionEnd
     };
     words.insert(words.end(), body.begin(), body.end());
-    const Result<compiler::SpirvStatistics> statistics = compiler::measureSpirv(words);
-    ASSERT_TRUE(statistics) << toString(statistics.error());
-    EXPECT_EQ(statistics->bytes, words.size() * 4);
-    EXPECT_EQ(statistics->instructions, 7U);
-    EXPECT_EQ(statistics->textureFetches, 2U);
-    EXPECT_EQ(statistics->rayQueries, 1U);
-    EXPECT_EQ(statistics->branches, 2U);
+    const compiler::SpirvStatistics statistics = must(compiler::measureSpirv(words));
+    EXPECT_EQ(statistics.bytes, words.size() * 4);
+    EXPECT_EQ(statistics.instructions, 7U);
+    EXPECT_EQ(statistics.textureFetches, 2U);
+    EXPECT_EQ(statistics.rayQueries, 1U);
+    EXPECT_EQ(statistics.branches, 2U);
 }
 
 TEST(SpirvStatistics, ReportsWhatIsNoModule) {
@@ -54,10 +54,9 @@ TEST(SpirvStatistics, ReportsWhatIsNoModule) {
     tooLong.push_back(first(19, 3));
     tooLong.push_back(1);
     for (const auto& words : {std::vector<std::uint32_t>{}, {kMagic}, wrongMagic, zeroLength, tooLong}) {
-        const Result<compiler::SpirvStatistics> statistics = compiler::measureSpirv(words);
-        ASSERT_FALSE(statistics);
-        EXPECT_EQ(statistics.error().id, "spirv-format");
-        EXPECT_FALSE(statistics.error().message.empty());
+        const Diagnostic statistics = mustFail(compiler::measureSpirv(words));
+        EXPECT_EQ(statistics.id, "spirv-format");
+        EXPECT_FALSE(statistics.message.empty());
     }
 }
 
