@@ -197,7 +197,7 @@ TEST(Packs, ThePageAddsALobe) {
     const test::TemporaryFolder folder;
     test::writePrintedFiles("material_features.md", folder.path(),
                             {"wax/wax.json", "wax/wax.glsl", "wax/wax_bsdf.glsl"});
-    const const materials::MaterialModel* model =
+    const materials::MaterialModel* model =
         must(materials::loadMaterialModel(std::vector{folder.path().string()}));
     materials::Material material = blackMaterial(*model);
     material.give("EXAMPLE_materials_wax");
@@ -219,7 +219,7 @@ TEST(Packs, ErrorsOfGlslNameTheFileTheLineAndTheFeature) {
                         "                         inout Surface surface) {\n"
                         "    nonsense = 1.0;\n"
                         "}\n"));
-    const const materials::MaterialModel* model =
+    const materials::MaterialModel* model =
         must(materials::loadMaterialModel(std::vector{folder.path().string()}));
     materials::Material material = blackMaterial(*model);
     material.give("EXAMPLE_materials_retroreflection");

@@ -104,7 +104,7 @@ package::Effect findEffect(const std::vector<EffectDeclaration>& effects, std::s
 // If packs have more inputs than fit, these take bits from 31 downwards. A number stands for the first 64 bits.
 class FeatureMask {
 public:
-    static constexpr int kBits = 2048;
+    static constexpr int kBits = 4096;
 
     constexpr FeatureMask() = default;
     constexpr FeatureMask(std::uint64_t shared) : words_{shared} {}
