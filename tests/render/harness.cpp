@@ -145,14 +145,14 @@ PosedScene::PosedScene(gltf::Scene posed, std::shared_ptr<const LoadedScene> loa
     }
 }
 
-MotionStatistics PosedScene::update(MotionView::Builds builds) {
+GpuScene::MotionStatistics PosedScene::update(MotionView::Builds builds) {
     session::poseSceneView(scene, data);
     MotionView motion = data.motion();
     motion.builds = builds;
     const Status updated = gpuScene->updateAndWait(motion);
     EXPECT_TRUE(updated.ok()) << (updated ? "" : toString(updated.error()));
-    const Result<MotionStatistics> statistics = gpuScene->motion();
-    return statistics ? *statistics : MotionStatistics{};
+    const Result<GpuScene::MotionStatistics> statistics = gpuScene->motion();
+    return statistics ? *statistics : GpuScene::MotionStatistics{};
 }
 
 RenderSetup defaultSetup(const gltf::Scene& scene, std::uint32_t width, std::uint32_t height) {

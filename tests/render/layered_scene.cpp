@@ -8,7 +8,7 @@
 namespace glint::testing {
 
 LayerSet::LayerSet(Renderer& renderer) {
-    for (const LayerImage& layer : renderer.layers()) {
+    for (const Renderer::LayerImage& layer : renderer.layers()) {
         Result<LayerValues> values = renderer.readLayer(layer.name);
         if (!values) {
             ADD_FAILURE() << toString(values.error());

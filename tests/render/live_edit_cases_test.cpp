@@ -120,7 +120,7 @@ TEST_F(LiveEditErrors, Values) {
     source.textures.push_back(source.textures[0]);
     expectError(editor().addMaterial(source.view()), "scene-edit-value", "two textures");
     expectError(editor().addMesh({}), "scene-edit-value");
-    EditedPrimitive primitive{edited_->primitive(0, 0), edited_->materials[1].handle};
+    SceneEditor::EditedPrimitive primitive{edited_->primitive(0, 0), edited_->materials[1].handle};
     primitive.geometry.indices = {};
     expectError(editor().addMesh(std::span(&primitive, 1)), "scene-edit-value", "no triangle");
     LightView light;
@@ -144,7 +144,7 @@ TEST(LiveEditTextures, ATrustedTextureIsNotReplaced) {
 }
 
 TEST_F(LiveEditErrors, Geometry) {
-    EditedPrimitive primitive{edited_->primitive(0, 0), edited_->materials[1].handle};
+    SceneEditor::EditedPrimitive primitive{edited_->primitive(0, 0), edited_->materials[1].handle};
     const std::uint32_t outside[] = {0, 1, 99};
     primitive.geometry.indices = outside;
     expectError(editor().addMesh(std::span(&primitive, 1)), "scene-index");
@@ -160,9 +160,9 @@ TEST_F(LiveEditErrors, Geometry) {
     // The package has no pass that moves vertices.
     const std::vector<std::array<float, 3>> differences(primitive.geometry.positions.size());
     target.positions = differences;
-    const Result<AddedMesh> mesh = editor().addMesh(std::span(&primitive, 1));
+    const Result<SceneEditor::AddedMesh> mesh = editor().addMesh(std::span(&primitive, 1));
     ASSERT_TRUE(mesh);
-    PlacedMesh placed{mesh->mesh};
+    SceneEditor::PlacedMesh placed{mesh->mesh};
     const std::array<float, 2> weights{1, 1};
     placed.morphWeights = weights;
     expectError(editor().addInstance(placed), "scene-motion");
@@ -178,11 +178,12 @@ TEST(LiveEditVertices, ChangeInPlace) {
     ASSERT_TRUE(edited.ok());
     SceneEditor& editor = edited.editor();
     const PrimitiveView flat = edited.primitive(1, 0);
-    const EditedPrimitive primitive{flat, edited.materials[1].handle};
-    const Result<AddedMesh> mesh = editor.addMesh(std::span(&primitive, 1), MeshUse::Changing);
+    const SceneEditor::EditedPrimitive primitive{flat, edited.materials[1].handle};
+    const Result<SceneEditor::AddedMesh> mesh =
+        editor.addMesh(std::span(&primitive, 1), SceneEditor::MeshUse::Changing);
     ASSERT_TRUE(mesh);
     const std::array<float, 12> rows{1, 0, 0, -0.6F, 0, 1, 0, 0, 0, 0, 1, -2.2F};
-    const Result<AddedInstance> cloth = editor.addInstance({mesh->mesh, rows});
+    const Result<SceneEditor::AddedInstance> cloth = editor.addInstance({mesh->mesh, rows});
     ASSERT_TRUE(cloth);
     const LinearImage before = edited.picture();
     std::vector<std::array<float, 3>> positions(flat.positions.begin(), flat.positions.end());
@@ -199,8 +200,9 @@ TEST(LiveEditVertices, ChangeInPlace) {
     // The same vertices in a mesh of their own.
     PrimitiveView bent = flat;
     bent.positions = positions;
-    const EditedPrimitive other{bent, edited.materials[1].handle};
-    const Result<AddedMesh> fresh = editor.addMesh(std::span(&other, 1), MeshUse::Changing);
+    const SceneEditor::EditedPrimitive other{bent, edited.materials[1].handle};
+    const Result<SceneEditor::AddedMesh> fresh =
+        editor.addMesh(std::span(&other, 1), SceneEditor::MeshUse::Changing);
     ASSERT_TRUE(fresh);
     ASSERT_TRUE(editor.setInstanceMesh(cloth->instance, fresh->mesh));
     EXPECT_EQ(edited.picture().pixels, after.pixels);
@@ -220,7 +222,7 @@ TEST_F(LiveEditErrors, Keys) {
     source.keys = {source.keys.front()};
     const Result<MaterialHandle> added = editor().addMaterial(source.view());
     ASSERT_TRUE(added);
-    const EditedPrimitive primitive{edited_->primitive(0, 0), *added};
+    const SceneEditor::EditedPrimitive primitive{edited_->primitive(0, 0), *added};
     expectError(editor().addMesh(std::span(&primitive, 1)), "scene-edit-key", "no key");
     ASSERT_TRUE(editor().removeMaterial(*added));
     // A key that reads what it says is not there.
@@ -273,7 +275,7 @@ TEST_F(LiveEditErrors, AKeyWithoutACase) {
     edited_->scene.materials[2] = catalogueScene().materials[2];
     const Result<MaterialHandle> added = editor().addMaterial(source.view());
     ASSERT_TRUE(added) << toString(added.error());
-    const EditedPrimitive primitive{edited_->primitive(0, 0), *added};
+    const SceneEditor::EditedPrimitive primitive{edited_->primitive(0, 0), *added};
     expectError(editor().addMesh(std::span(&primitive, 1)), "scene-edit-case", "baseColorTexture");
     expectError(editor().setInstanceMaterial(edited_->instances[0].handle, 0, *added), "scene-edit-case",
                 "clearcoat");
@@ -337,7 +339,7 @@ TEST(LiveEditFallback, ShadesAndReportsKeysWithoutACase) {
         edited.editor().setInstanceMaterial(edited.instances[1].handle, 0, *added);
     ASSERT_TRUE(report) << toString(report.error());
     ASSERT_EQ(report->missing.size(), 1U);
-    const MissingCase& missing = report->missing.front();
+    const EditReport::MissingCase& missing = report->missing.front();
     EXPECT_EQ(missing.material, *added);
     EXPECT_NE(std::ranges::find(missing.names, "clearcoat"), missing.names.end());
     EXPECT_NE(std::ranges::find(missing.names, "baseColorTexture"), missing.names.end());
@@ -382,14 +384,14 @@ TEST(LiveEditGrowth, EveryBufferGrowsAndShrinks) {
         const Result<MaterialHandle> material = editor.addMaterial(edited.source(kind).view());
         ASSERT_TRUE(material);
         edited.materials.push_back({*material, kind, false});
-        const EditedPrimitive primitive{edited.primitive(1, 0), *material};
-        const Result<AddedMesh> mesh = editor.addMesh(std::span(&primitive, 1));
+        const SceneEditor::EditedPrimitive primitive{edited.primitive(1, 0), *material};
+        const Result<SceneEditor::AddedMesh> mesh = editor.addMesh(std::span(&primitive, 1));
         ASSERT_TRUE(mesh);
         edited.meshes.push_back({mesh->mesh, 1, {edited.materials.size() - 1}, false});
         const float x = static_cast<float>(i % 8) * 0.5F - 2.0F;
         const float y = static_cast<float>(i / 8) * 0.4F - 0.8F;
         const std::array<float, 12> rows{0.3F, 0, 0, x, 0, 0.3F, 0, y, 0, 0, 0.3F, -2.0F - 0.01F * x};
-        const Result<AddedInstance> instance = editor.addInstance({mesh->mesh, rows});
+        const Result<SceneEditor::AddedInstance> instance = editor.addInstance({mesh->mesh, rows});
         ASSERT_TRUE(instance);
         edited.instances.push_back({instance->instance, edited.meshes.size() - 1, {}, rows, true, false});
         LightView light;

@@ -231,12 +231,12 @@ private:
         ++made["add mesh"];
         EditedScene::Mesh mesh;
         mesh.shape = static_cast<std::uint32_t>(below(kShapes));
-        std::vector<EditedPrimitive> primitives;
+        std::vector<SceneEditor::EditedPrimitive> primitives;
         for (std::size_t i = 0; i < primitivesOfShape(mesh.shape); ++i) {
             mesh.materials.push_back(below(edited_.materials.size()));
             primitives.push_back({edited_.primitive(mesh.shape, i), material(mesh.materials.back())});
         }
-        const Result<AddedMesh> added = editor().addMesh(primitives);
+        const Result<SceneEditor::AddedMesh> added = editor().addMesh(primitives);
         ASSERT_TRUE(added) << toString(added.error());
         mesh.handle = added->mesh;
         edited_.meshes.push_back(mesh);
@@ -312,7 +312,7 @@ private:
         instance.objectToWorld = anywhere();
         instance.visible = below(5) != 0;
         const std::vector<MaterialHandle> own = handlesOf(instance.materials);
-        const Result<AddedInstance> added = editor().addInstance(
+        const Result<SceneEditor::AddedInstance> added = editor().addInstance(
             {edited_.meshes[instance.mesh].handle, instance.objectToWorld, instance.visible, own});
         ASSERT_TRUE(added) << toString(added.error());
         instance.handle = added->instance;

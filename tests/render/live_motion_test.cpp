@@ -191,7 +191,7 @@ public:
             }
         }
     }
-    std::optional<SurfacePlace> placeAt(std::uint32_t x, std::uint32_t y) {
+    std::optional<Renderer::SurfacePlace> placeAt(std::uint32_t x, std::uint32_t y) {
         const auto place = renderer_->readPlace(x, y);
         EXPECT_TRUE(place);
         return place ? *place : std::nullopt;
@@ -236,12 +236,12 @@ private:
         Instance instance;
         instance.take(data_.instances[like]);
         instance.view.objectToWorld = rowsAt(place);
-        PlacedMesh placed;
+        SceneEditor::PlacedMesh placed;
         placed.mesh = editor().mesh(instance.view.mesh);
         placed.objectToWorld = instance.view.objectToWorld;
         placed.joints = instance.joints;
         placed.morphWeights = instance.weights;
-        const Result<AddedInstance> made = editor().addInstance(placed);
+        const Result<SceneEditor::AddedInstance> made = editor().addInstance(placed);
         ASSERT_TRUE(made) << toString(made.error());
         instance.handle = made->instance;
         instance.view.visible = true;
@@ -344,11 +344,11 @@ TEST(LiveMotion, EditsOutlastPosesThatLeaveThemAlone) {
     const InstanceHandle square = playing.handleOf(4);
     playing.frame();
     playing.drain();
-    std::optional<SurfacePlace> seen;
+    std::optional<Renderer::SurfacePlace> seen;
     std::uint32_t x = 0;
     std::uint32_t y = 0;
     for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
-        const std::optional<SurfacePlace> place = playing.placeAt(i % kWidth, i / kWidth);
+        const std::optional<Renderer::SurfacePlace> place = playing.placeAt(i % kWidth, i / kWidth);
         if (place && place->handle == square) {
             seen = place;
             x = i % kWidth;
@@ -363,7 +363,7 @@ TEST(LiveMotion, EditsOutlastPosesThatLeaveThemAlone) {
     playing.pose(random);
     playing.frame();
     playing.drain();
-    const std::optional<SurfacePlace> after = playing.placeAt(x, y);
+    const std::optional<Renderer::SurfacePlace> after = playing.placeAt(x, y);
     EXPECT_TRUE(!after || after->handle != square) << "hidden";
 }
 

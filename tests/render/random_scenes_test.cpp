@@ -193,20 +193,20 @@ private:
         std::vector<MeshHandle> byNumber(scene.meshes.size());
         for (std::size_t i = 0; i < data.primitives.size();) {
             const std::uint32_t mesh = data.primitives[i].mesh;
-            std::vector<EditedPrimitive> primitives;
+            std::vector<SceneEditor::EditedPrimitive> primitives;
             for (; i < data.primitives.size() && data.primitives[i].mesh == mesh; ++i) {
                 const gltf::Primitive& primitive =
                     scene.meshes[mesh].primitives[data.primitives[i].primitive];
                 primitives.push_back(
                     {data.primitives[i], materials[static_cast<std::size_t>(primitive.material)]});
             }
-            const Result<AddedMesh> added = editor().addMesh(primitives);
+            const Result<SceneEditor::AddedMesh> added = editor().addMesh(primitives);
             ASSERT_TRUE(added) << toString(added.error());
             byNumber[mesh] = added->mesh;
             meshes_.push_back(added->mesh);
         }
         for (const InstanceView& view : data.instances) {
-            const Result<AddedInstance> added =
+            const Result<SceneEditor::AddedInstance> added =
                 editor().addInstance({byNumber[view.mesh], view.objectToWorld, view.visible});
             ASSERT_TRUE(added) << toString(added.error());
             instances_.push_back(added->instance);

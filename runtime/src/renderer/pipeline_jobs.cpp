@@ -293,8 +293,8 @@ VkResult listAll(const Structure& empty, const Ask& ask, std::vector<Structure>&
     return result;
 }
 
-PipelineStatistic statisticOf(const VkPipelineExecutableStatisticKHR& raw) {
-    PipelineStatistic statistic{textOf(raw.name), textOf(raw.description), raw.value.u64};
+PipelineStatistics::Statistic statisticOf(const VkPipelineExecutableStatisticKHR& raw) {
+    PipelineStatistics::Statistic statistic{textOf(raw.name), textOf(raw.description), raw.value.u64};
     switch (raw.format) {
         case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_BOOL32_KHR:
             statistic.value = raw.value.b32 != VK_FALSE;
@@ -313,7 +313,8 @@ PipelineStatistic statisticOf(const VkPipelineExecutableStatisticKHR& raw) {
 
 }  // namespace
 
-Result<std::vector<PipelineExecutable>> readExecutables(const Context::State& context, VkPipeline pipeline) {
+Result<std::vector<PipelineStatistics::Executable>> readExecutables(const Context::State& context,
+                                                                    VkPipeline pipeline) {
     const DeviceTable& vk = context.vk;
     const VkDevice device = context.handles.device;
     VkPipelineInfoKHR info{};
@@ -331,13 +332,13 @@ Result<std::vector<PipelineExecutable>> readExecutables(const Context::State& co
     if (result != VK_SUCCESS) {
         return vulkanError("vkGetPipelineExecutablePropertiesKHR", result);
     }
-    std::vector<PipelineExecutable> executables;
+    std::vector<PipelineStatistics::Executable> executables;
     for (std::uint32_t i = 0; i < properties.size(); ++i) {
-        PipelineExecutable executable{textOf(properties[i].name),
-                                      textOf(properties[i].description),
-                                      properties[i].stages,
-                                      properties[i].subgroupSize,
-                                      {}};
+        PipelineStatistics::Executable executable{textOf(properties[i].name),
+                                                  textOf(properties[i].description),
+                                                  properties[i].stages,
+                                                  properties[i].subgroupSize,
+                                                  {}};
         VkPipelineExecutableInfoKHR which{};
         which.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR;
         which.pipeline = pipeline;

@@ -29,17 +29,17 @@ void recordCopy(const Renderer::State& state, VkCommandBuffer commands, const De
     recordDependency(state.context, commands, kCopyToHost);
 }
 
-PixelPath pathOf(std::uint32_t path, std::uint32_t outcome) {
+Renderer::PixelPath pathOf(std::uint32_t path, std::uint32_t outcome) {
     if (path == gpu::kPathScreen) {
-        return PixelPath::Screen;
+        return Renderer::PixelPath::Screen;
     }
     if (path == gpu::kPathHit) {
-        return PixelPath::Hit;
+        return Renderer::PixelPath::Hit;
     }
     if (path == gpu::kPathMiss) {
-        return PixelPath::Miss;
+        return Renderer::PixelPath::Miss;
     }
-    return outcome == gpu::kRayNoSurface ? PixelPath::NoSurface : PixelPath::NoRay;
+    return outcome == gpu::kRayNoSurface ? Renderer::PixelPath::NoSurface : Renderer::PixelPath::NoRay;
 }
 
 template <typename Pixel>
@@ -144,7 +144,7 @@ Result<std::vector<std::uint8_t>> readFrameBuffer(Renderer::State& state, Comman
     return std::vector<std::uint8_t>(target.mapped, target.mapped + buffer.bytes);
 }
 
-std::vector<LayerImage> Renderer::layers() const {
+std::vector<Renderer::LayerImage> Renderer::layers() const {
     std::vector<LayerImage> images;
     for (std::size_t i = 0; i < state_->size.layers.size(); ++i) {
         const package::PackageLayer& layer = state_->size.layers[i];
@@ -192,7 +192,7 @@ Result<std::vector<std::uint8_t>> Renderer::readSurfaces() try {
 }
 GLINT_CATCH
 
-Result<std::optional<SurfacePlace>> Renderer::readPlace(std::uint32_t x, std::uint32_t y) try {
+Result<std::optional<Renderer::SurfacePlace>> Renderer::readPlace(std::uint32_t x, std::uint32_t y) try {
     if (!state_->recorded) {
         return frameNotRecorded();
     }
@@ -224,7 +224,7 @@ Result<LinearImage> Renderer::readOutput() try {
 }
 GLINT_CATCH
 
-Result<std::vector<PixelPath>> Renderer::readCoverage(package::Effect effect) try {
+Result<std::vector<Renderer::PixelPath>> Renderer::readCoverage(package::Effect effect) try {
     if (!state_->recorded) {
         return frameNotRecorded();
     }

@@ -349,7 +349,7 @@ GLINT_CATCH
 Result<std::vector<PassTiming>> Renderer::timings() try { return passTimings(*state_); }
 GLINT_CATCH
 
-PipelineProgress Renderer::pipelineProgress() const {
+Renderer::PipelineProgress Renderer::pipelineProgress() const {
     const auto& background = state_->pipelines.background;
     PipelineProgress progress = background ? background->progress() : PipelineProgress{};
     progress.draft = state_->pipelines.draft;

@@ -201,7 +201,7 @@ Result<Shading> shadingOf(const SceneStore& store, MaterialHandle material, Attr
 }
 
 void addTo(EditReport& report, const CaseTable& cases, MaterialHandle material, const Shading& shading) {
-    const bool listed = std::ranges::any_of(report.missing, [&](const MissingCase& other) {
+    const bool listed = std::ranges::any_of(report.missing, [&](const EditReport::MissingCase& other) {
         return other.material == material && other.features == shading.features;
     });
     if (shading.missing && !listed) {

@@ -21,7 +21,8 @@ Diagnostic notFinite(const std::string& where) {
                      "give finite numbers");
 }
 
-Status checkPrimitive(const SceneStore& store, const EditedPrimitive& primitive, const std::string& where) {
+Status checkPrimitive(const SceneStore& store, const SceneEditor::EditedPrimitive& primitive,
+                      const std::string& where) {
     const PrimitiveView& view = primitive.geometry;
     GLINT_TRY_DO(checkGeometry(view, where));
     if (view.indices.empty()) {
@@ -84,7 +85,8 @@ AttributeMask attributesOf(const Package& package, const PrimitiveView& primitiv
     return mask;
 }
 
-Result<AddedMesh> SceneEditor::addMesh(std::span<const EditedPrimitive> primitives, MeshUse use) try {
+Result<SceneEditor::AddedMesh> SceneEditor::addMesh(std::span<const EditedPrimitive> primitives,
+                                                    MeshUse use) try {
     if (primitives.empty()) {
         return makeError("scene-edit-value", "", "the mesh has no primitive", "give at least one");
     }
@@ -209,7 +211,7 @@ Status checkRoom(const SceneStore& store, const StoredMesh& mesh, const std::str
 
 }  // namespace
 
-Result<AddedInstance> SceneEditor::addInstance(const PlacedMesh& placed) try {
+Result<SceneEditor::AddedInstance> SceneEditor::addInstance(const PlacedMesh& placed) try {
     const std::string where = placeOf("instance", store_->instanceSlots.next().index);
     const StoredMesh* const mesh = store_->meshes.find(placed.mesh);
     if (mesh == nullptr) {

@@ -153,7 +153,7 @@ Status GpuScene::updateAndWait(const MotionView& motion) try {
 }
 GLINT_CATCH
 
-Result<MotionStatistics> GpuScene::motion() const try { return readMotion(*state_); }
+Result<GpuScene::MotionStatistics> GpuScene::motion() const try { return readMotion(*state_); }
 GLINT_CATCH
 
 GpuScene::State& GpuScene::state() {

@@ -241,7 +241,7 @@ struct SceneStore {
     std::vector<bool> lastVisible;
     std::vector<gpu::LightRecord> lastLights;
     std::optional<Timer> timer;  // deform, BLASes, TLAS
-    MotionStatistics statistics;
+    GpuScene::MotionStatistics statistics;
     bool posed = false;
 
     bool keeps() const {
@@ -269,7 +269,7 @@ struct MeshContent {
 Result<MeshHandle> addMesh(SceneStore& store, const Package& package, const MeshContent& content);
 // Gives a primitive of a mesh that may change other vertices, which have been checked.
 Status changeVertices(SceneStore& store, MeshHandle mesh, std::size_t primitive,
-                      const VertexValues& vertices);
+                      const SceneEditor::VertexValues& vertices);
 // Retires a mesh that no instance has.
 void retireMesh(SceneStore& store, MeshHandle mesh);
 
@@ -420,7 +420,7 @@ Status uploadScene(GpuScene::State& state, const Package& package, const Package
 // These implement GpuScene::update() and GpuScene::motion().
 Status recordPose(GpuScene::State& state, VkCommandBuffer commands, const MotionView& view,
                   std::uint64_t frame);
-Result<MotionStatistics> readMotion(const GpuScene::State& state);
+Result<GpuScene::MotionStatistics> readMotion(const GpuScene::State& state);
 
 std::string placeOf(const char* what, std::uint32_t index);
 // Error "scene-edit-handle".

@@ -215,7 +215,7 @@ Result<MeshHandle> addMesh(SceneStore& store, const Package& package, const Mesh
 }
 
 Status changeVertices(SceneStore& store, MeshHandle handle, std::size_t primitive,
-                      const VertexValues& vertices) {
+                      const SceneEditor::VertexValues& vertices) {
     StoredMesh& mesh = store.meshes.at(handle.index);
     StoredPrimitive& changed = mesh.primitives[primitive];
     const Buffer& buffer = changed.device.buffer;

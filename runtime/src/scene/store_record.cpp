@@ -365,10 +365,10 @@ private:
     }
 
     void takeStatistics() {
-        MotionStatistics& statistics = store_.statistics;
+        GpuScene::MotionStatistics& statistics = store_.statistics;
         statistics = {};
         statistics.deformed = static_cast<std::uint32_t>(store_.reshaped.size());
-        statistics.topLevel = static_cast<MotionStatistics::TopLevel>(tlasAction_);
+        statistics.topLevel = static_cast<GpuScene::MotionStatistics::TopLevel>(tlasAction_);
         for (const auto& [index, part, action, surface] : shapes_) {
             OwnShape& shape = *store_.instanceSlots.at(index).shape;
             shape.isBuilt = true;
@@ -406,9 +406,12 @@ private:
     VkDeviceSize tlasScratchBytes_ = 0;
 };
 
-static_assert(static_cast<int>(BuildAction::Keep) == static_cast<int>(MotionStatistics::TopLevel::Kept));
-static_assert(static_cast<int>(BuildAction::Refit) == static_cast<int>(MotionStatistics::TopLevel::Updated));
-static_assert(static_cast<int>(BuildAction::Build) == static_cast<int>(MotionStatistics::TopLevel::Rebuilt));
+static_assert(static_cast<int>(BuildAction::Keep) ==
+              static_cast<int>(GpuScene::MotionStatistics::TopLevel::Kept));
+static_assert(static_cast<int>(BuildAction::Refit) ==
+              static_cast<int>(GpuScene::MotionStatistics::TopLevel::Updated));
+static_assert(static_cast<int>(BuildAction::Build) ==
+              static_cast<int>(GpuScene::MotionStatistics::TopLevel::Rebuilt));
 
 }  // namespace
 

@@ -19,8 +19,10 @@
 namespace glint {
 namespace {
 
-static_assert(static_cast<std::uint32_t>(RecordsBy::CustomIndexTable) == gpu::kRecordsByCustomIndexTable);
-static_assert(static_cast<std::uint32_t>(RecordsBy::InstanceTable) == gpu::kRecordsByInstanceTable);
+static_assert(static_cast<std::uint32_t>(EngineSceneView::RecordsBy::CustomIndexTable) ==
+              gpu::kRecordsByCustomIndexTable);
+static_assert(static_cast<std::uint32_t>(EngineSceneView::RecordsBy::InstanceTable) ==
+              gpu::kRecordsByInstanceTable);
 
 std::string geometryPlace(std::size_t index) {
     return "geometry " + std::to_string(index);
@@ -73,7 +75,7 @@ Result<const package::PrimitiveEntry*> entryOf(const PackageScene& known, std::s
 Result<std::vector<gpu::GeometryRecord>> makeGeometries(const EngineSceneView& scene) {
     std::vector<gpu::GeometryRecord> records;
     for (std::size_t i = 0; i < scene.geometries.size(); ++i) {
-        const EngineGeometryView& view = scene.geometries[i];
+        const EngineSceneView::Geometry& view = scene.geometries[i];
         if (view.instance >= scene.instances.size()) {
             return outOfRange(geometryPlace(i), "instance", view.instance, scene.instances.size());
         }
@@ -112,8 +114,8 @@ Result<std::vector<gpu::LightRecord>> makeLights(std::span<const LightView> ligh
 
 // The package's materials, with the host's numbers of textures and samplers.
 Result<std::vector<std::uint8_t>> makeMaterials(const Context::State& context, const PackageScene& known,
-                                                std::span<const EngineTextureView> textures,
-                                                std::span<const EngineSamplerView> samplers) {
+                                                std::span<const EngineSceneView::Texture> textures,
+                                                std::span<const EngineSceneView::Sampler> samplers) {
     if (textures.size() != known.textures.size() || samplers.size() != known.samplers.size()) {
         return makeError("engine-scene", "",
                          "there are " + std::to_string(textures.size()) + " textures and " +
@@ -124,7 +126,7 @@ Result<std::vector<std::uint8_t>> makeMaterials(const Context::State& context, c
     }
     std::vector<ImageView> images;
     for (std::size_t i = 0; i < known.textures.size(); ++i) {
-        const EngineTextureView& texture = textures[i];
+        const EngineSceneView::Texture& texture = textures[i];
         if (texture.width == 0 || texture.height == 0) {
             return makeError("engine-scene", "texture " + std::to_string(i), "it has no texels",
                              "give the size of its finest level");
@@ -176,7 +178,7 @@ Status appendValues(const PackageScene& known, std::span<const ChangingMaterial>
 // Gives a geometry the values that the host has named for it.
 Status takeMaterial(std::size_t index, std::uint32_t material, std::size_t packageMaterials,
                     std::span<const ChangingMaterial> values, gpu::GeometryRecord& geometry) {
-    if (material == EngineGeometryView::kOfPackage) {
+    if (material == EngineSceneView::Geometry::kOfPackage) {
         return okStatus();
     }
     if (material >= values.size()) {
@@ -336,7 +338,7 @@ Status recordContent(EngineScene::State& state, VkCommandBuffer commands, const 
                      {},
                      recordFields(package)};
     std::uint32_t leastInstances = 0;
-    for (const EngineGeometryView& view : scene.geometries) {
+    for (const EngineSceneView::Geometry& view : scene.geometries) {
         host.primitives.push_back({view.mesh, view.primitive, view.material});
         leastInstances = std::max(leastInstances, view.instance + 1);
     }

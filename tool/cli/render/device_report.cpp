@@ -98,7 +98,7 @@ std::string tableOf(std::span<const PipelineStatistics> pipelines) {
         rows.front().emplace_back(info.column);
     }
     for (const PipelineStatistics& pipeline : pipelines) {
-        for (const PipelineExecutable& executable : pipeline.executables) {
+        for (const PipelineStatistics::Executable& executable : pipeline.executables) {
             const inspect::PipelineFacts facts = inspect::factsOf(executable);
             std::vector<std::string>& row = rows.emplace_back();
             row = {pipeline.name, executable.name,
