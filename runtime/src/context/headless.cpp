@@ -21,15 +21,13 @@ VKAPI_ATTR VkBool32 VKAPI_CALL collectMessage(VkDebugUtilsMessageSeverityFlagBit
 }
 
 VkDebugUtilsMessengerCreateInfoEXT messengerInfo(ValidationLog& log) {
-    VkDebugUtilsMessengerCreateInfoEXT info{};
-    info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
-    info.messageSeverity =
-        VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-    // GENERAL is left out, because its messages from the loader are about other drivers' files.
-    info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
-    info.pfnUserCallback = collectMessage;
-    info.pUserData = &log;
-    return info;
+    return {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+            .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
+                               VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+            // GENERAL is left out, because its messages from the loader are about other drivers' files.
+            .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
+            .pfnUserCallback = collectMessage,
+            .pUserData = &log};
 }
 
 bool hasLayer(const GlobalTable& table, const char* name) {
@@ -86,27 +84,24 @@ Status createInstance(const GlobalTable& table, const HeadlessOptions& options, 
         extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     }
 
-    VkApplicationInfo application{};
-    application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
-    application.pApplicationName = "glint";
-    application.apiVersion = DeviceRequirements::kApiVersion;
+    VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                  .pApplicationName = "glint",
+                                  .apiVersion = DeviceRequirements::kApiVersion};
 
     VkDebugUtilsMessengerCreateInfoEXT messenger = messengerInfo(state.log);
     constexpr VkValidationFeatureEnableEXT kEnabled =
         VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
-    VkValidationFeaturesEXT validationFeatures{};
-    validationFeatures.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
-    validationFeatures.pNext = &messenger;
-    validationFeatures.enabledValidationFeatureCount = 1;
-    validationFeatures.pEnabledValidationFeatures = &kEnabled;
+    VkValidationFeaturesEXT validationFeatures{.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+                                               .pNext = &messenger,
+                                               .enabledValidationFeatureCount = 1,
+                                               .pEnabledValidationFeatures = &kEnabled};
 
-    VkInstanceCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
-    info.pApplicationInfo = &application;
-    info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
-    info.ppEnabledExtensionNames = extensions.data();
-    info.enabledLayerCount = static_cast<std::uint32_t>(layers.size());
-    info.ppEnabledLayerNames = layers.data();
+    VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                              .pApplicationInfo = &application,
+                              .enabledLayerCount = static_cast<std::uint32_t>(layers.size()),
+                              .ppEnabledLayerNames = layers.data(),
+                              .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+                              .ppEnabledExtensionNames = extensions.data()};
     if (validation == Validation::On) {
         info.pNext = &messenger;
     } else if (validation == Validation::Synchronization) {
@@ -234,16 +229,14 @@ Status createDevice(Context::State& state, std::span<const std::string> further)
     state.handles.samplerAnisotropy = anisotropy == VK_TRUE;
     state.handles.queueFamily = chooseQueueFamily(state);
     const float priority = 1.0F;
-    VkDeviceQueueCreateInfo queue{};
-    queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
-    queue.queueFamilyIndex = state.handles.queueFamily;
-    queue.queueCount = 1;
-    queue.pQueuePriorities = &priority;
-    VkDeviceCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-    info.pNext = &requirements.features;
-    info.queueCreateInfoCount = 1;
-    info.pQueueCreateInfos = &queue;
+    VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                  .queueFamilyIndex = state.handles.queueFamily,
+                                  .queueCount = 1,
+                                  .pQueuePriorities = &priority};
+    VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                            .pNext = &requirements.features,
+                            .queueCreateInfoCount = 1,
+                            .pQueueCreateInfos = &queue};
     for (const std::string& extension : further) {
         requirements.extensions.push_back(extension.c_str());
     }

@@ -106,8 +106,6 @@ Result<std::span<const std::uint8_t>> unwrapPipelineCache(const PipelineCacheOwn
 
 Result<VkPipelineCache> createPipelineCache(const Context::State& state, std::span<const std::uint8_t> data) {
     const VkPipelineCacheCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
-                                         .pNext = nullptr,
-                                         .flags = 0,
                                          .initialDataSize = data.size(),
                                          .pInitialData = data.data()};
     VkPipelineCache cache = VK_NULL_HANDLE;

@@ -323,11 +323,10 @@ Status queryExtensions(const InstanceTable& table, VkPhysicalDevice device, Devi
 
 // Below Vulkan 1.3 the chains of queryFeatures() are not defined, so the report then has the version only.
 void queryFeatures(const InstanceTable& table, VkPhysicalDevice device, DeviceReport& report) {
-    VkPhysicalDeviceVulkan11Properties subgroup{};
-    subgroup.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES;
-    VkPhysicalDeviceProperties2 properties{};
-    properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-    properties.pNext = &subgroup;
+    VkPhysicalDeviceVulkan11Properties subgroup{.sType =
+                                                    VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
+    VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                           .pNext = &subgroup};
     table.GetPhysicalDeviceProperties2(device, &properties);
     report.subgroupStages = subgroup.subgroupSupportedStages;
     report.subgroupOperations = subgroup.subgroupSupportedOperations;

@@ -137,14 +137,12 @@ Result<MemoryPool::Block*> MemoryPool::makeBlock(std::uint32_t type, Tiling tili
         return makeError("memory-count", "", "the scene needs more memory allocations than the device has",
                          "use a smaller scene");
     }
-    VkMemoryAllocateFlagsInfo flags{};
-    flags.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO;
-    flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
-    VkMemoryAllocateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-    info.pNext = tiling == Tiling::Optimal ? nullptr : &flags;
-    info.allocationSize = bytes;
-    info.memoryTypeIndex = type;
+    const VkMemoryAllocateFlagsInfo flags{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
+                                          .flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT};
+    VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                              .pNext = tiling == Tiling::Optimal ? nullptr : &flags,
+                              .allocationSize = bytes,
+                              .memoryTypeIndex = type};
     HostServices::MemoryRange range{.type = type};
     const VkResult result = context_->vk.AllocateMemory(context_->handles.device, &info,
                                                         context_->services.allocation, &range.memory);
@@ -282,10 +280,9 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
                              std::to_string(context.limits.maxBufferBytes),
                          "split the mesh or use a smaller image");
     }
-    VkBufferCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-    info.size = buffer.bytes;
-    info.usage = usage | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
+    const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                                  .size = buffer.bytes,
+                                  .usage = usage | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT};
     GLINT_TRY(buffer.handle, createHandle<UniqueBuffer>(context, context.vk.CreateBuffer, "vkCreateBuffer",
                                                         info, pool.name()));
 
@@ -307,22 +304,20 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
     buffer.memory = *memory;
     buffer.mapped = memory->mapped;
     buffer.use = use;
-    VkBufferDeviceAddressInfo address{};
-    address.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO;
-    address.buffer = handle;
+    VkBufferDeviceAddressInfo address{.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO,
+                                      .buffer = handle};
     buffer.address = context.vk.GetBufferDeviceAddress(device, &address);
     return buffer;
 }
 
 Result<UniqueImageView> createImageView(Context::State& context, VkImage image, const ImageInfo& info,
                                         std::uint32_t firstMip) {
-    VkImageViewCreateInfo view{};
-    view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
-    view.image = image;
-    view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-    view.format = info.format;
-    view.components = info.components;
-    view.subresourceRange = wholeImage(info.aspect);
+    VkImageViewCreateInfo view{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                               .image = image,
+                               .viewType = VK_IMAGE_VIEW_TYPE_2D,
+                               .format = info.format,
+                               .components = info.components,
+                               .subresourceRange = wholeImage(info.aspect)};
     view.subresourceRange.baseMipLevel = firstMip;
     return createHandle<UniqueImageView>(context, context.vk.CreateImageView, "vkCreateImageView", view);
 }
@@ -334,16 +329,15 @@ Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const
     image.extent = info.extent;
     image.mips = info.mips;
     image.components = info.components;
-    VkImageCreateInfo create{};
-    create.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-    create.imageType = VK_IMAGE_TYPE_2D;
-    create.format = info.format;
-    create.extent = {info.extent.width, info.extent.height, 1};
-    create.mipLevels = info.mips;
-    create.arrayLayers = 1;
-    create.samples = VK_SAMPLE_COUNT_1_BIT;
-    create.tiling = VK_IMAGE_TILING_OPTIMAL;
-    create.usage = info.usage;
+    const VkImageCreateInfo create{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                                   .imageType = VK_IMAGE_TYPE_2D,
+                                   .format = info.format,
+                                   .extent = {info.extent.width, info.extent.height, 1},
+                                   .mipLevels = info.mips,
+                                   .arrayLayers = 1,
+                                   .samples = VK_SAMPLE_COUNT_1_BIT,
+                                   .tiling = VK_IMAGE_TILING_OPTIMAL,
+                                   .usage = info.usage};
     GLINT_TRY(image.handle, createHandle<UniqueImage>(context, context.vk.CreateImage, "vkCreateImage",
                                                       create, pool.name()));
 

@@ -156,11 +156,11 @@ Status Uploader::copyRows(const MipRows& rows, std::uint32_t first, std::uint32_
         const auto count = static_cast<std::uint32_t>(room / rowBytes);
         std::memcpy(staging_[current_].mapped + used_, rows.texels.data() + first * rowBytes, room);
         const std::uint32_t top = first * rows.block.height;
-        VkBufferImageCopy region{};
-        region.bufferOffset = used_;
-        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, rows.mip, 0, 1};
-        region.imageOffset = {0, static_cast<std::int32_t>(top), 0};
-        region.imageExtent = {width, std::min(count * rows.block.height, height - top), 1};
+        VkBufferImageCopy region{
+            .bufferOffset = used_,
+            .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, rows.mip, 0, 1},
+            .imageOffset = {0, static_cast<std::int32_t>(top), 0},
+            .imageExtent = {width, std::min(count * rows.block.height, height - top), 1}};
         add([&vk = context_->vk, region, from = staging_[current_].handle.get(),
              to = target.handle.get()](VkCommandBuffer commands) {
             vk.CmdCopyBufferToImage(commands, from, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
@@ -215,8 +215,7 @@ void Uploader::addMips(const DeviceImage& target, std::uint32_t given) {
                      VK_ACCESS_2_TRANSFER_READ_BIT},
                     mip - 1,
                     1});
-        VkImageBlit region{};
-        region.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, 1};
+        VkImageBlit region{.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, 1}};
         region.srcOffsets[1] = {width, height, 1};
         width = std::max(width / 2, 1);
         height = std::max(height / 2, 1);

@@ -15,17 +15,17 @@ Result<AccelerationStructure> createStructure(Context::State& context, MemoryPoo
     AccelerationStructure structure;
     GLINT_TRY(structure.buffer,
               createBuffer(context, pool, bytes, VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR));
-    VkAccelerationStructureCreateInfoKHR info{};
-    info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR;
-    info.buffer = structure.buffer.handle.get();
-    info.size = bytes;
-    info.type = type;
+    const VkAccelerationStructureCreateInfoKHR info{
+        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR,
+        .buffer = structure.buffer.handle.get(),
+        .size = bytes,
+        .type = type};
     GLINT_TRY(structure.handle,
               createHandle<UniqueAccelerationStructure>(context, context.vk.CreateAccelerationStructureKHR,
                                                         "vkCreateAccelerationStructureKHR", info));
-    VkAccelerationStructureDeviceAddressInfoKHR address{};
-    address.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR;
-    address.accelerationStructure = structure.handle.get();
+    VkAccelerationStructureDeviceAddressInfoKHR address{
+        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR,
+        .accelerationStructure = structure.handle.get()};
     structure.address = context.vk.GetAccelerationStructureDeviceAddressKHR(context.handles.device, &address);
     return structure;
 }
@@ -105,8 +105,7 @@ void recordTlasBuild(const Context::State& context, VkCommandBuffer commands, co
         info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR;
         info.srcAccelerationStructure = target;
     }
-    VkAccelerationStructureBuildRangeInfoKHR range{};
-    range.primitiveCount = prepared.count;
+    VkAccelerationStructureBuildRangeInfoKHR range{.primitiveCount = prepared.count};
     const VkAccelerationStructureBuildRangeInfoKHR* ranges = &range;
     context.vk.CmdBuildAccelerationStructuresKHR(commands, 1, &info, &ranges);
 }
@@ -128,9 +127,9 @@ constexpr VkBuildAccelerationStructureFlagsKHR kUpdatable =
 
 // Describes how a geometry uses a micromap, for the chain of its triangles. Points into `micromap`.
 VkAccelerationStructureTrianglesOpacityMicromapEXT describeMicromap(const DeviceMicromap& micromap) {
-    VkAccelerationStructureTrianglesOpacityMicromapEXT described{};
-    described.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_TRIANGLES_OPACITY_MICROMAP_EXT;
-    described.indexType = VK_INDEX_TYPE_UINT32;
+    VkAccelerationStructureTrianglesOpacityMicromapEXT described{
+        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_TRIANGLES_OPACITY_MICROMAP_EXT,
+        .indexType = VK_INDEX_TYPE_UINT32};
     described.indexBuffer.deviceAddress = micromap.indices.address;
     described.indexStride = sizeof(std::int32_t);
     described.usageCountsCount = static_cast<std::uint32_t>(micromap.usages.size());
@@ -142,9 +141,9 @@ VkAccelerationStructureTrianglesOpacityMicromapEXT describeMicromap(const Device
 constexpr VkDeviceSize kSharedScratchBytes = VkDeviceSize{64} << 20;
 
 VkAccelerationStructureGeometryKHR describeGeometry(const BlasGeometry& geometry) {
-    VkAccelerationStructureGeometryKHR described{};
-    described.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
-    described.geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR;
+    VkAccelerationStructureGeometryKHR described{
+        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR,
+        .geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR};
     described.flags |= geometry.opaque ? VK_GEOMETRY_OPAQUE_BIT_KHR : VkGeometryFlagBitsKHR{};
     described.flags |=
         geometry.once ? VK_GEOMETRY_NO_DUPLICATE_ANY_HIT_INVOCATION_BIT_KHR : VkGeometryFlagBitsKHR{};
@@ -171,8 +170,7 @@ BlasBuild describeBuild(const Context::State& context, const BlasInput& input) {
             build.micromaps.push_back(describeMicromap(*geometry.micromap));
             build.geometries.back().geometry.triangles.pNext = &build.micromaps.back();
         }
-        VkAccelerationStructureBuildRangeInfoKHR range{};
-        range.primitiveCount = geometry.triangleCount;
+        const VkAccelerationStructureBuildRangeInfoKHR range{.primitiveCount = geometry.triangleCount};
         build.ranges.push_back(range);
         counts.push_back(geometry.triangleCount);
     }
@@ -182,8 +180,8 @@ BlasBuild describeBuild(const Context::State& context, const BlasInput& input) {
     build.info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR;
     build.info.geometryCount = static_cast<std::uint32_t>(build.geometries.size());
     build.info.pGeometries = build.geometries.data();
-    VkAccelerationStructureBuildSizesInfoKHR sizes{};
-    sizes.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR;
+    VkAccelerationStructureBuildSizesInfoKHR sizes{
+        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR};
     context.vk.GetAccelerationStructureBuildSizesKHR(context.handles.device,
                                                      VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR,
                                                      &build.info, counts.data(), &sizes);

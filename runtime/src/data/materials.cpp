@@ -132,13 +132,12 @@ float anisotropyOf(const Context::State& context, const package::SamplerEntry& e
 }
 
 Result<UniqueSampler> createSampler(Context::State& context, const package::SamplerEntry& entry) {
-    VkSamplerCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
-    info.magFilter = filter(entry.magnification);
-    info.minFilter = filter(entry.minification);
-    info.addressModeU = addressMode(entry.wrapU);
-    info.addressModeV = addressMode(entry.wrapV);
-    info.addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                             .magFilter = filter(entry.magnification),
+                             .minFilter = filter(entry.minification),
+                             .addressModeU = addressMode(entry.wrapU),
+                             .addressModeV = addressMode(entry.wrapV),
+                             .addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT};
     if (entry.mipmapped != 0) {
         info.mipmapMode = entry.mip != 0 ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
         info.maxLod = VK_LOD_CLAMP_NONE;

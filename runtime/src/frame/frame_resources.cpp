@@ -431,15 +431,11 @@ Result<DescriptorSet> createFrameSet(Context::State& context, const FrameSize& s
     GLINT_TRY(auto made, createSet(context, frame.setLayout.get(), setBindings(context, size), false));
     const auto write = [&](std::uint32_t binding, VkDescriptorType type, const VkDescriptorImageInfo& image) {
         const VkWriteDescriptorSet one{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                       .pNext = nullptr,
                                        .dstSet = made.set,
                                        .dstBinding = binding,
-                                       .dstArrayElement = 0,
                                        .descriptorCount = 1,
                                        .descriptorType = type,
-                                       .pImageInfo = &image,
-                                       .pBufferInfo = nullptr,
-                                       .pTexelBufferView = nullptr};
+                                       .pImageInfo = &image};
         context.vk.UpdateDescriptorSets(context.handles.device, 1, &one, 0, nullptr);
     };
     const auto bind = [&](std::uint32_t binding, const DeviceImage& own) {

@@ -35,13 +35,13 @@ Result<std::uint32_t> addStage(Context::State& context, VkShaderStageFlagBits st
 }
 
 VkRayTracingShaderGroupCreateInfoKHR emptyGroup(VkRayTracingShaderGroupTypeKHR type) {
-    VkRayTracingShaderGroupCreateInfoKHR group{};
-    group.sType = VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR;
-    group.type = type;
-    group.generalShader = VK_SHADER_UNUSED_KHR;
-    group.closestHitShader = VK_SHADER_UNUSED_KHR;
-    group.anyHitShader = VK_SHADER_UNUSED_KHR;
-    group.intersectionShader = VK_SHADER_UNUSED_KHR;
+    VkRayTracingShaderGroupCreateInfoKHR group{
+        .sType = VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR,
+        .type = type,
+        .generalShader = VK_SHADER_UNUSED_KHR,
+        .closestHitShader = VK_SHADER_UNUSED_KHR,
+        .anyHitShader = VK_SHADER_UNUSED_KHR,
+        .intersectionShader = VK_SHADER_UNUSED_KHR};
     return group;
 }
 
@@ -151,20 +151,20 @@ Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayo
         stage.pSpecializationInfo = &specialization;
     }
     const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation, parts.stages.size());
-    VkRayTracingPipelineCreateInfoKHR info{};
-    info.sType = VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR;
-    info.pNext = &feedback;
-    // Without this flag rays must not meet structures with micromaps. Ray queries need no flag.
-    info.flags =
-        creation.flags | (context.handles.opacityMicromaps
-                              ? VkPipelineCreateFlags{VK_PIPELINE_CREATE_RAY_TRACING_OPACITY_MICROMAP_BIT_EXT}
-                              : 0U);
-    info.stageCount = static_cast<std::uint32_t>(parts.stages.size());
-    info.pStages = parts.stages.data();
-    info.groupCount = static_cast<std::uint32_t>(parts.groups.size());
-    info.pGroups = parts.groups.data();
-    info.maxPipelineRayRecursionDepth = 1;
-    info.layout = layout;
+    VkRayTracingPipelineCreateInfoKHR info{
+        .sType = VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR,
+        .pNext = &feedback,
+        // Without this flag rays must not meet structures with micromaps. Ray queries need no flag.
+        .flags = creation.flags |
+                 (context.handles.opacityMicromaps
+                      ? VkPipelineCreateFlags{VK_PIPELINE_CREATE_RAY_TRACING_OPACITY_MICROMAP_BIT_EXT}
+                      : 0U),
+        .stageCount = static_cast<std::uint32_t>(parts.stages.size()),
+        .pStages = parts.stages.data(),
+        .groupCount = static_cast<std::uint32_t>(parts.groups.size()),
+        .pGroups = parts.groups.data(),
+        .maxPipelineRayRecursionDepth = 1,
+        .layout = layout};
     VkPipeline pipeline = VK_NULL_HANDLE;
     const VkResult result =
         context.vk.CreateRayTracingPipelinesKHR(context.handles.device, VK_NULL_HANDLE, context.pipelineCache,
@@ -317,11 +317,9 @@ Result<std::vector<PipelineStatistics::Executable>> readExecutables(const Contex
                                                                     VkPipeline pipeline) {
     const DeviceTable& vk = context.vk;
     const VkDevice device = context.handles.device;
-    VkPipelineInfoKHR info{};
-    info.sType = VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR;
-    info.pipeline = pipeline;
-    VkPipelineExecutablePropertiesKHR noProperties{};
-    noProperties.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR;
+    VkPipelineInfoKHR info{.sType = VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR, .pipeline = pipeline};
+    const VkPipelineExecutablePropertiesKHR noProperties{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR};
     std::vector<VkPipelineExecutablePropertiesKHR> properties;
     VkResult result = listAll(
         noProperties,
@@ -339,12 +337,11 @@ Result<std::vector<PipelineStatistics::Executable>> readExecutables(const Contex
                                                   properties[i].stages,
                                                   properties[i].subgroupSize,
                                                   {}};
-        VkPipelineExecutableInfoKHR which{};
-        which.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR;
-        which.pipeline = pipeline;
-        which.executableIndex = i;
-        VkPipelineExecutableStatisticKHR noStatistic{};
-        noStatistic.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR;
+        VkPipelineExecutableInfoKHR which{.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR,
+                                          .pipeline = pipeline,
+                                          .executableIndex = i};
+        const VkPipelineExecutableStatisticKHR noStatistic{
+            .sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR};
         std::vector<VkPipelineExecutableStatisticKHR> statistics;
         result = listAll(
             noStatistic,

@@ -21,9 +21,8 @@ constexpr MemoryDependency kWriteToCopy{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK
 void recordCopy(const Renderer::State& state, VkCommandBuffer commands, const DeviceImage& image,
                 const Buffer& target) {
     recordDependency(state.context, commands, kWriteToCopy);
-    VkBufferImageCopy region{};
-    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    region.imageExtent = {state.size.width, state.size.height, 1};
+    VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                             .imageExtent = {state.size.width, state.size.height, 1}};
     state.context.vk.CmdCopyImageToBuffer(commands, image.handle.get(), VK_IMAGE_LAYOUT_GENERAL,
                                           target.handle.get(), 1, &region);
     recordDependency(state.context, commands, kCopyToHost);

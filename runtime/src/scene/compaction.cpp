@@ -56,11 +56,11 @@ using Pair = std::pair<VkAccelerationStructureKHR, VkAccelerationStructureKHR>;
 void recordCompactCopies(const Context::State& context, VkCommandBuffer commands,
                          std::span<const Pair> pairs) {
     for (const auto& [from, to] : pairs) {
-        VkCopyAccelerationStructureInfoKHR copy{};
-        copy.sType = VK_STRUCTURE_TYPE_COPY_ACCELERATION_STRUCTURE_INFO_KHR;
-        copy.src = from;
-        copy.dst = to;
-        copy.mode = VK_COPY_ACCELERATION_STRUCTURE_MODE_COMPACT_KHR;
+        VkCopyAccelerationStructureInfoKHR copy{
+            .sType = VK_STRUCTURE_TYPE_COPY_ACCELERATION_STRUCTURE_INFO_KHR,
+            .src = from,
+            .dst = to,
+            .mode = VK_COPY_ACCELERATION_STRUCTURE_MODE_COMPACT_KHR};
         context.vk.CmdCopyAccelerationStructureKHR(commands, &copy);
     }
 }

@@ -56,21 +56,20 @@ Result<DescriptorSet> allocateSet(const GpuScene::State& state) {
 
 VkWriteDescriptorSet writeOf(VkDescriptorSet set, std::uint32_t binding, VkDescriptorType type,
                              std::size_t count) {
-    VkWriteDescriptorSet write{};
-    write.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
-    write.dstSet = set;
-    write.dstBinding = binding;
-    write.descriptorCount = static_cast<std::uint32_t>(count);
-    write.descriptorType = type;
+    VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                               .dstSet = set,
+                               .dstBinding = binding,
+                               .descriptorCount = static_cast<std::uint32_t>(count),
+                               .descriptorType = type};
     return write;
 }
 
 void fillSet(const GpuScene::State& state, VkDescriptorSet set, VkAccelerationStructureKHR tlas,
              VkImageView absent) {
-    VkWriteDescriptorSetAccelerationStructureKHR structures{};
-    structures.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR;
-    structures.accelerationStructureCount = 1;
-    structures.pAccelerationStructures = &tlas;
+    VkWriteDescriptorSetAccelerationStructureKHR structures{
+        .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR,
+        .accelerationStructureCount = 1,
+        .pAccelerationStructures = &tlas};
     std::vector<VkDescriptorImageInfo> textures;
     for (const DeviceImage& texture : state.textures) {
         const VkImageView view = texture.view.get() == VK_NULL_HANDLE ? absent : texture.view.get();

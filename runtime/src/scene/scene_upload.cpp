@@ -30,10 +30,10 @@ Status prepareCompaction(SceneUpload& upload) {
     if (upload.compaction == nullptr) {
         return okStatus();
     }
-    VkQueryPoolCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
-    info.queryType = VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR;
-    info.queryCount = static_cast<std::uint32_t>(upload.compaction->parts.size());
+    const VkQueryPoolCreateInfo info{
+        .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+        .queryType = VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR,
+        .queryCount = static_cast<std::uint32_t>(upload.compaction->parts.size())};
     Context::State& context = upload.context;
     GLINT_TRY(upload.compaction->sizes,
               createHandle<UniqueQueryPool>(context, context.vk.CreateQueryPool, "vkCreateQueryPool", info));
@@ -160,18 +160,16 @@ private:
         info.data.deviceAddress = pending.data.address;
         info.triangleArray.deviceAddress = pending.records.address;
         info.triangleArrayStride = sizeof(opacity::MicromapRecord);
-        VkMicromapBuildSizesInfoEXT sizes{};
-        sizes.sType = VK_STRUCTURE_TYPE_MICROMAP_BUILD_SIZES_INFO_EXT;
+        VkMicromapBuildSizesInfoEXT sizes{.sType = VK_STRUCTURE_TYPE_MICROMAP_BUILD_SIZES_INFO_EXT};
         context_.vk.GetMicromapBuildSizesEXT(context_.handles.device,
                                              VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info, &sizes);
         GLINT_TRY(made.buffer, createBuffer(context_, pool_, sizes.micromapSize,
                                             VK_BUFFER_USAGE_MICROMAP_STORAGE_BIT_EXT));
         made.bytes += sizes.micromapSize;
-        VkMicromapCreateInfoEXT creation{};
-        creation.sType = VK_STRUCTURE_TYPE_MICROMAP_CREATE_INFO_EXT;
-        creation.buffer = made.buffer.handle.get();
-        creation.size = sizes.micromapSize;
-        creation.type = VK_MICROMAP_TYPE_OPACITY_MICROMAP_EXT;
+        const VkMicromapCreateInfoEXT creation{.sType = VK_STRUCTURE_TYPE_MICROMAP_CREATE_INFO_EXT,
+                                               .buffer = made.buffer.handle.get(),
+                                               .size = sizes.micromapSize,
+                                               .type = VK_MICROMAP_TYPE_OPACITY_MICROMAP_EXT};
         GLINT_TRY(made.handle, createHandle<UniqueMicromap>(context_, context_.vk.CreateMicromapEXT,
                                                             "vkCreateMicromapEXT", creation));
         info.dstMicromap = made.handle.get();
