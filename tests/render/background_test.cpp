@@ -66,7 +66,7 @@ FrameOptions withCones(FrameOptions frame, std::uint32_t samples) {
 }
 
 void expectDraft(Renderer& renderer, std::uint64_t drafts, const std::string& name) {
-    const Renderer::PipelineProgress progress = renderer.pipelineProgress();
+    const PipelineProgress progress = renderer.pipelineProgress();
     EXPECT_TRUE(progress.draft) << name;
     EXPECT_EQ(progress.drafts, drafts) << name;
     const Result<FrameCounters> counters = renderer.counters();
@@ -141,7 +141,7 @@ TEST_F(Background, EveryStateOnTheWayGivesTheSamePicture) {
         renderer->waitForPipelines();
         adoptedAtOnce = 1;
         expectSameImage(renderedBy(*renderer, setup_), reference, name + ", fallback alone");
-        Renderer::PipelineProgress progress = renderer->pipelineProgress();
+        PipelineProgress progress = renderer->pipelineProgress();
         EXPECT_FALSE(progress.draft) << name;
         EXPECT_EQ(progress.drafts, setup_.samples) << name;
         for (std::uint32_t state = 0; progress.adopted < progress.wanted && state < progress.wanted;
@@ -171,7 +171,7 @@ TEST_F(Background, AHostMayAskForNoDraft) {
     ASSERT_NE(renderer, nullptr);
     renderer->state().pipelines.adoptedAtOnce = 0;
     expectSameImage(renderedBy(*renderer, setup_), reference, "fallback alone");
-    const Renderer::PipelineProgress progress = renderer->pipelineProgress();
+    const PipelineProgress progress = renderer->pipelineProgress();
     EXPECT_FALSE(progress.draft);
     EXPECT_EQ(progress.drafts, 0U);
     // Each case has a pipeline for first hits and one for hits of rays.
@@ -257,7 +257,7 @@ TEST_F(Background, FramesFollowEachOtherWhileThreadsWork) {
     options.pipelineThreads = 2;
     const auto renderer = loaded_->makeRenderer(options);
     ASSERT_NE(renderer, nullptr);
-    Renderer::PipelineProgress progress = renderer->pipelineProgress();
+    PipelineProgress progress = renderer->pipelineProgress();
     for (int frame = 0; frame < 1000 && progress.adopted < progress.wanted; ++frame) {
         const LinearImage image = renderedBy(*renderer, setup_);
         const Result<FrameCounters> counters = renderer->counters();
@@ -275,17 +275,17 @@ TEST_F(Background, FramesFollowEachOtherWhileThreadsWork) {
 
 // Gives every geometry a shader ID that no case has.
 void forgetCases(GpuScene::State& scene) {
-    Result<std::unique_ptr<Uploader>> uploader = Uploader::create(sharedContext().state());
-    ASSERT_TRUE(uploader);
+    MemoryPool pool(sharedContext().state());
+    Uploader uploader(sharedContext().state(), pool);
     constexpr std::uint32_t kUnknown = 77;
     std::vector<std::uint8_t> bytes(sizeof kUnknown);
     std::memcpy(bytes.data(), &kUnknown, sizeof kUnknown);
     for (std::size_t i = 0; i < scene.shaderIds.size(); ++i) {
         const std::size_t place = i * sizeof(gpu::GeometryRecord) + offsetof(gpu::GeometryRecord, shaderId);
-        ASSERT_TRUE((*uploader)->copyToBuffer(bytes, scene.geometries, place));
+        ASSERT_TRUE(uploader.copyToBuffer(bytes, scene.geometries, place));
         scene.shaderIds[i] = kUnknown;
     }
-    ASSERT_TRUE((*uploader)->finish());
+    ASSERT_TRUE(uploader.finish());
 }
 
 TEST_F(Background, TheFallbackShadesUnknownShaderIds) {

@@ -273,18 +273,6 @@ public:
         std::optional<std::uint32_t> cacheHits;
     };
     PipelineMaking pipelineMaking() const;
-    // The progress of the threads that make pipelines while frames are drawn.
-    struct PipelineProgress {
-        std::uint32_t wanted = 0;   // pipelines that are made in the background
-        std::uint32_t made = 0;     // those that were made, or have failed
-        std::uint32_t adopted = 0;  // those that recordings use
-        // The first error. Its passes keep the fallback, or the draft.
-        std::optional<Diagnostic> error{};
-        // True if the next recording may be a draft (RendererOptions::draft), and the number of drafts so
-        // far.
-        bool draft = false;
-        std::uint64_t drafts = 0;
-    };
     // With RendererOptions::backgroundPipelines, record() uses the pipelines that were made by then.
     // pipelineProgress() says how many are made. The other function waits until the last one is made, also of
     // a package that waits to replace this one. Without that option no pipeline is missing. Both may be

@@ -70,8 +70,8 @@ struct RendererOptions {
     // With backgroundPipelines, lets frames begin as soon as the raster pass, a draft of first hits
     // and the last pass are made. A draft shows the base of materials under the sky and the lights, without
     // shadows, and no ray is traced. The first recording with all fixed passes starts the picture anew.
-    // Renderer::PipelineProgress and FrameCounters say whether a frame is a draft. Without it,
-    // Renderer::create() waits for the fixed passes and the fallback, and no frame is a draft.
+    // PipelineProgress and FrameCounters say whether a frame is a draft. Without it, Renderer::create() waits
+    // for the fixed passes and the fallback, and no frame is a draft.
     bool draft = true;
     // Makes the driver keep the statistics that pipelineStatistics() returns. Error "pipeline-statistics"
     // without DeviceHandles::pipelineStatistics.
@@ -154,6 +154,20 @@ struct FrameOptions {
     // 1/1000 s after some two hours; wrap the time before that.
     float time = 0.0F;
     Timing timing = Timing::Frame;
+};
+
+// --- Pipelines that threads make while frames are drawn ---
+
+// The progress of the threads that make pipelines while frames are drawn.
+struct PipelineProgress {
+    std::uint32_t wanted = 0;   // pipelines that are made in the background
+    std::uint32_t made = 0;     // those that were made, or have failed
+    std::uint32_t adopted = 0;  // those that recordings use
+    // The first error. Its passes keep the fallback, or the draft.
+    std::optional<Diagnostic> error{};
+    // True if the next recording may be a draft (RendererOptions::draft), and the number of drafts so far.
+    bool draft = false;
+    std::uint64_t drafts = 0;
 };
 
 }  // namespace glint

@@ -18,11 +18,9 @@ Result<CommandRunner> CommandRunner::create(Context::State& context) {
                                            .commandPool = runner.pool_.get(),
                                            .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
                                            .commandBufferCount = 1};
-    const VkResult result =
-        context.vk.AllocateCommandBuffers(context.handles.device, &bufferInfo, &runner.commands_);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkAllocateCommandBuffers", result);
-    }
+    GLINT_TRY_DO(
+        statusOf("vkAllocateCommandBuffers",
+                 context.vk.AllocateCommandBuffers(context.handles.device, &bufferInfo, &runner.commands_)));
     nameObject(context, VK_OBJECT_TYPE_COMMAND_BUFFER, reinterpret_cast<std::uint64_t>(runner.commands_),
                "commands");
 
@@ -33,25 +31,17 @@ Result<CommandRunner> CommandRunner::create(Context::State& context) {
 }
 
 Result<VkCommandBuffer> CommandRunner::begin() {
-    VkResult result = context_->vk.ResetCommandPool(context_->handles.device, pool_.get(), 0);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkResetCommandPool", result);
-    }
+    GLINT_TRY_DO(statusOf("vkResetCommandPool",
+                          context_->vk.ResetCommandPool(context_->handles.device, pool_.get(), 0)));
     VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                   .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-    result = context_->vk.BeginCommandBuffer(commands_, &info);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkBeginCommandBuffer", result);
-    }
+    GLINT_TRY_DO(statusOf("vkBeginCommandBuffer", context_->vk.BeginCommandBuffer(commands_, &info)));
     return commands_;
 }
 
 Status CommandRunner::submitAndWait() {
     const DeviceTable& vk = context_->vk;
-    VkResult result = vk.EndCommandBuffer(commands_);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkEndCommandBuffer", result);
-    }
+    GLINT_TRY_DO(statusOf("vkEndCommandBuffer", vk.EndCommandBuffer(commands_)));
     VkCommandBufferSubmitInfo commands{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
                                        .commandBuffer = commands_};
     VkSubmitInfo2 submit{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
@@ -60,22 +50,12 @@ Status CommandRunner::submitAndWait() {
     const VkFence fence = fence_.get();
     {
         const QueueLock lock(*context_);
-        result = vk.QueueSubmit2(context_->handles.queue, 1, &submit, fence);
-    }
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkQueueSubmit2", result);
+        GLINT_TRY_DO(statusOf("vkQueueSubmit2", vk.QueueSubmit2(context_->handles.queue, 1, &submit, fence)));
     }
     // There is no time limit: a driver ends work that hangs, and a CPU device may take long.
-    result = vk.WaitForFences(context_->handles.device, 1, &fence, VK_TRUE,
-                              std::numeric_limits<std::uint64_t>::max());
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkWaitForFences", result);
-    }
-    result = vk.ResetFences(context_->handles.device, 1, &fence);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkResetFences", result);
-    }
-    return okStatus();
+    GLINT_TRY_DO(statusOf("vkWaitForFences", vk.WaitForFences(context_->handles.device, 1, &fence, VK_TRUE,
+                                                              std::numeric_limits<std::uint64_t>::max())));
+    return statusOf("vkResetFences", vk.ResetFences(context_->handles.device, 1, &fence));
 }
 
 Status runOnce(Context::State& context, const std::function<Status(VkCommandBuffer)>& record) {
@@ -196,9 +176,7 @@ Result<std::vector<double>> Timer::read(std::uint32_t count) const {
             return makeError("timings-pending", "", "the device has not finished the recording",
                              "wait for the submission before reading its timings");
         }
-        if (result != VK_SUCCESS) {
-            return vulkanError("vkGetQueryPoolResults", result);
-        }
+        GLINT_TRY_DO(statusOf("vkGetQueryPoolResults", result));
     }
     const std::uint32_t bits = context_->limits.timestampValidBits;
     const std::uint64_t mask = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;

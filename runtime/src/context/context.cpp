@@ -143,14 +143,10 @@ void queryLimits(Context::State& state) {
 }
 
 Status checkQueueFamily(Context::State& state) {
-    std::uint32_t count = 0;
-    state.instance.GetPhysicalDeviceQueueFamilyProperties(state.handles.physicalDevice, &count, nullptr);
-    std::vector<VkQueueFamilyProperties> families(count);
-    state.instance.GetPhysicalDeviceQueueFamilyProperties(state.handles.physicalDevice, &count,
-                                                          families.data());
-    constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+    const std::vector<VkQueueFamilyProperties> families =
+        queueFamilies(state.instance, state.handles.physicalDevice);
     const std::uint32_t family = state.handles.queueFamily;
-    if (family >= count || (families[family].queueFlags & kNeeded) != kNeeded) {
+    if (family >= families.size() || !isSuitable(families[family])) {
         return makeError("context-queue", "",
                          "queue family " + std::to_string(family) + " has no graphics and compute",
                          "pass a queue of a family with VK_QUEUE_GRAPHICS_BIT and VK_QUEUE_COMPUTE_BIT");

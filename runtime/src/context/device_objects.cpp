@@ -62,10 +62,8 @@ Result<DescriptorSet> createSet(Context::State& context, VkDescriptorSetLayout l
                                               .descriptorPool = made.pool.get(),
                                               .descriptorSetCount = 1,
                                               .pSetLayouts = &layout};
-    const VkResult result = context.vk.AllocateDescriptorSets(context.handles.device, &setInfo, &made.set);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkAllocateDescriptorSets", result);
-    }
+    GLINT_TRY_DO(statusOf("vkAllocateDescriptorSets",
+                          context.vk.AllocateDescriptorSets(context.handles.device, &setInfo, &made.set)));
     nameObject(context, VK_OBJECT_TYPE_DESCRIPTOR_SET, (std::uint64_t)made.set, "set");  // NOLINT: pointer
     return made;
 }

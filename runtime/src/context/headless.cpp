@@ -31,32 +31,23 @@ VkDebugUtilsMessengerCreateInfoEXT messengerInfo(ValidationLog& log) {
 }
 
 bool hasLayer(const GlobalTable& table, const char* name) {
-    std::uint32_t count = 0;
-    if (table.EnumerateInstanceLayerProperties(&count, nullptr) != VK_SUCCESS) {
-        return false;
-    }
-    std::vector<VkLayerProperties> layers(count);
-    if (table.EnumerateInstanceLayerProperties(&count, layers.data()) < VK_SUCCESS) {
-        return false;
-    }
-    layers.resize(count);
-    return std::ranges::any_of(
-        layers, [name](const VkLayerProperties& layer) { return std::strcmp(layer.layerName, name) == 0; });
+    std::vector<VkLayerProperties> layers;
+    const Status listed =
+        listAll("vkEnumerateInstanceLayerProperties", layers, table.EnumerateInstanceLayerProperties);
+    return listed && std::ranges::any_of(layers, [name](const VkLayerProperties& layer) {
+               return std::strcmp(layer.layerName, name) == 0;
+           });
 }
 
 bool hasInstanceExtension(const GlobalTable& table, const char* name) {
-    std::uint32_t count = 0;
-    if (table.EnumerateInstanceExtensionProperties(nullptr, &count, nullptr) != VK_SUCCESS) {
-        return false;
-    }
-    std::vector<VkExtensionProperties> extensions(count);
-    if (table.EnumerateInstanceExtensionProperties(nullptr, &count, extensions.data()) < VK_SUCCESS) {
-        return false;
-    }
-    extensions.resize(count);
-    return std::ranges::any_of(extensions, [name](const VkExtensionProperties& extension) {
-        return std::strcmp(extension.extensionName, name) == 0;
-    });
+    std::vector<VkExtensionProperties> extensions;
+    const Status listed = listAll("vkEnumerateInstanceExtensionProperties", extensions,
+                                  [&](std::uint32_t* count, VkExtensionProperties* list) {
+                                      return table.EnumerateInstanceExtensionProperties(nullptr, count, list);
+                                  });
+    return listed && std::ranges::any_of(extensions, [name](const auto& extension) {
+               return std::strcmp(extension.extensionName, name) == 0;
+           });
 }
 
 // Creates the instance and, with validation, the messenger.
@@ -107,38 +98,29 @@ Status createInstance(const GlobalTable& table, const HeadlessOptions& options, 
     } else if (validation == Validation::Synchronization) {
         info.pNext = &validationFeatures;
     }
-    VkResult result = table.CreateInstance(&info, nullptr, &state.handles.instance);
+    const VkResult result = table.CreateInstance(&info, nullptr, &state.handles.instance);
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER) {
         return makeError("device-missing", "", "there is no Vulkan driver on this machine",
                          "install a driver, for instance mesa-vulkan-drivers");
     }
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateInstance", result);
-    }
+    GLINT_TRY_DO(statusOf("vkCreateInstance", result));
     GLINT_TRY(state.instance, loadInstanceTable(table.GetInstanceProcAddr, state.handles.instance));
     state.ownsInstance = true;
     state.handles.debugUtils = labels;
     if (validation != Validation::Off) {
-        result = state.instance.CreateDebugUtilsMessengerEXT(state.handles.instance, &messenger, nullptr,
-                                                             &state.messenger);
-        if (result != VK_SUCCESS) {
-            return vulkanError("vkCreateDebugUtilsMessengerEXT", result);
-        }
+        return statusOf("vkCreateDebugUtilsMessengerEXT",
+                        state.instance.CreateDebugUtilsMessengerEXT(state.handles.instance, &messenger,
+                                                                    nullptr, &state.messenger));
     }
     return okStatus();
 }
 
 Result<std::vector<VkPhysicalDevice>> enumerateDevices(const Context::State& state) {
-    std::uint32_t count = 0;
-    VkResult result = state.instance.EnumeratePhysicalDevices(state.handles.instance, &count, nullptr);
-    std::vector<VkPhysicalDevice> devices(count);
-    if (result == VK_SUCCESS && count > 0) {
-        result = state.instance.EnumeratePhysicalDevices(state.handles.instance, &count, devices.data());
-        devices.resize(count);
-    }
-    if (result != VK_SUCCESS && result != VK_INCOMPLETE) {
-        return vulkanError("vkEnumeratePhysicalDevices", result);
-    }
+    std::vector<VkPhysicalDevice> devices;
+    GLINT_TRY_DO(
+        listAll("vkEnumeratePhysicalDevices", devices, [&](std::uint32_t* count, VkPhysicalDevice* list) {
+            return state.instance.EnumeratePhysicalDevices(state.handles.instance, count, list);
+        }));
     if (devices.empty()) {
         return makeError("device-missing", "", "there is no Vulkan device on this machine",
                          "install a driver, for instance mesa-vulkan-drivers");
@@ -203,20 +185,6 @@ Result<VkPhysicalDevice> chooseDevice(const Context::State& state, const Headles
     return makeError("device-features", "", message, "update the driver or use another device");
 }
 
-std::uint32_t chooseQueueFamily(const Context::State& state) {
-    std::uint32_t count = 0;
-    state.instance.GetPhysicalDeviceQueueFamilyProperties(state.handles.physicalDevice, &count, nullptr);
-    std::vector<VkQueueFamilyProperties> families(count);
-    state.instance.GetPhysicalDeviceQueueFamilyProperties(state.handles.physicalDevice, &count,
-                                                          families.data());
-    constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-    const auto found = std::ranges::find_if(families, [](const VkQueueFamilyProperties& family) {
-        return (family.queueFlags & kNeeded) == kNeeded;
-    });
-    // chooseDevice() has checked that there is such a family.
-    return static_cast<std::uint32_t>(found - families.begin());
-}
-
 Status createDevice(Context::State& state, std::span<const std::string> further) {
     DeviceRequirements requirements(state.handles.tracers, state.handles.positionFetch,
                                     state.handles.shaderFloat16, state.handles.pipelineStatistics,
@@ -227,7 +195,11 @@ Status createDevice(Context::State& state, std::span<const std::string> further)
     const VkBool32 anisotropy = report.features.features.features.samplerAnisotropy;
     requirements.features.features.samplerAnisotropy = anisotropy;
     state.handles.samplerAnisotropy = anisotropy == VK_TRUE;
-    state.handles.queueFamily = chooseQueueFamily(state);
+    const std::vector<VkQueueFamilyProperties> families =
+        queueFamilies(state.instance, state.handles.physicalDevice);
+    // chooseDevice() has checked that one is suitable.
+    state.handles.queueFamily =
+        static_cast<std::uint32_t>(std::ranges::find_if(families, isSuitable) - families.begin());
     const float priority = 1.0F;
     VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
                                   .queueFamilyIndex = state.handles.queueFamily,
@@ -242,11 +214,8 @@ Status createDevice(Context::State& state, std::span<const std::string> further)
     }
     info.enabledExtensionCount = static_cast<std::uint32_t>(requirements.extensions.size());
     info.ppEnabledExtensionNames = requirements.extensions.data();
-    const VkResult result =
-        state.instance.CreateDevice(state.handles.physicalDevice, &info, nullptr, &state.handles.device);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateDevice", result);
-    }
+    GLINT_TRY_DO(statusOf("vkCreateDevice", state.instance.CreateDevice(state.handles.physicalDevice, &info,
+                                                                        nullptr, &state.handles.device)));
     state.ownsDevice = true;
     GLINT_TRY_DO(finishContext(state));
     state.vk.GetDeviceQueue(state.handles.device, state.handles.queueFamily, 0, &state.handles.queue);

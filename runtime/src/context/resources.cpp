@@ -91,13 +91,11 @@ Result<MemoryPool::Block*> MemoryPool::addBlock(const HostServices::MemoryRange&
     block.free.push_back({0, bytes});
     if (use != MemoryUse::Device) {
         void* mapped = nullptr;
-        const VkResult result = context_->services.mapMemory
-                                    ? context_->services.mapMemory(range, mapped)
-                                    : context_->vk.MapMemory(context_->handles.device, range.memory, 0,
-                                                             VK_WHOLE_SIZE, 0, &mapped);
-        if (result != VK_SUCCESS) {
-            return vulkanError("vkMapMemory", result);
-        }
+        GLINT_TRY_DO(
+            statusOf("vkMapMemory", context_->services.mapMemory
+                                        ? context_->services.mapMemory(range, mapped)
+                                        : context_->vk.MapMemory(context_->handles.device, range.memory, 0,
+                                                                 VK_WHOLE_SIZE, 0, &mapped)));
         block.mapped = static_cast<std::uint8_t*>(mapped);
     }
     blocks_.push_back(std::move(block));
@@ -118,10 +116,7 @@ Result<MemoryPool::Block*> MemoryPool::askHost(const VkMemoryRequirements& requi
         .isImage = tiling != Tiling::Linear,
         .name = name.c_str()};
     HostServices::MemoryRange range;
-    const VkResult result = context_->services.allocateMemory(request, range);
-    if (result != VK_SUCCESS) {
-        return vulkanError("HostServices::allocateMemory", result);
-    }
+    GLINT_TRY_DO(statusOf("HostServices::allocateMemory", context_->services.allocateMemory(request, range)));
     return addBlock(range, tiling, requirements.size, use);
 }
 
@@ -144,11 +139,9 @@ Result<MemoryPool::Block*> MemoryPool::makeBlock(std::uint32_t type, Tiling tili
                               .allocationSize = bytes,
                               .memoryTypeIndex = type};
     HostServices::MemoryRange range{.type = type};
-    const VkResult result = context_->vk.AllocateMemory(context_->handles.device, &info,
-                                                        context_->services.allocation, &range.memory);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkAllocateMemory", result);
-    }
+    GLINT_TRY_DO(statusOf("vkAllocateMemory",
+                          context_->vk.AllocateMemory(context_->handles.device, &info,
+                                                      context_->services.allocation, &range.memory)));
     nameObject(*context_, VK_OBJECT_TYPE_DEVICE_MEMORY,
                (std::uint64_t)range.memory,  // NOLINT: may be a number
                name_);
@@ -297,10 +290,8 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
     if (!memory) {
         return memory.error();
     }
-    const VkResult result = context.vk.BindBufferMemory(device, handle, memory->memory, memory->offset);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkBindBufferMemory", result);
-    }
+    GLINT_TRY_DO(statusOf("vkBindBufferMemory",
+                          context.vk.BindBufferMemory(device, handle, memory->memory, memory->offset)));
     buffer.memory = *memory;
     buffer.mapped = memory->mapped;
     buffer.use = use;
@@ -347,10 +338,8 @@ Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const
     context.vk.GetImageMemoryRequirements(device, handle, &requirements);
     image.bytes = requirements.size;
     GLINT_TRY(auto memory, pool.allocate(requirements, MemoryUse::Device, tiling));
-    const VkResult result = context.vk.BindImageMemory(device, handle, memory.memory, memory.offset);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkBindImageMemory", result);
-    }
+    GLINT_TRY_DO(statusOf("vkBindImageMemory",
+                          context.vk.BindImageMemory(device, handle, memory.memory, memory.offset)));
     image.memory = memory;
     GLINT_TRY(image.view, createImageView(context, handle, info, 0));
     return image;

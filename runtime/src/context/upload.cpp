@@ -20,31 +20,20 @@ constexpr VkPipelineStageFlags2 kBlitStages = VK_PIPELINE_STAGE_2_BLIT_BIT;
 constexpr MemoryDependency kToShaders{kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                                       VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                       VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
-constexpr MemoryDependency kToAll{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                  VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                  VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
 
 }  // namespace
 
-Result<std::unique_ptr<Uploader>> Uploader::create(Context::State& context) {
-    std::unique_ptr<Uploader> uploader(new Uploader(context, nullptr, kStagingBytes));
-    GLINT_TRY(auto runner, CommandRunner::create(context));
-    uploader->runner_ = std::make_unique<CommandRunner>(std::move(runner));
-    return uploader;
-}
-
-std::unique_ptr<Uploader> Uploader::createDeferred(Context::State& context, MemoryPool& pool,
-                                                   VkDeviceSize mostStaged) {
-    return std::unique_ptr<Uploader>(new Uploader(context, &pool, mostStaged));
-}
-
-std::vector<Buffer> Uploader::record(VkCommandBuffer commands) {
+void Uploader::recordWaiting(VkCommandBuffer commands) {
     for (const Command& command : queued_) {
         command(commands);
     }
     queued_.clear();
     current_ = 0;
     used_ = 0;
+}
+
+std::vector<Buffer> Uploader::record(VkCommandBuffer commands) {
+    recordWaiting(commands);
     staged_ = 0;
     return std::exchange(staging_, {});
 }
@@ -58,13 +47,8 @@ Status Uploader::finish() {
         runner_ = std::make_unique<CommandRunner>(std::move(runner));
     }
     GLINT_TRY(const auto commands, runner_->begin());
-    for (const Command& command : queued_) {
-        command(commands);
-    }
-    queued_.clear();
-    current_ = 0;
-    used_ = 0;
-    recordDependency(*context_, commands, kToAll);
+    recordWaiting(commands);
+    recordDependency(*context_, commands, kAllToAll);
     return runner_->submitAndWait();
 }
 
@@ -92,7 +76,7 @@ Status Uploader::nextStaging(VkDeviceSize wanted, VkDeviceSize unit) {
 }
 
 Result<VkDeviceSize> Uploader::reserve(VkDeviceSize wanted, VkDeviceSize unit) {
-    used_ = (used_ + kStagingAlignment - 1) / kStagingAlignment * kStagingAlignment;
+    used_ = alignUp(used_, kStagingAlignment);
     if (staging_.empty() || used_ + unit > staging_[current_].bytes) {
         GLINT_TRY_DO(nextStaging(wanted, unit));
     }
@@ -240,7 +224,7 @@ void Uploader::addMips(const DeviceImage& target, std::uint32_t given) {
 void StagedCopies::record(VkCommandBuffer commands, std::uint64_t frameNumber) {
     frame = frameNumber;
     kept = uploader->record(commands);
-    recordDependency(context, commands, kToAll);
+    recordDependency(context, commands, kAllToAll);
 }
 
 }  // namespace glint

@@ -5,7 +5,6 @@
 #include "context/vulkan_table.h"
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
 namespace glint {
@@ -37,12 +36,25 @@ Result<Scratch> createScratch(Context::State& context, MemoryPool& pool, VkDevic
               createBuffer(context, pool, bytes + alignment, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
     Scratch scratch;
     scratch.buffer = std::move(buffer);
-    scratch.address = (scratch.buffer.address + alignment - 1) / alignment * alignment;
+    scratch.address = alignUp(scratch.buffer.address, alignment);
     return scratch;
 }
 
-Status describeTlas(const Context::State& context, VkDeviceAddress instances, std::size_t count,
-                    bool updatable, TlasBuild& build) {
+namespace {
+
+VkAccelerationStructureGeometryKHR describeInstances(VkDeviceAddress instances) {
+    VkAccelerationStructureGeometryKHR geometry{
+        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR,
+        .geometryType = VK_GEOMETRY_TYPE_INSTANCES_KHR};
+    geometry.geometry.instances = {
+        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_INSTANCES_DATA_KHR,
+        .data = {.deviceAddress = instances}};
+    return geometry;
+}
+
+}  // namespace
+
+Result<TlasBuild> describeTlas(const Context::State& context, std::size_t count, bool updatable) {
     const std::uint64_t limit = context.limits.accelerationStructure.maxInstanceCount;
     if (count > limit) {
         return makeError("tlas-limit", "",
@@ -50,62 +62,37 @@ Status describeTlas(const Context::State& context, VkDeviceAddress instances, st
                              std::to_string(limit),
                          "use a smaller scene");
     }
-    VkAccelerationStructureGeometryKHR& geometry = build.geometry;
-    geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
-    geometry.geometryType = VK_GEOMETRY_TYPE_INSTANCES_KHR;
-    geometry.geometry.instances.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_INSTANCES_DATA_KHR;
-    geometry.geometry.instances.data.deviceAddress = instances;
-    build.info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR;
-    build.info.type = VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR;
-    build.info.flags =
-        VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR |
-        (updatable
-             ? VkBuildAccelerationStructureFlagsKHR{VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR}
-             : 0U);
-    build.info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR;
-    build.info.geometryCount = 1;
-    build.info.pGeometries = &geometry;
-    build.sizes.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR;
+    const VkAccelerationStructureGeometryKHR geometry = describeInstances(0);
+    const VkBuildAccelerationStructureFlagsKHR updates =
+        updatable ? VkBuildAccelerationStructureFlagsKHR{VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR}
+                  : 0U;
+    TlasBuild build{.info = {.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR,
+                             .type = VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR,
+                             .flags = VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR | updates,
+                             .mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR,
+                             .geometryCount = 1,
+                             .pGeometries = &geometry},
+                    .sizes = {.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR}};
     const auto primitives = static_cast<std::uint32_t>(count);
     context.vk.GetAccelerationStructureBuildSizesKHR(context.handles.device,
                                                      VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR,
                                                      &build.info, &primitives, &build.sizes);
-    return okStatus();
+    build.info.pGeometries = nullptr;
+    return build;
 }
 
-Result<PreparedTlas> prepareTlas(Context::State& context, MemoryPool& pool,
-                                 std::span<const VkAccelerationStructureInstanceKHR> instances,
-                                 bool updatable, std::vector<Buffer>& kept) {
-    // The device's rules for buffers of this usage align it to 16 bytes.
-    GLINT_TRY(auto buffer,
-              createBuffer(
-                  context, pool,
-                  std::max<VkDeviceSize>(instances.size_bytes(), sizeof(VkAccelerationStructureInstanceKHR)),
-                  VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR, MemoryUse::Upload));
-    if (!instances.empty()) {
-        std::memcpy(buffer.mapped, instances.data(), instances.size_bytes());
-    }
-    PreparedTlas prepared;
-    prepared.count = static_cast<std::uint32_t>(instances.size());
-    GLINT_TRY_DO(describeTlas(context, buffer.address, instances.size(), updatable, prepared.build));
-    GLINT_TRY(auto scratch, createScratch(context, pool, prepared.build.sizes.buildScratchSize));
-    prepared.scratch = scratch.address;
-    kept.push_back(std::move(buffer));
-    kept.push_back(std::move(scratch.buffer));
-    return prepared;
-}
-
-void recordTlasBuild(const Context::State& context, VkCommandBuffer commands, const PreparedTlas& prepared,
-                     VkAccelerationStructureKHR target, bool refit) {
-    VkAccelerationStructureBuildGeometryInfoKHR info = prepared.build.info;
-    info.pGeometries = &prepared.build.geometry;
+void recordTlasBuild(const Context::State& context, VkCommandBuffer commands, const TlasBuild& build,
+                     const TlasInput& input, VkAccelerationStructureKHR target, bool refit) {
+    const VkAccelerationStructureGeometryKHR geometry = describeInstances(input.instances);
+    VkAccelerationStructureBuildGeometryInfoKHR info = build.info;
+    info.pGeometries = &geometry;
     info.dstAccelerationStructure = target;
-    info.scratchData.deviceAddress = prepared.scratch;
+    info.scratchData.deviceAddress = input.scratch;
     if (refit) {
         info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR;
         info.srcAccelerationStructure = target;
     }
-    VkAccelerationStructureBuildRangeInfoKHR range{.primitiveCount = prepared.count};
+    const VkAccelerationStructureBuildRangeInfoKHR range{.primitiveCount = input.count};
     const VkAccelerationStructureBuildRangeInfoKHR* ranges = &range;
     context.vk.CmdBuildAccelerationStructuresKHR(commands, 1, &info, &ranges);
 }
@@ -188,9 +175,9 @@ BlasBuild describeBuild(const Context::State& context, const BlasInput& input) {
     const VkDeviceSize alignment =
         context.limits.accelerationStructure.minAccelerationStructureScratchOffsetAlignment;
     build.structureBytes = sizes.accelerationStructureSize;
-    const auto rounded = [&](VkDeviceSize bytes) { return (bytes + alignment - 1) / alignment * alignment; };
-    build.scratchBytes = rounded(input.updatable ? std::max(sizes.buildScratchSize, sizes.updateScratchSize)
-                                                 : sizes.buildScratchSize);
+    build.scratchBytes = alignUp(
+        input.updatable ? std::max(sizes.buildScratchSize, sizes.updateScratchSize) : sizes.buildScratchSize,
+        alignment);
     return build;
 }
 

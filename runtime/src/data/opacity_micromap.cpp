@@ -32,8 +32,7 @@ std::vector<std::uint8_t> packStates(const TriangleStates& triangle, std::uint16
 }
 
 // Counts records by level and format.
-template <typename Records>
-std::vector<MicromapUsage> countUsages(const Records& records) {
+std::vector<MicromapUsage> countUsages(std::span<const MicromapRecord> records) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> counts;
     for (const MicromapRecord& record : records) {
         ++counts[{record.subdivisionLevel, record.format}];

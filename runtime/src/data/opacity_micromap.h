@@ -5,6 +5,8 @@
 // space-filling curve, least significant bits first, with 1 bit (two states) or 2 bits (four states) each.
 #pragma once
 
+#include <vulkan/vulkan_core.h>
+
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -49,24 +51,8 @@ std::uint32_t curveIndex(const MicroTriangle& micro, std::uint32_t level);
 inline constexpr std::uint16_t kTwoStates = 1;
 inline constexpr std::uint16_t kFourStates = 2;
 
-// VkMicromapTriangleEXT.
-struct MicromapRecord {
-    std::uint32_t dataOffset = 0;  // bytes
-    std::uint16_t subdivisionLevel = 0;
-    std::uint16_t format = 0;
-
-    friend bool operator==(const MicromapRecord&, const MicromapRecord&) = default;
-};
-static_assert(sizeof(MicromapRecord) == 8);
-
-// VkMicromapUsageEXT.
-struct MicromapUsage {
-    std::uint32_t count = 0;
-    std::uint32_t subdivisionLevel = 0;
-    std::uint32_t format = 0;
-
-    friend bool operator==(const MicromapUsage&, const MicromapUsage&) = default;
-};
+using MicromapRecord = VkMicromapTriangleEXT;
+using MicromapUsage = VkMicromapUsageEXT;
 
 // An index of a triangle is that of its record, or ~state for a triangle that has one state everywhere
 // (VK_OPACITY_MICROMAP_SPECIAL_INDEX_*: -1 fully transparent to -4 fully unknown opaque).

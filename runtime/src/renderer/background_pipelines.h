@@ -5,7 +5,7 @@
 #include "renderer/pipeline_jobs.h"
 
 #include <glint/internal/package_modules.h>
-#include <glint/renderer.h>
+#include <glint/renderer_options.h>
 
 #include <condition_variable>
 #include <cstddef>
@@ -79,7 +79,7 @@ public:
     // Returns the number of pipelines, other than spare ones, that are not made yet.
     std::uint32_t missing() const;
 
-    Renderer::PipelineProgress progress() const;
+    PipelineProgress progress() const;
 
 private:
     // Gives out as many jobs as there are pipelines to begin and threads left.

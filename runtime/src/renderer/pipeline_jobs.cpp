@@ -132,12 +132,10 @@ std::vector<std::uint8_t> fillTable(const RayPipelineSource& source, const Table
 Result<std::vector<std::uint8_t>> groupHandles(Context::State& context, VkPipeline pipeline,
                                                std::size_t groupCount) {
     std::vector<std::uint8_t> handles(groupCount * context.limits.rayPipeline.shaderGroupHandleSize);
-    const VkResult result = context.vk.GetRayTracingShaderGroupHandlesKHR(
-        context.handles.device, pipeline, 0, static_cast<std::uint32_t>(groupCount), handles.size(),
-        handles.data());
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkGetRayTracingShaderGroupHandlesKHR", result);
-    }
+    GLINT_TRY_DO(statusOf("vkGetRayTracingShaderGroupHandlesKHR",
+                          context.vk.GetRayTracingShaderGroupHandlesKHR(
+                              context.handles.device, pipeline, 0, static_cast<std::uint32_t>(groupCount),
+                              handles.size(), handles.data())));
     return handles;
 }
 
@@ -277,22 +275,6 @@ std::string textOf(const char (&field)[VK_MAX_DESCRIPTION_SIZE]) {
     return {field, strnlen(field, sizeof(field))};
 }
 
-// Collects everything that `ask(count, list)` lists. The first call returns the number.
-template <typename Structure, typename Ask>
-VkResult listAll(const Structure& empty, const Ask& ask, std::vector<Structure>& list) {
-    VkResult result = VK_INCOMPLETE;
-    while (result == VK_INCOMPLETE) {
-        std::uint32_t count = 0;
-        result = ask(&count, nullptr);
-        if (result == VK_SUCCESS) {
-            list.assign(count, empty);
-            result = ask(&count, list.data());
-            list.resize(count, empty);
-        }
-    }
-    return result;
-}
-
 PipelineStatistics::Statistic statisticOf(const VkPipelineExecutableStatisticKHR& raw) {
     PipelineStatistics::Statistic statistic{textOf(raw.name), textOf(raw.description), raw.value.u64};
     switch (raw.format) {
@@ -318,18 +300,12 @@ Result<std::vector<PipelineStatistics::Executable>> readExecutables(const Contex
     const DeviceTable& vk = context.vk;
     const VkDevice device = context.handles.device;
     VkPipelineInfoKHR info{.sType = VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR, .pipeline = pipeline};
-    const VkPipelineExecutablePropertiesKHR noProperties{
-        .sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR};
     std::vector<VkPipelineExecutablePropertiesKHR> properties;
-    VkResult result = listAll(
-        noProperties,
-        [&](std::uint32_t* count, VkPipelineExecutablePropertiesKHR* list) {
-            return vk.GetPipelineExecutablePropertiesKHR(device, &info, count, list);
-        },
-        properties);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkGetPipelineExecutablePropertiesKHR", result);
-    }
+    GLINT_TRY_DO(listAll("vkGetPipelineExecutablePropertiesKHR", properties,
+                         [&](std::uint32_t* count, VkPipelineExecutablePropertiesKHR* list) {
+                             return vk.GetPipelineExecutablePropertiesKHR(device, &info, count, list);
+                         },
+                         {.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR}));
     std::vector<PipelineStatistics::Executable> executables;
     for (std::uint32_t i = 0; i < properties.size(); ++i) {
         PipelineStatistics::Executable executable{textOf(properties[i].name),
@@ -340,18 +316,12 @@ Result<std::vector<PipelineStatistics::Executable>> readExecutables(const Contex
         VkPipelineExecutableInfoKHR which{.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR,
                                           .pipeline = pipeline,
                                           .executableIndex = i};
-        const VkPipelineExecutableStatisticKHR noStatistic{
-            .sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR};
         std::vector<VkPipelineExecutableStatisticKHR> statistics;
-        result = listAll(
-            noStatistic,
-            [&](std::uint32_t* count, VkPipelineExecutableStatisticKHR* list) {
-                return vk.GetPipelineExecutableStatisticsKHR(device, &which, count, list);
-            },
-            statistics);
-        if (result != VK_SUCCESS) {
-            return vulkanError("vkGetPipelineExecutableStatisticsKHR", result);
-        }
+        GLINT_TRY_DO(listAll("vkGetPipelineExecutableStatisticsKHR", statistics,
+                             [&](std::uint32_t* count, VkPipelineExecutableStatisticKHR* list) {
+                                 return vk.GetPipelineExecutableStatisticsKHR(device, &which, count, list);
+                             },
+                             {.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR}));
         for (const VkPipelineExecutableStatisticKHR& raw : statistics) {
             executable.statistics.push_back(statisticOf(raw));
         }

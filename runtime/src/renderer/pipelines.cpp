@@ -529,6 +529,34 @@ Result<UniquePipelineLayout> createPassLayout(Context::State& context,
     return createPipelineLayout(context, sets, {pushStages(context), 0, pushBytes});
 }
 
+namespace {
+
+VkPipelineCreateFlags flagsOf(const PipelineMaking& making) {
+    return making.captureStatistics ? VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR : 0;
+}
+
+}  // namespace
+
+Result<std::vector<BackgroundPipelines::Done>> makeNow(std::vector<PlannedPipeline> plan,
+                                                       const PipelineMaking& making) {
+    std::vector<PipelineJob> jobs;
+    std::ranges::transform(plan, std::back_inserter(jobs), &PlannedPipeline::job);
+    GLINT_TRY(auto made, makePipelines(jobs, flagsOf(making), pipelineThreads(making.threads, jobs.size())));
+    std::vector<BackgroundPipelines::Done> done;
+    for (std::size_t i = 0; i < plan.size(); ++i) {
+        done.push_back({std::move(plan[i]), std::move(made[i])});
+    }
+    return done;
+}
+
+std::unique_ptr<BackgroundPipelines> makeLater(Context::State& context, std::vector<PlannedPipeline> plan,
+                                               const PipelineMaking& making) {
+    // One thread is the caller's.
+    const std::uint32_t threads = pipelineThreads(making.threads, plan.size() + 1);
+    return std::make_unique<BackgroundPipelines>(context.jobs, std::move(plan), flagsOf(making),
+                                                 std::max(threads, 2U) - 1);
+}
+
 Result<Pipelines> createPipelines(Context::State& context, const Package& package,
                                   const PipelineChoice& choice, const PipelineMaking& making,
                                   std::span<const std::uint32_t> shaderIds, const LayoutSource& source) {
@@ -543,19 +571,12 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
     std::vector<PlannedPipeline> laterPlan(std::make_move_iterator(later),
                                            std::make_move_iterator(plan.end()));
     plan.erase(later, plan.end());
-    std::vector<PipelineJob> jobs;
-    jobs.reserve(plan.size());
-    for (const PlannedPipeline& planned : plan) {
-        jobs.push_back(planned.job);
-    }
-    pipelines.threads = pipelineThreads(making.threads, jobs.size());
+    pipelines.threads = pipelineThreads(making.threads, plan.size());
     pipelines.captureStatistics = making.captureStatistics;
-    const VkPipelineCreateFlags flags =
-        making.captureStatistics ? VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR : 0;
-    GLINT_TRY(auto made, makePipelines(jobs, flags, pipelines.threads));
+    GLINT_TRY(auto made, makeNow(std::move(plan), making));
     pipelines.makeRoom(package, choice.strategy);
-    for (std::size_t i = 0; i < plan.size(); ++i) {
-        GLINT_TRY_DO(addPipeline(context, plan[i], std::move(made[i]), pipelines));
+    for (BackgroundPipelines::Done& done : made) {
+        GLINT_TRY_DO(addPipeline(context, done.planned, std::move(done.made), pipelines));
     }
     pipelines.draft = choice.draft;
     pipelines.drafted = &package;
@@ -565,10 +586,7 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
     }
     pipelines.shadesUnknown = hasUnknown(package, shaderIds);
     if (!laterPlan.empty()) {
-        // One thread is the caller's.
-        const std::uint32_t threads = pipelineThreads(making.threads, laterPlan.size() + 1);
-        pipelines.background = std::make_unique<BackgroundPipelines>(context.jobs, std::move(laterPlan),
-                                                                     flags, std::max(threads, 2U) - 1);
+        pipelines.background = makeLater(context, std::move(laterPlan), making);
     }
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
     pipelines.creationMs = elapsed.count();

@@ -118,8 +118,7 @@ Status recordPose(GpuScene::State& state, VkCommandBuffer commands, const Motion
                          "set SceneView::moves before the upload");
     }
     GLINT_TRY_DO(checkFrame(store, frame));
-    GLINT_TRY_DO(
-        checkMotion(view, {store.posedMeshes, store.posedJoints, store.posedWeights, store.posedLights}));
+    GLINT_TRY_DO(checkMotion(view, store.posedShape));
     GLINT_TRY_DO(poseMaterials(store, view.materials));
     moveOrigin(store, view.origin);
     GLINT_TRY_DO(poseInstances(store, view.instances));

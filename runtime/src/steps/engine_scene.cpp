@@ -7,11 +7,9 @@
 #include "interop/frame.h"
 #include "package/package.h"
 #include "scene/gpu_scene_state.h"
-#include "scene/record_arrays.h"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -88,7 +86,7 @@ Result<std::vector<gpu::GeometryRecord>> makeGeometries(const EngineSceneView& s
 Result<std::vector<gpu::InstanceRecord>> makeInstances(std::span<const Rows> instances) {
     std::vector<gpu::InstanceRecord> records;
     for (std::size_t i = 0; i < instances.size(); ++i) {
-        if (!std::ranges::all_of(instances[i], [](float value) { return std::isfinite(value); })) {
+        if (!isFinite(instances[i])) {
             return makeError("engine-scene", "instance " + std::to_string(i), "its transform is not finite",
                              "give twelve finite numbers");
         }
@@ -138,11 +136,7 @@ Result<std::vector<std::uint8_t>> makeMaterials(const Context::State& context, c
     std::vector<std::uint8_t> bytes = materialsWithSizes(context, known, images);
     for (std::size_t i = 0; i < known.materials.size(); ++i) {
         for (std::uint32_t slot = 0; slot < known.materials.textureCount; ++slot) {
-            std::uint8_t* const place =
-                &bytes[i * known.materials.recordBytes + known.materials.textureOffset +
-                       slot * sizeof(gpu::TextureRecord)];
-            gpu::TextureRecord record{};
-            std::memcpy(&record, place, sizeof record);
+            gpu::TextureRecord record = textureAt(tableWith(known.materials, bytes), i, slot);
             if (record.textureIndex < textures.size()) {
                 record.textureIndex = textures[record.textureIndex].index;
             }
@@ -150,7 +144,7 @@ Result<std::vector<std::uint8_t>> makeMaterials(const Context::State& context, c
                 record.anisotropy = samplers[record.samplerIndex].maxAnisotropy;
                 record.samplerIndex = samplers[record.samplerIndex].index;
             }
-            std::memcpy(place, &record, sizeof record);
+            std::memcpy(&bytes[placeOfTexture(known.materials, i, slot)], &record, sizeof record);
         }
     }
     return bytes;

@@ -10,6 +10,13 @@
 #include <string>
 #include <vector>
 
+inline bool operator==(const VkMicromapTriangleEXT& a, const VkMicromapTriangleEXT& b) {
+    return a.dataOffset == b.dataOffset && a.subdivisionLevel == b.subdivisionLevel && a.format == b.format;
+}
+inline bool operator==(const VkMicromapUsageEXT& a, const VkMicromapUsageEXT& b) {
+    return a.count == b.count && a.subdivisionLevel == b.subdivisionLevel && a.format == b.format;
+}
+
 namespace glint::test {
 
 // An alpha test of some triangles. `texels` is what `material.lookup` refers to.
