@@ -287,7 +287,7 @@ struct Denoiser::State {
 
     // Finds the layers of each source of light.
     glint::Status findSignals(const glint::Renderer& renderer) {
-        for (const glint::LayerImage& layer : renderer.layers()) {
+        for (const glint::Renderer::LayerImage& layer : renderer.layers()) {
             layers.emplace(layer.name, layer.view);
         }
         const auto view = [this](const std::string& name) {
@@ -295,7 +295,7 @@ struct Denoiser::State {
             return found == layers.end() ? VkImageView{VK_NULL_HANDLE} : found->second;
         };
         std::vector<std::string> needed{"depth", "normal", "roughness", "motion", "emission"};
-        for (const glint::LayerImage& layer : renderer.layers()) {
+        for (const glint::Renderer::LayerImage& layer : renderer.layers()) {
             if (layer.info->name != "demodulated" || signals.size() == kMostSignals) {
                 continue;
             }

@@ -21,12 +21,12 @@ void Engine::State::startGlint() {
     handles.tracers = gpu.tracers;
     context = expect(glint::Context::adopt(handles));
     const glint::PackageScene known = package.scene(0);
-    std::vector<glint::EngineTextureView> images;
+    std::vector<glint::EngineSceneView::Texture> images;
     for (std::uint32_t i = 0; i < known.textures.size(); ++i) {
         const Texture& texture = world.textures[known.textures[i].image];
         images.push_back({i, texture.width, texture.height});
     }
-    std::vector<glint::EngineSamplerView> filters;
+    std::vector<glint::EngineSceneView::Sampler> filters;
     for (std::uint32_t i = 0; i < known.samplers.size(); ++i) {
         filters.push_back({i, gpu.anisotropy});
     }
@@ -38,7 +38,7 @@ void Engine::State::startGlint() {
     view.samplers = filters;
     const std::vector<glint::LightView> shining = lights();
     view.lights = shining;
-    view.recordsBy = glint::RecordsBy::InstanceTable;
+    view.recordsBy = glint::EngineSceneView::RecordsBy::InstanceTable;
     view.firstRecords = firstRecords;
     scene = expect(glint::EngineScene::create(*context, package, view));
     glint::RayStepsOptions options;

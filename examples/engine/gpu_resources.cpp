@@ -65,18 +65,18 @@ void Engine::State::placeInstances() {
             const Geometry& geometry = mesh.geometries[g];
             const std::size_t place = firstOfMesh[world.instances[i].mesh] + g;
             const VkDeviceAddress address = vertices[place].address;
-            glint::EngineGeometryView view{geometry.mesh,
-                                           geometry.primitive,
-                                           i,
-                                           indices[place].address,
-                                           address,
-                                           address,
-                                           address,
-                                           address,
-                                           address,
-                                           address,
-                                           0,
-                                           0};
+            glint::EngineSceneView::Geometry view{geometry.mesh,
+                                                  geometry.primitive,
+                                                  i,
+                                                  indices[place].address,
+                                                  address,
+                                                  address,
+                                                  address,
+                                                  address,
+                                                  address,
+                                                  address,
+                                                  0,
+                                                  0};
             view.hostFlags = world.format == Format::Compact ? 1 : 0;
             const glint::package::PrimitiveEntry* const entry =
                 known.findPrimitive(geometry.mesh, geometry.primitive);

@@ -253,16 +253,17 @@ TEST_F(Background, FramesFollowEachOtherWhileThreadsWork) {
 
 // Gives every geometry a shader ID that no case has.
 void forgetCases(GpuScene::State& scene) {
-    std::unique_ptr<Uploader> uploader = must(Uploader::create(sharedContext().state()));
+    MemoryPool pool(sharedContext().state());
+    Uploader uploader(sharedContext().state(), pool);
     constexpr std::uint32_t kUnknown = 77;
     std::vector<std::uint8_t> bytes(sizeof kUnknown);
     std::memcpy(bytes.data(), &kUnknown, sizeof kUnknown);
     for (std::size_t i = 0; i < scene.shaderIds.size(); ++i) {
         const std::size_t place = i * sizeof(gpu::GeometryRecord) + offsetof(gpu::GeometryRecord, shaderId);
-        ASSERT_TRUE(uploader->copyToBuffer(bytes, scene.geometries, place));
+        ASSERT_TRUE(uploader.copyToBuffer(bytes, scene.geometries, place));
         scene.shaderIds[i] = kUnknown;
     }
-    ASSERT_TRUE(uploader->finish());
+    ASSERT_TRUE(uploader.finish());
 }
 
 TEST_F(Background, TheFallbackShadesUnknownShaderIds) {

@@ -40,7 +40,8 @@ void expectWhole(const TracedFrame& frame) {
     for (const gpu::RayRecord& ray : frame.rays) {
         ASSERT_LT(ray.target, frame.paths.size());
         EXPECT_TRUE(pixels.insert(ray.target).second) << "pixel " << ray.target << " twice";
-        EXPECT_TRUE(frame.paths[ray.target] == PixelPath::Hit || frame.paths[ray.target] == PixelPath::Miss);
+        EXPECT_TRUE(frame.paths[ray.target] == Renderer::PixelPath::Hit ||
+                    frame.paths[ray.target] == Renderer::PixelPath::Miss);
         const gpu::vec3& d = ray.direction;
         EXPECT_NEAR(d.x * d.x + d.y * d.y + d.z * d.z, 1.0F, 1e-5F);
     }

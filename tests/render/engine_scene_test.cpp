@@ -53,11 +53,11 @@ gltf::Scene texturedRoom() {
 // A scene that Glint has uploaded, and the same as an engine would have it.
 struct Content {
     std::unique_ptr<GpuScene> gpu;
-    std::vector<EngineGeometryView> geometries;
+    std::vector<EngineSceneView::Geometry> geometries;
     std::vector<std::array<float, 12>> instances;
     std::vector<LightView> lights;
-    std::vector<EngineTextureView> textures;
-    std::vector<EngineSamplerView> samplers;
+    std::vector<EngineSceneView::Texture> textures;
+    std::vector<EngineSceneView::Sampler> samplers;
 
     EngineSceneView view() const {
         EngineSceneView view;
@@ -302,9 +302,9 @@ TEST(EngineSceneContent, MaterialsHaveTheHostsValues) {
     ASSERT_TRUE(content.gpu != nullptr && wanted.gpu != nullptr && otherWanted.gpu != nullptr);
     const std::span<const std::uint8_t> record = repainted->scene(0).materials.part(kGlossy, 1).bytes;
     const MaterialView values[] = {{0, repainted->scene(0).materials.part(0, 1).bytes}, {kGlossy, record}};
-    std::vector<EngineGeometryView> geometries = content.geometries;
+    std::vector<EngineSceneView::Geometry> geometries = content.geometries;
     std::size_t named = 0;
-    for (EngineGeometryView& geometry : geometries) {
+    for (EngineSceneView::Geometry& geometry : geometries) {
         if (original->scene(0).findPrimitive(geometry.mesh, geometry.primitive)->materialIndex == kGlossy) {
             geometry.material = 1;
             ++named;

@@ -126,7 +126,7 @@ PosedScene::PosedScene(gltf::Scene posed, std::shared_ptr<const LoadedScene> loa
     gpuScene = uploadScene(package(), data.view());
 }
 
-MotionStatistics PosedScene::update(MotionView::Builds builds) {
+GpuScene::MotionStatistics PosedScene::update(MotionView::Builds builds) {
     session::poseSceneView(scene, data);
     MotionView motion = data.motion();
     motion.builds = builds;

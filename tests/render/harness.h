@@ -85,7 +85,7 @@ struct PosedScene {
         return testing::makeRenderer(package(), *gpuScene, options);
     }
     // Moves the uploaded scene to the current pose of `scene`.
-    MotionStatistics update(MotionView::Builds builds = MotionView::Builds::ByRule);
+    GpuScene::MotionStatistics update(MotionView::Builds builds = MotionView::Builds::ByRule);
 
     gltf::Scene scene;
     std::shared_ptr<const LoadedScene> compiled;

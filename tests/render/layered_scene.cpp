@@ -10,7 +10,7 @@
 namespace glint::testing {
 
 LayerSet::LayerSet(Renderer& renderer) {
-    for (const LayerImage& layer : renderer.layers()) {
+    for (const Renderer::LayerImage& layer : renderer.layers()) {
         LayerValues values = must(renderer.readLayer(layer.name));
         width = values.width;
         height = values.height;

@@ -116,7 +116,7 @@ TEST_F(LiveEditErrors, Values) {
     source.textures.push_back(source.textures[0]);
     expectError(editor().addMaterial(source.view()), "scene-edit-value", "two textures");
     expectError(editor().addMesh({}), "scene-edit-value");
-    EditedPrimitive primitive{edited_->primitive(0, 0), edited_->materials[1].handle};
+    SceneEditor::EditedPrimitive primitive{edited_->primitive(0, 0), edited_->materials[1].handle};
     primitive.geometry.indices = {};
     expectError(editor().addMesh(std::span(&primitive, 1)), "scene-edit-value", "no triangle");
     LightView light;
@@ -139,7 +139,7 @@ TEST(LiveEditTextures, ATrustedTextureIsNotReplaced) {
 }
 
 TEST_F(LiveEditErrors, Geometry) {
-    EditedPrimitive primitive{edited_->primitive(0, 0), edited_->materials[1].handle};
+    SceneEditor::EditedPrimitive primitive{edited_->primitive(0, 0), edited_->materials[1].handle};
     const std::uint32_t outside[] = {0, 1, 99};
     primitive.geometry.indices = outside;
     expectError(editor().addMesh(std::span(&primitive, 1)), "scene-index");
@@ -155,8 +155,8 @@ TEST_F(LiveEditErrors, Geometry) {
     // The package has no pass that moves vertices.
     const std::vector<std::array<float, 3>> differences(primitive.geometry.positions.size());
     target.positions = differences;
-    const AddedMesh mesh = must(editor().addMesh(std::span(&primitive, 1)));
-    PlacedMesh placed{mesh.mesh};
+    const SceneEditor::AddedMesh mesh = must(editor().addMesh(std::span(&primitive, 1)));
+    SceneEditor::PlacedMesh placed{mesh.mesh};
     const std::array<float, 2> weights{1, 1};
     placed.morphWeights = weights;
     expectError(editor().addInstance(placed), "scene-motion");
@@ -171,10 +171,10 @@ TEST(LiveEditVertices, ChangeInPlace) {
     EditedScene edited(options);
     SceneEditor& editor = edited.editor();
     const PrimitiveView flat = edited.primitive(1, 0);
-    const EditedPrimitive primitive{flat, edited.materials[1].handle};
-    const AddedMesh mesh = must(editor.addMesh(std::span(&primitive, 1), MeshUse::Changing));
+    const SceneEditor::EditedPrimitive primitive{flat, edited.materials[1].handle};
+    const SceneEditor::AddedMesh mesh = must(editor.addMesh(std::span(&primitive, 1), SceneEditor::MeshUse::Changing));
     const std::array<float, 12> rows{1, 0, 0, -0.6F, 0, 1, 0, 0, 0, 0, 1, -2.2F};
-    const AddedInstance cloth = must(editor.addInstance({mesh.mesh, rows}));
+    const SceneEditor::AddedInstance cloth = must(editor.addInstance({mesh.mesh, rows}));
     const LinearImage before = edited.picture();
     std::vector<std::array<float, 3>> positions(flat.positions.begin(), flat.positions.end());
     for (int step = 1; step <= 3; ++step) {
@@ -190,8 +190,8 @@ TEST(LiveEditVertices, ChangeInPlace) {
     // The same vertices in a mesh of their own.
     PrimitiveView bent = flat;
     bent.positions = positions;
-    const EditedPrimitive other{bent, edited.materials[1].handle};
-    const AddedMesh fresh = must(editor.addMesh(std::span(&other, 1), MeshUse::Changing));
+    const SceneEditor::EditedPrimitive other{bent, edited.materials[1].handle};
+    const SceneEditor::AddedMesh fresh = must(editor.addMesh(std::span(&other, 1), SceneEditor::MeshUse::Changing));
     ASSERT_TRUE(editor.setInstanceMesh(cloth.instance, fresh.mesh));
     EXPECT_EQ(edited.picture().pixels, after.pixels);
     expectError(editor.setVertices(edited.meshes[0].handle, 0, {positions}), "scene-edit-value");
@@ -208,7 +208,7 @@ TEST_F(LiveEditErrors, Keys) {
     session::MaterialSourceData source = edited_->source(3);
     source.keys = {source.keys.front()};
     const MaterialHandle added = must(editor().addMaterial(source.view()));
-    const EditedPrimitive primitive{edited_->primitive(0, 0), added};
+    const SceneEditor::EditedPrimitive primitive{edited_->primitive(0, 0), added};
     expectError(editor().addMesh(std::span(&primitive, 1)), "scene-edit-key", "no key");
     ASSERT_TRUE(editor().removeMaterial(added));
     // A key that reads what it says is not there.
@@ -260,7 +260,7 @@ TEST_F(LiveEditErrors, AKeyWithoutACase) {
     const session::MaterialSourceData source = edited_->source(2);
     edited_->scene.materials[2] = catalogueScene().materials[2];
     const MaterialHandle added = must(editor().addMaterial(source.view()));
-    const EditedPrimitive primitive{edited_->primitive(0, 0), added};
+    const SceneEditor::EditedPrimitive primitive{edited_->primitive(0, 0), added};
     expectError(editor().addMesh(std::span(&primitive, 1)), "scene-edit-case", "baseColorTexture");
     expectError(editor().setInstanceMaterial(edited_->instances[0].handle, 0, added), "scene-edit-case",
                 "clearcoat");
@@ -315,7 +315,7 @@ TEST(LiveEditFallback, ShadesAndReportsKeysWithoutACase) {
     const MaterialHandle added = must(edited.editor().addMaterial(source.view()));
     const EditReport report = must(edited.editor().setInstanceMaterial(edited.instances[1].handle, 0, added));
     ASSERT_EQ(report.missing.size(), 1U);
-    const MissingCase& missing = report.missing.front();
+    const EditReport::MissingCase& missing = report.missing.front();
     EXPECT_EQ(missing.material, added);
     EXPECT_NE(std::ranges::find(missing.names, "clearcoat"), missing.names.end());
     EXPECT_NE(std::ranges::find(missing.names, "baseColorTexture"), missing.names.end());
@@ -357,13 +357,13 @@ TEST(LiveEditGrowth, EveryBufferGrowsAndShrinks) {
         const auto kind = static_cast<std::uint32_t>(i % kKinds);
         const MaterialHandle material = must(editor.addMaterial(edited.source(kind).view()));
         edited.materials.push_back({material, kind, false});
-        const EditedPrimitive primitive{edited.primitive(1, 0), material};
-        const AddedMesh mesh = must(editor.addMesh(std::span(&primitive, 1)));
+        const SceneEditor::EditedPrimitive primitive{edited.primitive(1, 0), material};
+        const SceneEditor::AddedMesh mesh = must(editor.addMesh(std::span(&primitive, 1)));
         edited.meshes.push_back({mesh.mesh, 1, {edited.materials.size() - 1}, false});
         const float x = static_cast<float>(i % 8) * 0.5F - 2.0F;
         const float y = static_cast<float>(i / 8) * 0.4F - 0.8F;
         const std::array<float, 12> rows{0.3F, 0, 0, x, 0, 0.3F, 0, y, 0, 0, 0.3F, -2.0F - 0.01F * x};
-        const AddedInstance instance = must(editor.addInstance({mesh.mesh, rows}));
+        const SceneEditor::AddedInstance instance = must(editor.addInstance({mesh.mesh, rows}));
         edited.instances.push_back({instance.instance, edited.meshes.size() - 1, {}, rows, true, false});
         LightView light;
         light.type = LightView::Type::Point;

@@ -36,11 +36,11 @@ public:
 
     // Adds a quad that shines.
     EditedScene::Instance& addLamp() {
-        const EditedPrimitive primitive{edited.primitive(0, 0), edited.materials[1].handle};
-        const Result<AddedMesh> mesh = edited.editor().addMesh(std::span(&primitive, 1));
+        const SceneEditor::EditedPrimitive primitive{edited.primitive(0, 0), edited.materials[1].handle};
+        const Result<SceneEditor::AddedMesh> mesh = edited.editor().addMesh(std::span(&primitive, 1));
         EXPECT_TRUE(mesh) << (mesh ? "" : toString(mesh.error()));
         edited.meshes.push_back({mesh->mesh, 0, {1}, false});
-        const Result<AddedInstance> instance = edited.editor().addInstance({mesh->mesh, kAbove});
+        const Result<SceneEditor::AddedInstance> instance = edited.editor().addInstance({mesh->mesh, kAbove});
         EXPECT_TRUE(instance) << (instance ? "" : toString(instance.error()));
         edited.instances.push_back({instance->instance, edited.meshes.size() - 1, {}, kAbove, true, false});
         return edited.instances.back();

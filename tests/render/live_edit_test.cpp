@@ -230,12 +230,12 @@ private:
         ++made["add mesh"];
         EditedScene::Mesh mesh;
         mesh.shape = static_cast<std::uint32_t>(below(kShapes));
-        std::vector<EditedPrimitive> primitives;
+        std::vector<SceneEditor::EditedPrimitive> primitives;
         for (std::size_t i = 0; i < primitivesOfShape(mesh.shape); ++i) {
             mesh.materials.push_back(below(edited_.materials.size()));
             primitives.push_back({edited_.primitive(mesh.shape, i), material(mesh.materials.back())});
         }
-        const AddedMesh added = must(editor().addMesh(primitives));
+        const SceneEditor::AddedMesh added = must(editor().addMesh(primitives));
         mesh.handle = added.mesh;
         edited_.meshes.push_back(mesh);
     }
@@ -310,7 +310,7 @@ private:
         instance.objectToWorld = anywhere();
         instance.visible = below(5) != 0;
         const std::vector<MaterialHandle> own = handlesOf(instance.materials);
-        const AddedInstance added = must(editor().addInstance(
+        const SceneEditor::AddedInstance added = must(editor().addInstance(
             {edited_.meshes[instance.mesh].handle, instance.objectToWorld, instance.visible, own}));
         instance.handle = added.instance;
         edited_.instances.push_back(instance);

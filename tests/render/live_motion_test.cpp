@@ -184,7 +184,7 @@ public:
             }
         }
     }
-    std::optional<SurfacePlace> placeAt(std::uint32_t x, std::uint32_t y) {
+    std::optional<Renderer::SurfacePlace> placeAt(std::uint32_t x, std::uint32_t y) {
         return must(renderer_->readPlace(x, y));
     }
     InstanceHandle handleOf(std::size_t uploaded) const {
@@ -227,12 +227,12 @@ private:
         Instance instance;
         instance.take(data_.instances[like]);
         instance.view.objectToWorld = rowsAt(place);
-        PlacedMesh placed;
+        SceneEditor::PlacedMesh placed;
         placed.mesh = editor().mesh(instance.view.mesh);
         placed.objectToWorld = instance.view.objectToWorld;
         placed.joints = instance.joints;
         placed.morphWeights = instance.weights;
-        const AddedInstance made = must(editor().addInstance(placed));
+        const SceneEditor::AddedInstance made = must(editor().addInstance(placed));
         instance.handle = made.instance;
         instance.view.visible = true;
         // Moving a vector keeps its elements in place.
@@ -332,11 +332,11 @@ TEST(LiveMotion, EditsOutlastPosesThatLeaveThemAlone) {
     const InstanceHandle square = playing.handleOf(4);
     playing.frame();
     playing.drain();
-    std::optional<SurfacePlace> seen;
+    std::optional<Renderer::SurfacePlace> seen;
     std::uint32_t x = 0;
     std::uint32_t y = 0;
     for (std::uint32_t i = 0; i < kWidth * kHeight; ++i) {
-        const std::optional<SurfacePlace> place = playing.placeAt(i % kWidth, i / kWidth);
+        const std::optional<Renderer::SurfacePlace> place = playing.placeAt(i % kWidth, i / kWidth);
         if (place && place->handle == square) {
             seen = place;
             x = i % kWidth;
@@ -351,7 +351,7 @@ TEST(LiveMotion, EditsOutlastPosesThatLeaveThemAlone) {
     playing.pose(random);
     playing.frame();
     playing.drain();
-    const std::optional<SurfacePlace> after = playing.placeAt(x, y);
+    const std::optional<Renderer::SurfacePlace> after = playing.placeAt(x, y);
     EXPECT_TRUE(!after || after->handle != square) << "hidden";
 }
 

@@ -77,7 +77,7 @@ TEST(Motion, NodesCamerasAndLightsMove) {
     moving.scene.nodes[2].world = mirrored;
     moving.scene.lights[0].direction = {0.6F, 0.0F, -0.8F};
     moving.scene.cameras[0].world[12] = 0.25;
-    const MotionStatistics statistics = moving.update();
+    const GpuScene::MotionStatistics statistics = moving.update();
     EXPECT_EQ(statistics.refits + statistics.rebuilds + statistics.deformed, 0U) << "meshes keep their shape";
     const LinearImage second = moving.render();
     expectSameImage(second, renderStill(moving.scene), "moved");
@@ -86,16 +86,18 @@ TEST(Motion, NodesCamerasAndLightsMove) {
 
 TEST(Motion, TheTopLevelFollowsItsRule) {
     Moving moving(rigidScene());
-    EXPECT_EQ(moving.update().topLevel, MotionStatistics::TopLevel::Kept) << "nothing has moved";
+    EXPECT_EQ(moving.update().topLevel, GpuScene::MotionStatistics::TopLevel::Kept) << "nothing has moved";
     moving.scene.nodes[1].world = placed(-1, 0.5, -3);
-    EXPECT_EQ(moving.update().topLevel, MotionStatistics::TopLevel::Updated);
+    EXPECT_EQ(moving.update().topLevel, GpuScene::MotionStatistics::TopLevel::Updated);
     // The quad measures 1.41 m from corner to corner.
     moving.scene.nodes[1].world = placed(-1, 1.5, -3);
-    EXPECT_EQ(moving.update().topLevel, MotionStatistics::TopLevel::Rebuilt);
+    EXPECT_EQ(moving.update().topLevel, GpuScene::MotionStatistics::TopLevel::Rebuilt);
     moving.scene.nodes[1].world = placed(-1, 1.6, -3);
-    EXPECT_EQ(moving.update(MotionView::Builds::Rebuild).topLevel, MotionStatistics::TopLevel::Rebuilt);
+    EXPECT_EQ(moving.update(MotionView::Builds::Rebuild).topLevel,
+              GpuScene::MotionStatistics::TopLevel::Rebuilt);
     moving.scene.nodes[1].world = placed(-1, -0.5, -9);
-    EXPECT_EQ(moving.update(MotionView::Builds::Refit).topLevel, MotionStatistics::TopLevel::Updated);
+    EXPECT_EQ(moving.update(MotionView::Builds::Refit).topLevel,
+              GpuScene::MotionStatistics::TopLevel::Updated);
     expectSameImage(moving.render(), renderStill(moving.scene), "updated, though it went far");
 }
 
@@ -176,11 +178,11 @@ TEST(Motion, SkinsBendMeshes) {
     const LinearImage straight = moving.render();
     expectAlike(straight, renderStill(bakedScene(moving.scene)), "at the pose of the upload");
     moving.scene = skinnedScene(1.2);
-    const MotionStatistics statistics = moving.update();
+    const GpuScene::MotionStatistics statistics = moving.update();
     EXPECT_EQ(statistics.deformed, 1U);
     EXPECT_EQ(statistics.refits, 1U);
     EXPECT_EQ(statistics.rebuilds, 0U);
-    EXPECT_EQ(statistics.topLevel, MotionStatistics::TopLevel::Updated);
+    EXPECT_EQ(statistics.topLevel, GpuScene::MotionStatistics::TopLevel::Updated);
     const LinearImage bent = moving.render();
     expectAlike(bent, renderStill(bakedScene(moving.scene)), "bent");
     expectAlike(bent, renderStill(moving.scene), "uploaded as bent");
@@ -266,7 +268,7 @@ TEST(Motion, WornStructuresAreBuiltAnew) {
     moving.scene.nodes[1].weights = {0.1, 0.0};
     EXPECT_EQ(moving.update().refits, 1U);
     moving.scene.nodes[1].weights = {8.0, 0.0};
-    const MotionStatistics grown = moving.update();
+    const GpuScene::MotionStatistics grown = moving.update();
     EXPECT_EQ(grown.refits, 0U);
     EXPECT_EQ(grown.rebuilds, 1U);
     for (std::uint32_t i = 0; i < kMaxRefits; ++i) {
@@ -321,7 +323,7 @@ TEST(Motion, MaterialsChange) {
     for (const double time : {0.0, 1.0}) {
         const gltf::Scene plain = plainScene(scene, time);
         moving.scene.materials[painted] = plain.materials[painted];
-        EXPECT_EQ(moving.update().topLevel, MotionStatistics::TopLevel::Kept);
+        EXPECT_EQ(moving.update().topLevel, GpuScene::MotionStatistics::TopLevel::Kept);
         images.push_back(moving.render());
         expectSameImage(images.back(), renderStill(plain), "at " + std::to_string(time));
     }

@@ -128,7 +128,7 @@ TEST(PackedSamples, SayHowPixelsFoundLight) {
     options.height = 32;
     options.accumulate = false;
     options.bands = 1;
-    std::vector<std::vector<PixelPath>> found;
+    std::vector<std::vector<Renderer::PixelPath>> found;
     for (const auto record : {package::SampleRecordFormat::Packed, package::SampleRecordFormat::Full}) {
         settings.sampleRecord = record;
         const LoadedScene loaded(scene, settings);

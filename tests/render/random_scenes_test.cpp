@@ -164,19 +164,19 @@ private:
         std::vector<MeshHandle> byNumber(scene.meshes.size());
         for (std::size_t i = 0; i < data.primitives.size();) {
             const std::uint32_t mesh = data.primitives[i].mesh;
-            std::vector<EditedPrimitive> primitives;
+            std::vector<SceneEditor::EditedPrimitive> primitives;
             for (; i < data.primitives.size() && data.primitives[i].mesh == mesh; ++i) {
                 const gltf::Primitive& primitive =
                     scene.meshes[mesh].primitives[data.primitives[i].primitive];
                 primitives.push_back(
                     {data.primitives[i], materials[static_cast<std::size_t>(primitive.material)]});
             }
-            const AddedMesh added = must(editor().addMesh(primitives));
+            const SceneEditor::AddedMesh added = must(editor().addMesh(primitives));
             byNumber[mesh] = added.mesh;
             meshes_.push_back(added.mesh);
         }
         for (const InstanceView& view : data.instances) {
-            const AddedInstance added =
+            const SceneEditor::AddedInstance added =
                 must(editor().addInstance({byNumber[view.mesh], view.objectToWorld, view.visible}));
             instances_.push_back(added.instance);
         }

@@ -434,9 +434,10 @@ TEST(EngineScene, NamesWhatIsWrong) {
     const LoadedScene loaded(roomWithFence(), settings);
     const PackageScene known = loaded.package().scene(0);
     const std::vector<std::array<float, 12>> instances{{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}};
-    const std::vector<EngineTextureView> textures(known.textures.size(), {0, 4, 4});
-    const std::vector<EngineSamplerView> samplers(known.samplers.size());
-    const auto create = [&](const EngineGeometryView& geometry, std::span<const EngineTextureView> images,
+    const std::vector<EngineSceneView::Texture> textures(known.textures.size(), {0, 4, 4});
+    const std::vector<EngineSceneView::Sampler> samplers(known.samplers.size());
+    const auto create = [&](const EngineSceneView::Geometry& geometry,
+                            std::span<const EngineSceneView::Texture> images,
                             std::span<const std::uint32_t> firstRecords) {
         EngineSceneView view;
         view.geometries = {&geometry, 1};
@@ -448,7 +449,7 @@ TEST(EngineScene, NamesWhatIsWrong) {
         return scene ? std::string() : toString(scene.error());
     };
     const package::PrimitiveEntry& entry = known.primitives.front();
-    EngineGeometryView geometry{entry.mesh, entry.primitive, 0, 64, 64, 64, 64, 64, 64, 64};
+    EngineSceneView::Geometry geometry{entry.mesh, entry.primitive, 0, 64, 64, 64, 64, 64, 64, 64};
     EXPECT_EQ(create(geometry, textures, {}), "");
     const std::uint32_t far[] = {5};
     EXPECT_NE(create(geometry, textures, far).find("entry 0 of firstRecords"), std::string::npos);

@@ -77,7 +77,7 @@ double expectLikeRays(const TracedFrame& hybrid, const TracedFrame& rays) {
     std::size_t agreeing = 0;
     for (std::size_t i = 0; i < hybrid.paths.size(); ++i) {
         const double difference = largestDifference(hybrid.image.pixels[i], rays.image.pixels[i]);
-        if (hybrid.paths[i] != PixelPath::Screen) {
+        if (hybrid.paths[i] != Renderer::PixelPath::Screen) {
             EXPECT_LE(difference, 1e-4) << "pixel " << i;
             EXPECT_EQ(hybrid.paths[i], rays.paths[i]) << "pixel " << i;
         } else {
@@ -112,7 +112,7 @@ TEST_P(ScreenSpace, TheFloorShowsBoxAndWall) {
     };
     for (const auto& pixel : expected) {
         expectColor(at(frame.image, pixel.x, pixel.y), pixel.color, 1e-4F, pixel.what);
-        EXPECT_EQ(frame.paths[pixel.y * kSize + pixel.x], PixelPath::Screen) << pixel.what;
+        EXPECT_EQ(frame.paths[pixel.y * kSize + pixel.x], Renderer::PixelPath::Screen) << pixel.what;
     }
 }
 
@@ -167,7 +167,7 @@ TEST_P(ScreenSpace, WhatIsHiddenIsLeftToRays) {
         EXPECT_GE(expectLikeRays(hybrid, rays), 0.95);
         // The pixel shows the panel at 1.5 m.
         expectColor(at(hybrid.image, 32, 50), kRed, 1e-4F, "panel");
-        EXPECT_EQ(hybrid.paths[50 * kSize + 32], PixelPath::Hit);
+        EXPECT_EQ(hybrid.paths[50 * kSize + 32], Renderer::PixelPath::Hit);
     }
 }
 

@@ -50,7 +50,7 @@ Status fill(Renderer& renderer, const RenderSetup& setup, TracedFrame& frame) {
 }
 
 void expectOnePathEach(const TracedFrame& frame, const RenderSetup& setup) {
-    const auto count = [&](PixelPath path) {
+    const auto count = [&](Renderer::PixelPath path) {
         return static_cast<std::uint32_t>(std::ranges::count(frame.paths, path));
     };
     const FrameCounters& counters = frame.counters;
@@ -59,10 +59,10 @@ void expectOnePathEach(const TracedFrame& frame, const RenderSetup& setup) {
     EXPECT_EQ(frame.paths.size(), std::size_t{setup.width} * setup.height);
     EXPECT_EQ(counters.rays + reflection.screenHits + skipped + reflection.skippedSky,
               setup.width * setup.height);
-    EXPECT_EQ(count(PixelPath::Screen), reflection.screenHits);
-    EXPECT_EQ(count(PixelPath::Hit) + count(PixelPath::Miss), counters.rays);
-    EXPECT_EQ(count(PixelPath::NoRay), skipped);
-    EXPECT_EQ(count(PixelPath::NoSurface), reflection.skippedSky);
+    EXPECT_EQ(count(Renderer::PixelPath::Screen), reflection.screenHits);
+    EXPECT_EQ(count(Renderer::PixelPath::Hit) + count(Renderer::PixelPath::Miss), counters.rays);
+    EXPECT_EQ(count(Renderer::PixelPath::NoRay), skipped);
+    EXPECT_EQ(count(Renderer::PixelPath::NoSurface), reflection.skippedSky);
     EXPECT_EQ(counters.nonFinite, 0U);
     EXPECT_EQ(counters.unknownShader, 0U);
 }

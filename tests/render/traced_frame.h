@@ -10,9 +10,9 @@ namespace glint::testing {
 
 struct TracedFrame {
     LinearImage image;
-    FrameCounters counters;            // of the last sample, as all that follows
-    std::vector<PixelPath> paths;      // of each pixel
-    std::vector<gpu::RayRecord> rays;  // the list, as readRays() has it
+    FrameCounters counters;                  // of the last sample, as all that follows
+    std::vector<Renderer::PixelPath> paths;  // of each pixel
+    std::vector<gpu::RayRecord> rays;        // the list, as readRays() has it
 };
 
 // Reads the list of the last recording and the samples that it names. Their origins are known in packages

@@ -142,17 +142,17 @@ Result<compiler::Build> resolve(const Console& console, const RenderArguments& a
     return build;
 }
 
-std::array<std::uint8_t, 3> colorOf(PixelPath path) {
+std::array<std::uint8_t, 3> colorOf(Renderer::PixelPath path) {
     switch (path) {
-        case PixelPath::Screen:
+        case Renderer::PixelPath::Screen:
             return {230, 159, 0};
-        case PixelPath::Hit:
+        case Renderer::PixelPath::Hit:
             return {0, 114, 178};
-        case PixelPath::Miss:
+        case Renderer::PixelPath::Miss:
             return {86, 180, 233};
-        case PixelPath::NoRay:
+        case Renderer::PixelPath::NoRay:
             return {90, 90, 90};
-        case PixelPath::NoSurface:
+        case Renderer::PixelPath::NoSurface:
             break;
     }
     return {0, 0, 0};
@@ -161,9 +161,9 @@ std::array<std::uint8_t, 3> colorOf(PixelPath path) {
 // The colours are those of Okabe and Ito, "Color Universal Design" (2008). Colour-blind people can tell them
 // apart, and they differ in lightness. Orange: found in screen space. Blue: a ray that hit. Light blue: a ray
 // that left the scene. Grey: no ray. Black: no surface. `paths` has width * height pixels.
-image::DisplayImage coverageMap(const std::vector<PixelPath>& paths, std::uint32_t width,
+image::DisplayImage coverageMap(const std::vector<Renderer::PixelPath>& paths, std::uint32_t width,
                                 std::uint32_t height) {
-    return {width, height, base::mapped<image::Color8>(paths, [](PixelPath path) { return colorOf(path); })};
+    return {width, height, base::mapped<image::Color8>(paths, [](Renderer::PixelPath path) { return colorOf(path); })};
 }
 
 // Writes everything that comes after the pictures.

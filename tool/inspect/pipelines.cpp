@@ -34,16 +34,17 @@ constexpr FactInfo kFacts[] = {
 // The statistics of an executable by name.
 class Statistics {
 public:
-    explicit Statistics(const PipelineExecutable& executable) : executable_(executable) {}
+    explicit Statistics(const PipelineStatistics::Executable& executable) : executable_(executable) {}
 
     std::optional<double> operator()(std::string_view name) const {
-        const auto found = std::ranges::find(executable_.statistics, name, &PipelineStatistic::name);
+        const auto found =
+            std::ranges::find(executable_.statistics, name, &PipelineStatistics::Statistic::name);
         return found == executable_.statistics.end() ? std::nullopt : std::optional(number(*found));
     }
     // Returns the sum of the statistics whose names have one of these words, whatever their case.
     std::optional<double> withWord(std::initializer_list<std::string_view> words) const {
         std::optional<double> sum;
-        for (const PipelineStatistic& statistic : executable_.statistics) {
+        for (const PipelineStatistics::Statistic& statistic : executable_.statistics) {
             std::string name = statistic.name;
             std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
             const bool fits = std::ranges::any_of(
@@ -56,11 +57,11 @@ public:
     }
 
 private:
-    static double number(const PipelineStatistic& statistic) {
+    static double number(const PipelineStatistics::Statistic& statistic) {
         return std::visit([](auto value) { return static_cast<double>(value); }, statistic.value);
     }
 
-    const PipelineExecutable& executable_;
+    const PipelineStatistics::Executable& executable_;
 };
 
 std::optional<double> scaled(std::optional<double> value, double factor) {
@@ -69,7 +70,7 @@ std::optional<double> scaled(std::optional<double> value, double factor) {
 
 constexpr double kLanes = 64.0;  // the lanes of PipelineFacts::cost
 
-double widthOf(const PipelineExecutable& executable) {
+double widthOf(const PipelineStatistics::Executable& executable) {
     return executable.subgroupSize > 0 ? executable.subgroupSize : kLanes;
 }
 
@@ -166,7 +167,7 @@ std::span<const FactInfo> factTable() {
     return kFacts;
 }
 
-PipelineFacts factsOf(const PipelineExecutable& executable) {
+PipelineFacts factsOf(const PipelineStatistics::Executable& executable) {
     const Statistics named(executable);
     if (named("Subgroups per SIMD")) {
         return radvFacts(named, widthOf(executable));
@@ -180,9 +181,9 @@ PipelineFacts factsOf(const PipelineExecutable& executable) {
     return otherFacts(named);
 }
 
-PipelineFacts factsOf(std::span<const PipelineExecutable> executables) {
+PipelineFacts factsOf(std::span<const PipelineStatistics::Executable> executables) {
     PipelineFacts all;
-    for (const PipelineExecutable& executable : executables) {
+    for (const PipelineStatistics::Executable& executable : executables) {
         const PipelineFacts facts = factsOf(executable);
         merge(all.registers, facts.registers, kLargest);
         merge(all.spills, facts.spills, kSum);
@@ -235,7 +236,7 @@ ReportedPipeline reportOf(const InspectedPackage& inspected, PackagePipeline pip
     reported.failure = pipeline.failure ? pipeline.failure->message : std::string();
     reported.executables = std::move(pipeline.statistics.executables);
     reported.facts = factsOf(reported.executables);
-    for (const PipelineExecutable& executable : reported.executables) {
+    for (const PipelineStatistics::Executable& executable : reported.executables) {
         reported.subgroupSize = std::max(reported.subgroupSize, executable.subgroupSize);
     }
     return reported;
@@ -338,11 +339,11 @@ void sortPipelines(PipelineReport& report, const FactInfo* fact) {
 
 namespace {
 
-// The names match the alternatives of PipelineStatistic::value.
+// The names match the alternatives of PipelineStatistics::Statistic::value.
 constexpr std::array<std::string_view, 4> kFormats{"bool", "int64", "uint64", "float64"};
-static_assert(kFormats.size() == std::variant_size_v<decltype(PipelineStatistic::value)>);
+static_assert(kFormats.size() == std::variant_size_v<decltype(PipelineStatistics::Statistic::value)>);
 
-std::vector<std::string_view> stagesOf(const PipelineExecutable& executable) {
+std::vector<std::string_view> stagesOf(const PipelineStatistics::Executable& executable) {
     constexpr std::pair<VkShaderStageFlagBits, const char*> kNames[] = {
         {VK_SHADER_STAGE_VERTEX_BIT, "vertex"},       {VK_SHADER_STAGE_FRAGMENT_BIT, "fragment"},
         {VK_SHADER_STAGE_COMPUTE_BIT, "compute"},     {VK_SHADER_STAGE_RAYGEN_BIT_KHR, "ray-generation"},
@@ -359,7 +360,7 @@ std::vector<std::string_view> stagesOf(const PipelineExecutable& executable) {
 
 }  // namespace
 
-std::string textOf(const PipelineStatistic& statistic) {
+std::string textOf(const PipelineStatistics::Statistic& statistic) {
     return std::visit([](auto value) { return fmt::format("{}", value); }, statistic.value);
 }
 
@@ -371,8 +372,8 @@ namespace glint {
 using base::field;
 using base::output;
 
-static base::Fields fieldsOf(const PipelineStatistic*) {
-    using T = PipelineStatistic;
+static base::Fields fieldsOf(const PipelineStatistics::Statistic*) {
+    using T = PipelineStatistics::Statistic;
     return {output<&T::name>("name", "Name that the driver gives."),
             output<&T::description>("description", "Description that the driver gives."),
             output("format", "Format of the value.",
@@ -381,8 +382,8 @@ static base::Fields fieldsOf(const PipelineStatistic*) {
             output<&T::value>("value", "The value, in this format.")};
 }
 
-static base::Fields fieldsOf(const PipelineExecutable*) {
-    using T = PipelineExecutable;
+static base::Fields fieldsOf(const PipelineStatistics::Executable*) {
+    using T = PipelineStatistics::Executable;
     return {output<&T::name>("name", "Name that the driver gives."),
             output<&T::description>("description", "Description that the driver gives."),
             output<inspect::stagesOf>("stages", "Stages of the pipeline."),

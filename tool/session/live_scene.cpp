@@ -150,12 +150,12 @@ Result<MaterialHandle> LiveScene::materialFor(const gltf::Scene& scene, int inde
 Status LiveScene::addMesh(const gltf::Scene& scene, std::uint32_t number) {
     LiveMesh& mesh = meshOf(number);
     const std::vector<int> materials = listMaterials(scene.meshes[number]);
-    std::vector<EditedPrimitive> primitives;
+    std::vector<SceneEditor::EditedPrimitive> primitives;
     for (std::size_t i = 0; i < mesh.attributes.size(); ++i) {
         GLINT_TRY(const MaterialHandle material, materialFor(scene, materials[i], mesh.attributes[i]));
         primitives.push_back({data_.primitives[mesh.first + i], material});
     }
-    GLINT_TRY(const AddedMesh added, gpu_.editor()->addMesh(primitives));
+    GLINT_TRY(const SceneEditor::AddedMesh added, gpu_.editor()->addMesh(primitives));
     mesh.handle = added.mesh;
     mesh.materials = materials;
     note(scene, added.report);
@@ -192,7 +192,7 @@ Status LiveScene::addInstance(const gltf::Scene& scene, std::size_t index) {
             GLINT_TRY(handles.emplace_back(), materialFor(scene, own[i], mesh.attributes[i]));
         }
     }
-    GLINT_TRY(const AddedInstance added,
+    GLINT_TRY(const SceneEditor::AddedInstance added,
               gpu_.editor()->addInstance(
                   {mesh.handle, view.objectToWorld, view.visible, handles, view.joints, view.morphWeights}));
     instances_[index] = {added.instance,
@@ -339,7 +339,7 @@ std::optional<std::size_t> LiveScene::instanceOf(InstanceHandle handle) const {
 }
 
 void LiveScene::note(const gltf::Scene& scene, const EditReport& report) {
-    for (const MissingCase& missing : report.missing) {
+    for (const EditReport::MissingCase& missing : report.missing) {
         const auto found = std::ranges::find_if(
             materials_, [&](const auto& one) { return one.second.handle == missing.material; });
         const std::string name =

@@ -301,17 +301,17 @@ std::optional<Look> drawLooks(Controls& controls, const Build& build, const Look
 
 namespace {
 
-std::string describePath(PixelPath path) {
+std::string describePath(Renderer::PixelPath path) {
     switch (path) {
-        case PixelPath::NoSurface:
+        case Renderer::PixelPath::NoSurface:
             return "no surface";
-        case PixelPath::NoRay:
+        case Renderer::PixelPath::NoRay:
             return "no ray: rough, unlit, or the sample would bring no light";
-        case PixelPath::Screen:
+        case Renderer::PixelPath::Screen:
             return "found on the screen, without a ray";
-        case PixelPath::Hit:
+        case Renderer::PixelPath::Hit:
             return "a ray, which hit";
-        case PixelPath::Miss:
+        case Renderer::PixelPath::Miss:
             return "a ray, which left the scene";
     }
     return "";
@@ -322,7 +322,7 @@ void addRays(Picture& picture, std::size_t pixel, std::vector<Field>& fields) {
         if (effect.kind != package::EffectKind::Rays) {
             continue;
         }
-        const Result<std::vector<PixelPath>> paths = picture.renderer().readCoverage(effect.effect);
+        const Result<std::vector<Renderer::PixelPath>> paths = picture.renderer().readCoverage(effect.effect);
         fields.push_back({"rays of " + std::string(effect.name),
                           paths ? describePath((*paths)[pixel]) : paths.error().message});
     }
@@ -366,7 +366,7 @@ Result<Pick> pickPixel(const Request& request, Picture& picture, std::uint32_t x
         return pick;
     }
     const gltf::Scene& scene = picture.scene();
-    const SurfacePlace& surface = *place;
+    const Renderer::SurfacePlace& surface = *place;
     const std::optional<std::size_t> instance = picture.instanceAt(surface);
     pick.node = instance ? static_cast<int>(picture.data().sources[*instance].node) : -1;
     const int mesh = instance ? scene.nodes[static_cast<std::size_t>(pick.node)].mesh : -1;

@@ -280,7 +280,7 @@ Status Picture::makeEdits(std::uint64_t frame) {
     return first;
 }
 
-std::optional<std::size_t> Picture::instanceAt(const SurfacePlace& place) const {
+std::optional<std::size_t> Picture::instanceAt(const Renderer::SurfacePlace& place) const {
     return live_ ? live_->instanceOf(place.handle) : std::optional<std::size_t>(place.instance);
 }
 

@@ -61,7 +61,7 @@ public:
         return addedAnimations_;
     }
     // Returns the index of an instance in data(), if `place` is one of it.
-    std::optional<std::size_t> instanceAt(const SurfacePlace& place) const;
+    std::optional<std::size_t> instanceAt(const Renderer::SurfacePlace& place) const;
 
     bool isReady() const {
         return device_.renderer != nullptr;

@@ -83,61 +83,28 @@ struct FrameCounters {
     EffectCounters of(package::Effect effect) const;
 };
 
-// A driver's report about its pipelines, in the terms of VK_KHR_pipeline_executable_properties.
-
-// One number. The driver chooses the name and the description.
-struct PipelineStatistic {
-    std::string name;
-    std::string description;
-    std::variant<bool, std::int64_t, std::uint64_t, double> value;
-};
-
-// A piece of code of a pipeline on the device. A driver may make one for each stage, or fewer, or more.
-struct PipelineExecutable {
-    std::string name;
-    std::string description;
-    VkShaderStageFlags stages = 0;
-    std::uint32_t subgroupSize = 0;  // 0: it may vary, or the driver gives none
-    std::vector<PipelineStatistic> statistics;
-};
-
+// A driver's report about a pipeline, in the terms of VK_KHR_pipeline_executable_properties.
 struct PipelineStatistics {
+    // One number. The driver chooses the name and the description.
+    struct Statistic {
+        std::string name;
+        std::string description;
+        std::variant<bool, std::int64_t, std::uint64_t, double> value;
+    };
+    // A piece of code of a pipeline on the device. A driver may make one for each stage, or fewer, or more.
+    struct Executable {
+        std::string name;
+        std::string description;
+        VkShaderStageFlags stages = 0;
+        std::uint32_t subgroupSize = 0;  // 0: it may vary, or the driver gives none
+        std::vector<Statistic> statistics;
+    };
+
     std::string name;  // the role of its module in the manifest, and its case, effect or ordering
     // These have no value if the driver does not report them.
     std::optional<double> creationMs;
     std::optional<bool> cacheHit;
-    std::vector<PipelineExecutable> executables;
-};
-
-// The source of a pixel's light from an effect.
-enum class PixelPath : std::uint8_t {
-    NoSurface,
-    NoRay,   // rough, unlit, or its sample would bring no light
-    Screen,  // found in screen space
-    Hit,     // found by a ray
-    Miss,    // the ray left the scene
-};
-
-// The surface that a pixel sees.
-struct SurfacePlace {
-    std::uint32_t instance = 0;  // index into SceneView::instances, or that of `handle`
-    std::uint32_t mesh = 0;      // the numbers of PrimitiveView; in a scene that is edited, of MeshHandle
-    std::uint32_t primitive = 0;
-    std::uint32_t shaderId = 0;  // of the case that shades hits on it; their bucket is 1 + shaderId
-    InstanceHandle handle;       // for SceneEditor
-};
-
-// An image of a layer (glint/layers.h). Its usage includes storage, sampled and both kinds of transfer.
-struct LayerImage {
-    std::string_view name;                     // PackageLayer::name
-    const package::LayerInfo* info = nullptr;  // its row
-    package::Effect effect = 0;                // of the source of light; 0 for surfaces and the direct light
-    std::uint32_t bounce = 0;                  // from 1, of layers of a bounce; 0 for others
-    VkImage image = VK_NULL_HANDLE;
-    VkImageView view = VK_NULL_HANDLE;
-    VkFormat format = VK_FORMAT_UNDEFINED;
-    // It is in this layout after the first recording.
-    static constexpr VkImageLayout kLayout = VK_IMAGE_LAYOUT_GENERAL;
+    std::vector<Executable> executables;
 };
 
 // The pipelines and per-frame resources for one package, one scene and one size. Context and GpuScene must
@@ -213,6 +180,18 @@ public:
     VkFormat outputFormat() const;
     VkImageView outputView() const;
 
+    // An image of a layer (glint/layers.h). Its usage includes storage, sampled and both kinds of transfer.
+    struct LayerImage {
+        std::string_view name;                     // PackageLayer::name
+        const package::LayerInfo* info = nullptr;  // its row
+        package::Effect effect = 0;  // of the source of light; 0 for surfaces and the direct light
+        std::uint32_t bounce = 0;    // from 1, of layers of a bounce; 0 for others
+        VkImage image = VK_NULL_HANDLE;
+        VkImageView view = VK_NULL_HANDLE;
+        VkFormat format = VK_FORMAT_UNDEFINED;
+        // It is in this layout after the first recording.
+        static constexpr VkImageLayout kLayout = VK_IMAGE_LAYOUT_GENERAL;
+    };
     // The images of the package's layers, in the order of Package::layers(). They live as long as the
     // renderer. Shaders of a recording write them last, so commands that read them need a dependency on its
     // shader writes, and are to complete before those of the next recording, or be ordered before them on the
@@ -239,6 +218,14 @@ public:
     // it. FrameOptions::timing of that recording says which times there are.
     Result<std::vector<PassTiming>> timings();
     Result<FrameCounters> counters();
+    // The source of a pixel's light from an effect.
+    enum class PixelPath : std::uint8_t {
+        NoSurface,
+        NoRay,   // rough, unlit, or its sample would bring no light
+        Screen,  // found in screen space
+        Hit,     // found by a ray
+        Miss,    // the ray left the scene
+    };
     // Says for each pixel how it got the light of an effect that sends rays, row by row from the top.
     // Submits, and waits for the device. Errors: "effect-missing" if the package lacks the effect,
     // "frame-options" if the frame was lit in several bands.
@@ -246,6 +233,14 @@ public:
     // Says for each pixel whether it sees a surface in the last sample: 1 for a surface, 0 for the sky; row
     // by row from the top. Submits, and waits for the device.
     Result<std::vector<std::uint8_t>> readSurfaces();
+    // The surface that a pixel sees.
+    struct SurfacePlace {
+        std::uint32_t instance = 0;  // index into SceneView::instances, or that of `handle`
+        std::uint32_t mesh = 0;      // the numbers of PrimitiveView; in a scene that is edited, of MeshHandle
+        std::uint32_t primitive = 0;
+        std::uint32_t shaderId = 0;  // of the case that shades hits on it; their bucket is 1 + shaderId
+        InstanceHandle handle;       // for SceneEditor
+    };
     // Returns the surface that a pixel sees in the last sample, or no value if it sees the sky. (0, 0) is the
     // pixel at the top left. Edits since that sample count. Submits, and waits for the device. Error
     // "render-size" for a pixel outside of the picture.

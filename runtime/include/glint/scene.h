@@ -82,15 +82,14 @@ struct MaterialSource {
     std::span<const TextureUse> textures;
 };
 
-// A material on a primitive for which the package has no shader.
-struct MissingCase {
-    MaterialHandle material;
-    package::KeyWords features;      // its key
-    std::vector<std::string> names;  // the names of these features
-};
-
 // The report of an edit.
 struct EditReport {
+    // A material on a primitive for which the package has no shader.
+    struct MissingCase {
+        MaterialHandle material;
+        package::KeyWords features;      // its key
+        std::vector<std::string> names;  // the names of these features
+    };
     // Materials that the fallback shades from now on. Each key is listed once in an edit.
     std::vector<MissingCase> missing;
 };
@@ -109,7 +108,7 @@ struct PackageReplacement {
     std::uint32_t buffersKept = 0;
     std::uint32_t buffersMade = 0;
     // In a scene that is edited: the materials that the fallback of the new package shades.
-    std::vector<MissingCase> missing{};
+    std::vector<EditReport::MissingCase> missing{};
 };
 
 // The progress of the last replacement.
@@ -121,47 +120,6 @@ struct PackageProgress {
     // Why the last replacement was given up; recordings continue with the old package. The next
     // replacePackage() clears it.
     std::optional<Diagnostic> error{};
-};
-
-struct EditedPrimitive {
-    PrimitiveView geometry;  // its numbers of mesh and primitive are not read
-    MaterialHandle material;
-};
-
-// New vertices of a primitive: as many as it has. Empty spans leave the normals or tangents as they are.
-struct VertexValues {
-    std::span<const std::array<float, 3>> positions;
-    std::span<const std::array<float, 3>> normals{};
-    std::span<const std::array<float, 4>> tangents{};
-};
-
-// Whether edits give a mesh other vertices.
-enum class MeshUse : std::uint32_t {
-    Fixed,
-    Changing,  // vertices are stored in full, and BLASes are built fast and can be refitted
-};
-
-struct AddedMesh {
-    MeshHandle mesh;
-    EditReport report;
-};
-
-struct AddedInstance {
-    InstanceHandle instance;
-    EditReport report;
-};
-
-// An instance that is added.
-struct PlacedMesh {
-    MeshHandle mesh;
-    std::array<float, 12> objectToWorld{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // three rows of four
-    bool visible = true;
-    // Empty, or one for each primitive of the mesh. A handle that names nothing stands for the mesh's own
-    // material.
-    std::span<const MaterialHandle> materials{};
-    // As in InstanceView: the pose of a mesh that follows joints or has morph targets.
-    std::span<const std::array<float, 12>> joints{};
-    std::span<const float> morphWeights{};
 };
 
 // Edits the textures, materials, meshes, instances and lights of a GpuScene. The Package must outlive the
@@ -184,6 +142,47 @@ public:
     ~SceneEditor() = default;
     SceneEditor(const SceneEditor&) = delete;
     SceneEditor& operator=(const SceneEditor&) = delete;
+
+    struct EditedPrimitive {
+        PrimitiveView geometry;  // its numbers of mesh and primitive are not read
+        MaterialHandle material;
+    };
+
+    // New vertices of a primitive: as many as it has. Empty spans leave the normals or tangents as they are.
+    struct VertexValues {
+        std::span<const std::array<float, 3>> positions;
+        std::span<const std::array<float, 3>> normals{};
+        std::span<const std::array<float, 4>> tangents{};
+    };
+
+    // Whether edits give a mesh other vertices.
+    enum class MeshUse : std::uint32_t {
+        Fixed,
+        Changing,  // vertices are stored in full, and BLASes are built fast and can be refitted
+    };
+
+    struct AddedMesh {
+        MeshHandle mesh;
+        EditReport report;
+    };
+
+    struct AddedInstance {
+        InstanceHandle instance;
+        EditReport report;
+    };
+
+    // An instance that is added.
+    struct PlacedMesh {
+        MeshHandle mesh;
+        std::array<float, 12> objectToWorld{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // three rows of four
+        bool visible = true;
+        // Empty, or one for each primitive of the mesh. A handle that names nothing stands for the mesh's own
+        // material.
+        std::span<const MaterialHandle> materials{};
+        // As in InstanceView: the pose of a mesh that follows joints or has morph targets.
+        std::span<const std::array<float, 12>> joints{};
+        std::span<const float> morphWeights{};
+    };
 
     // These return the handle of an uploaded thing by its number in the package's scene (textures, materials,
     // meshes) or in SceneView (instances, lights). A number that was not uploaded, or was removed, gives a
@@ -330,22 +329,6 @@ private:
 
 // --- Scenes on the device ---
 
-class SceneEditor;
-class TextureStream;
-
-// The work of the last GpuScene::update(). Times are device times in milliseconds; without timestamps on the
-// queue they are 0.
-struct MotionStatistics {
-    enum class TopLevel : std::uint32_t { Kept, Updated, Rebuilt };
-    std::uint32_t deformed = 0;  // instances whose vertices were computed again
-    std::uint32_t refits = 0;    // BLASes that were refitted
-    std::uint32_t rebuilds = 0;  // BLASes that were built anew
-    TopLevel topLevel = TopLevel::Kept;
-    double deformMs = 0.0;
-    double blasMs = 0.0;
-    double tlasMs = 0.0;
-};
-
 // The geometry, acceleration structures, materials, textures and lights of a scene on the device. The Context
 // must outlive it.
 class GpuScene {
@@ -459,6 +442,18 @@ public:
     // complete(). This is for tools and tests.
     Status updateAndWait(const MotionView& motion);
 
+    // The work of the last update(). Times are device times in milliseconds; without timestamps on the
+    // queue they are 0.
+    struct MotionStatistics {
+        enum class TopLevel : std::uint32_t { Kept, Updated, Rebuilt };
+        std::uint32_t deformed = 0;  // instances whose vertices were computed again
+        std::uint32_t refits = 0;    // BLASes that were refitted
+        std::uint32_t rebuilds = 0;  // BLASes that were built anew
+        TopLevel topLevel = TopLevel::Kept;
+        double deformMs = 0.0;
+        double blasMs = 0.0;
+        double tlasMs = 0.0;
+    };
     // Returns the work of the last update. The caller must have waited until the device completed it. Error
     // "frame-not-recorded" if there was no update, and those of reading device times.
     Result<MotionStatistics> motion() const;

@@ -31,58 +31,59 @@ struct PackageReplacement;  // as well
 
 // --- The scene of a host ---
 
-// One geometry of one instance, which a ray can hit. Addresses are device addresses in the formats that the
-// package's shaders read; by default they are tightly packed: three uint32 a triangle, three floats a
-// position and a normal, four a tangent and a colour, two a UV. The address of an attribute may be 0 only if
-// the package's key of this primitive lacks the attribute.
-struct EngineGeometryView {
-    std::uint32_t mesh = 0;       // mesh of the package's scene that gives material and key
-    std::uint32_t primitive = 0;  // within the mesh
-    std::uint32_t instance = 0;   // index into EngineSceneView::instances
-    VkDeviceAddress indices = 0;
-    VkDeviceAddress positions = 0;
-    VkDeviceAddress normals = 0;
-    VkDeviceAddress tangents = 0;
-    VkDeviceAddress texCoords0 = 0;
-    VkDeviceAddress texCoords1 = 0;
-    VkDeviceAddress colors = 0;
-    VkDeviceAddress attributes = 0;  // of packs: the floats of Package::attributes(), vertex by vertex
-    // Bits for a host's own functions (`glint compile --host`), such as the format of its vertices. They are
-    // the upper half of GeometryRecord::flags.
-    std::uint16_t hostFlags = 0;
-    // Index into EngineSceneView::materials, whose entry must be of the primitive's material. kOfPackage: the
-    // values that the package has.
-    std::uint32_t material = kOfPackage;
-    static constexpr std::uint32_t kOfPackage = 0xFFFFFFFF;
-};
-
-// A texture of the package's scene (PackageScene::textures) as the host has it.
-struct EngineTextureView {
-    std::uint32_t index = 0;  // in the host's array of images, Bindings::textures
-    std::uint32_t width = 0;  // texels of mip 0
-    std::uint32_t height = 0;
-};
-
-// A sampler of the package's scene (PackageScene::samplers) as the host has it.
-struct EngineSamplerView {
-    std::uint32_t index = 0;     // in the host's array of samplers, Bindings::samplers
-    float maxAnisotropy = 1.0F;  // of its filter; 1 without
-};
-
-// The rule by which the shaders find the geometry of a hit. A geometry's index in EngineSceneView::geometries
-// is the number of the instance's first geometry plus the index of the geometry in its BLAS.
-enum class RecordsBy : std::uint32_t {
-    CustomIndex = 0,       // instanceCustomIndex is the number of the instance's first geometry
-    CustomIndexTable = 1,  // firstRecords[instanceCustomIndex] is that number
-    InstanceTable = 2,     // firstRecords[place of the instance in the TLAS] is that number
-};
-
 struct EngineSceneView {
+    // One geometry of one instance, which a ray can hit. Addresses are device addresses in the formats that
+    // the package's shaders read; by default they are tightly packed: three uint32 a triangle, three floats a
+    // position and a normal, four a tangent and a colour, two a UV. The address of an attribute may be 0 only
+    // if the package's key of this primitive lacks the attribute.
+    struct Geometry {
+        std::uint32_t mesh = 0;       // mesh of the package's scene that gives material and key
+        std::uint32_t primitive = 0;  // within the mesh
+        std::uint32_t instance = 0;   // index into EngineSceneView::instances
+        VkDeviceAddress indices = 0;
+        VkDeviceAddress positions = 0;
+        VkDeviceAddress normals = 0;
+        VkDeviceAddress tangents = 0;
+        VkDeviceAddress texCoords0 = 0;
+        VkDeviceAddress texCoords1 = 0;
+        VkDeviceAddress colors = 0;
+        VkDeviceAddress attributes = 0;  // of packs: the floats of Package::attributes(), vertex by vertex
+        // Bits for a host's own functions (`glint compile --host`), such as the format of its vertices. They
+        // are the upper half of GeometryRecord::flags.
+        std::uint16_t hostFlags = 0;
+        // Index into EngineSceneView::materials, whose entry must be of the primitive's material. kOfPackage:
+        // the values that the package has.
+        std::uint32_t material = kOfPackage;
+        static constexpr std::uint32_t kOfPackage = 0xFFFFFFFF;
+    };
+
+    // A texture of the package's scene (PackageScene::textures) as the host has it.
+    struct Texture {
+        std::uint32_t index = 0;  // in the host's array of images, Bindings::textures
+        std::uint32_t width = 0;  // texels of mip 0
+        std::uint32_t height = 0;
+    };
+
+    // A sampler of the package's scene (PackageScene::samplers) as the host has it.
+    struct Sampler {
+        std::uint32_t index = 0;     // in the host's array of samplers, Bindings::samplers
+        float maxAnisotropy = 1.0F;  // of its filter; 1 without
+    };
+
+    // The rule by which the shaders find the geometry of a hit. A geometry's index in
+    // EngineSceneView::geometries is the number of the instance's first geometry plus the index of the
+    // geometry in its BLAS.
+    enum class RecordsBy : std::uint32_t {
+        CustomIndex = 0,       // instanceCustomIndex is the number of the instance's first geometry
+        CustomIndexTable = 1,  // firstRecords[instanceCustomIndex] is that number
+        InstanceTable = 2,     // firstRecords[place of the instance in the TLAS] is that number
+    };
+
     std::uint32_t packageScene = 0;  // index of the scene in the package
-    std::span<const EngineGeometryView> geometries;
+    std::span<const Geometry> geometries;
     std::span<const std::array<float, 12>> instances;  // objectToWorld, three rows of four
-    std::span<const EngineTextureView> textures;       // one for each of PackageScene::textures
-    std::span<const EngineSamplerView> samplers;       // one for each of PackageScene::samplers
+    std::span<const Texture> textures;                 // one for each of PackageScene::textures
+    std::span<const Sampler> samplers;                 // one for each of PackageScene::samplers
     std::span<const LightView> lights;
     RecordsBy recordsBy = RecordsBy::CustomIndex;
     std::span<const std::uint32_t> firstRecords{};

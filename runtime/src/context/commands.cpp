@@ -9,79 +9,53 @@ namespace glint {
 
 Result<CommandRunner> CommandRunner::create(Context::State& context) {
     CommandRunner runner(context);
-    VkCommandPoolCreateInfo poolInfo{};
-    poolInfo.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-    poolInfo.queueFamilyIndex = context.handles.queueFamily;
+    const VkCommandPoolCreateInfo poolInfo{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                           .queueFamilyIndex = context.handles.queueFamily};
     GLINT_TRY(runner.pool_, createHandle<UniqueCommandPool>(context, context.vk.CreateCommandPool,
                                                             "vkCreateCommandPool", poolInfo));
 
-    VkCommandBufferAllocateInfo bufferInfo{};
-    bufferInfo.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-    bufferInfo.commandPool = runner.pool_.get();
-    bufferInfo.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-    bufferInfo.commandBufferCount = 1;
-    const VkResult result =
-        context.vk.AllocateCommandBuffers(context.handles.device, &bufferInfo, &runner.commands_);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkAllocateCommandBuffers", result);
-    }
+    VkCommandBufferAllocateInfo bufferInfo{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                           .commandPool = runner.pool_.get(),
+                                           .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                           .commandBufferCount = 1};
+    GLINT_TRY_DO(
+        statusOf("vkAllocateCommandBuffers",
+                 context.vk.AllocateCommandBuffers(context.handles.device, &bufferInfo, &runner.commands_)));
     nameObject(context, VK_OBJECT_TYPE_COMMAND_BUFFER, reinterpret_cast<std::uint64_t>(runner.commands_),
                "commands");
 
-    VkFenceCreateInfo fenceInfo{};
-    fenceInfo.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
+    const VkFenceCreateInfo fenceInfo{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
     GLINT_TRY(runner.fence_,
               createHandle<UniqueFence>(context, context.vk.CreateFence, "vkCreateFence", fenceInfo));
     return runner;
 }
 
 Result<VkCommandBuffer> CommandRunner::begin() {
-    VkResult result = context_->vk.ResetCommandPool(context_->handles.device, pool_.get(), 0);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkResetCommandPool", result);
-    }
-    VkCommandBufferBeginInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-    info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-    result = context_->vk.BeginCommandBuffer(commands_, &info);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkBeginCommandBuffer", result);
-    }
+    GLINT_TRY_DO(statusOf("vkResetCommandPool",
+                          context_->vk.ResetCommandPool(context_->handles.device, pool_.get(), 0)));
+    VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                  .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+    GLINT_TRY_DO(statusOf("vkBeginCommandBuffer", context_->vk.BeginCommandBuffer(commands_, &info)));
     return commands_;
 }
 
 Status CommandRunner::submitAndWait() {
     const DeviceTable& vk = context_->vk;
-    VkResult result = vk.EndCommandBuffer(commands_);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkEndCommandBuffer", result);
-    }
-    VkCommandBufferSubmitInfo commands{};
-    commands.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO;
-    commands.commandBuffer = commands_;
-    VkSubmitInfo2 submit{};
-    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2;
-    submit.commandBufferInfoCount = 1;
-    submit.pCommandBufferInfos = &commands;
+    GLINT_TRY_DO(statusOf("vkEndCommandBuffer", vk.EndCommandBuffer(commands_)));
+    VkCommandBufferSubmitInfo commands{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
+                                       .commandBuffer = commands_};
+    VkSubmitInfo2 submit{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
+                         .commandBufferInfoCount = 1,
+                         .pCommandBufferInfos = &commands};
     const VkFence fence = fence_.get();
     {
         const QueueLock lock(*context_);
-        result = vk.QueueSubmit2(context_->handles.queue, 1, &submit, fence);
-    }
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkQueueSubmit2", result);
+        GLINT_TRY_DO(statusOf("vkQueueSubmit2", vk.QueueSubmit2(context_->handles.queue, 1, &submit, fence)));
     }
     // There is no time limit: a driver ends work that hangs, and a CPU device may take long.
-    result = vk.WaitForFences(context_->handles.device, 1, &fence, VK_TRUE,
-                              std::numeric_limits<std::uint64_t>::max());
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkWaitForFences", result);
-    }
-    result = vk.ResetFences(context_->handles.device, 1, &fence);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkResetFences", result);
-    }
-    return okStatus();
+    GLINT_TRY_DO(statusOf("vkWaitForFences", vk.WaitForFences(context_->handles.device, 1, &fence, VK_TRUE,
+                                                              std::numeric_limits<std::uint64_t>::max())));
+    return statusOf("vkResetFences", vk.ResetFences(context_->handles.device, 1, &fence));
 }
 
 Status runOnce(Context::State& context, const std::function<Status(VkCommandBuffer)>& record) {
@@ -93,46 +67,41 @@ Status runOnce(Context::State& context, const std::function<Status(VkCommandBuff
 
 void recordDependency(const Context::State& context, VkCommandBuffer commands,
                       const MemoryDependency& dependency) {
-    VkMemoryBarrier2 barrier{};
-    barrier.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2;
-    barrier.srcStageMask = dependency.fromStages;
-    barrier.srcAccessMask = dependency.fromAccess;
-    barrier.dstStageMask = dependency.toStages;
-    barrier.dstAccessMask = dependency.toAccess;
-    VkDependencyInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-    info.memoryBarrierCount = 1;
-    info.pMemoryBarriers = &barrier;
+    VkMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
+                             .srcStageMask = dependency.fromStages,
+                             .srcAccessMask = dependency.fromAccess,
+                             .dstStageMask = dependency.toStages,
+                             .dstAccessMask = dependency.toAccess};
+    VkDependencyInfo info{
+        .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &barrier};
     context.vk.CmdPipelineBarrier2(commands, &info);
 }
 
 void recordTransition(const Context::State& context, VkCommandBuffer commands,
                       const ImageTransition& transition) {
-    VkImageMemoryBarrier2 barrier{};
-    barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2;
-    barrier.srcStageMask = transition.dependency.fromStages;
-    barrier.srcAccessMask = transition.dependency.fromAccess;
-    barrier.dstStageMask = transition.dependency.toStages;
-    barrier.dstAccessMask = transition.dependency.toAccess;
-    barrier.oldLayout = transition.from;
-    barrier.newLayout = transition.to;
-    barrier.srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    barrier.image = transition.image;
-    barrier.subresourceRange = {transition.aspect, transition.firstMip, transition.mipCount, 0, 1};
-    VkDependencyInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO;
-    info.imageMemoryBarrierCount = 1;
-    info.pImageMemoryBarriers = &barrier;
+    VkImageMemoryBarrier2 barrier{
+        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+        .srcStageMask = transition.dependency.fromStages,
+        .srcAccessMask = transition.dependency.fromAccess,
+        .dstStageMask = transition.dependency.toStages,
+        .dstAccessMask = transition.dependency.toAccess,
+        .oldLayout = transition.from,
+        .newLayout = transition.to,
+        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+        .image = transition.image,
+        .subresourceRange = {transition.aspect, transition.firstMip, transition.mipCount, 0, 1}};
+    VkDependencyInfo info{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
+                          .imageMemoryBarrierCount = 1,
+                          .pImageMemoryBarriers = &barrier};
     context.vk.CmdPipelineBarrier2(commands, &info);
 }
 
 void beginLabel(const Context::State& context, VkCommandBuffer commands, std::string_view name) {
     if (context.vk.CmdBeginDebugUtilsLabelEXT != nullptr) {
         const std::string text = context.services.namePrefix + std::string(name);
-        VkDebugUtilsLabelEXT label{};
-        label.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT;
-        label.pLabelName = text.c_str();
+        VkDebugUtilsLabelEXT label{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
+                                   .pLabelName = text.c_str()};
         context.vk.CmdBeginDebugUtilsLabelEXT(commands, &label);
     }
 }
@@ -159,10 +128,9 @@ Result<Timer> Timer::create(Context::State& context, std::uint32_t capacity) {
         return timer;
     }
     timer.queries_ = kQueriesPerStretch * capacity;
-    VkQueryPoolCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
-    info.queryType = VK_QUERY_TYPE_TIMESTAMP;
-    info.queryCount = timer.queries_;
+    const VkQueryPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                     .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                     .queryCount = timer.queries_};
     GLINT_TRY(timer.pool_,
               createHandle<UniqueQueryPool>(context, context.vk.CreateQueryPool, "vkCreateQueryPool", info));
     // It is not allowed to read a query that was never reset, but one without a result may be read.
@@ -208,9 +176,7 @@ Result<std::vector<double>> Timer::read(std::uint32_t count) const {
             return makeError("timings-pending", "", "the device has not finished the recording",
                              "wait for the submission before reading its timings");
         }
-        if (result != VK_SUCCESS) {
-            return vulkanError("vkGetQueryPoolResults", result);
-        }
+        GLINT_TRY_DO(statusOf("vkGetQueryPoolResults", result));
     }
     const std::uint32_t bits = context_->limits.timestampValidBits;
     const std::uint64_t mask = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;

@@ -66,11 +66,10 @@ Status queryReport(Context::State& state) {
     GLINT_TRY_DO(queryDevice(state.instance, state.handles.physicalDevice, report));
     state.features = moduleFeatures(report, state.handles);
     if (hasExtension(report, VK_NV_SHADER_SM_BUILTINS_EXTENSION_NAME)) {
-        VkPhysicalDeviceShaderSMBuiltinsPropertiesNV builtins{};
-        builtins.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_SM_BUILTINS_PROPERTIES_NV;
-        VkPhysicalDeviceProperties2 properties{};
-        properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-        properties.pNext = &builtins;
+        VkPhysicalDeviceShaderSMBuiltinsPropertiesNV builtins{
+            .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_SM_BUILTINS_PROPERTIES_NV};
+        VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                               .pNext = &builtins};
         state.instance.GetPhysicalDeviceProperties2(state.handles.physicalDevice, &properties);
         state.limits.multiprocessors = builtins.shaderSMCount;
     }
@@ -81,9 +80,9 @@ void queryLimits(Context::State& state) {
     DeviceLimits& limits = state.limits;
     limits.accelerationStructure.sType =
         VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_PROPERTIES_KHR;
-    VkPhysicalDeviceVulkan13Properties vulkan13{};
-    vulkan13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES;
-    vulkan13.pNext = &limits.accelerationStructure;
+    VkPhysicalDeviceVulkan13Properties vulkan13{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_PROPERTIES,
+        .pNext = &limits.accelerationStructure};
     if ((state.handles.tracers & package::kTracerRayPipeline) != 0) {
         limits.rayPipeline.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_PROPERTIES_KHR;
         limits.accelerationStructure.pNext = &limits.rayPipeline;
@@ -93,15 +92,12 @@ void queryLimits(Context::State& state) {
         limits.opacityMicromap.pNext =
             std::exchange(limits.accelerationStructure.pNext, &limits.opacityMicromap);
     }
-    VkPhysicalDeviceVulkan12Properties vulkan12{};
-    vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES;
-    vulkan12.pNext = &vulkan13;
-    VkPhysicalDeviceVulkan11Properties vulkan11{};
-    vulkan11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES;
-    vulkan11.pNext = &vulkan12;
-    VkPhysicalDeviceProperties2 properties{};
-    properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-    properties.pNext = &vulkan11;
+    VkPhysicalDeviceVulkan12Properties vulkan12{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES, .pNext = &vulkan13};
+    VkPhysicalDeviceVulkan11Properties vulkan11{
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES, .pNext = &vulkan12};
+    VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                           .pNext = &vulkan11};
     state.instance.GetPhysicalDeviceProperties2(state.handles.physicalDevice, &properties);
     limits.accelerationStructure.pNext = nullptr;
     limits.opacityMicromap.pNext = nullptr;
@@ -147,14 +143,10 @@ void queryLimits(Context::State& state) {
 }
 
 Status checkQueueFamily(Context::State& state) {
-    std::uint32_t count = 0;
-    state.instance.GetPhysicalDeviceQueueFamilyProperties(state.handles.physicalDevice, &count, nullptr);
-    std::vector<VkQueueFamilyProperties> families(count);
-    state.instance.GetPhysicalDeviceQueueFamilyProperties(state.handles.physicalDevice, &count,
-                                                          families.data());
-    constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+    const std::vector<VkQueueFamilyProperties> families =
+        queueFamilies(state.instance, state.handles.physicalDevice);
     const std::uint32_t family = state.handles.queueFamily;
-    if (family >= count || (families[family].queueFlags & kNeeded) != kNeeded) {
+    if (family >= families.size() || !isSuitable(families[family])) {
         return makeError("context-queue", "",
                          "queue family " + std::to_string(family) + " has no graphics and compute",
                          "pass a queue of a family with VK_QUEUE_GRAPHICS_BIT and VK_QUEUE_COMPUTE_BIT");

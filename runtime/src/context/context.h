@@ -178,8 +178,9 @@ bool hasExtension(const DeviceReport& report, const char* name);
 // Compares what the handles say is enabled with the device. Error "device-features".
 Status checkClaims(const DeviceHandles& handles, const DeviceReport& report);
 
-// Clears every feature of `report`.
-void clearFeatures(DeviceReport& report);
+// Returns the queue families of a device. Glint works on those that are suitable: with graphics and compute.
+std::vector<VkQueueFamilyProperties> queueFamilies(const InstanceTable& table, VkPhysicalDevice device);
+bool isSuitable(const VkQueueFamilyProperties& family);
 
 // Fills `report` by asking `device`. Error "vulkan-call".
 Status queryDevice(const InstanceTable& table, VkPhysicalDevice device, DeviceReport& report);

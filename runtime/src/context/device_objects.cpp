@@ -12,7 +12,6 @@ void nameObject(const Context::State& context, VkObjectType type, std::uint64_t 
     }
     const std::string text = context.services.namePrefix + std::string(name);
     const VkDebugUtilsObjectNameInfoEXT info{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
-                                             .pNext = nullptr,
                                              .objectType = type,
                                              .objectHandle = handle,
                                              .pObjectName = text.c_str()};
@@ -24,7 +23,6 @@ Result<UniqueSetLayout> createSetLayout(Context::State& context,
                                         std::span<const VkDescriptorBindingFlags> flags) {
     const VkDescriptorSetLayoutBindingFlagsCreateInfo bindingFlags{
         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_BINDING_FLAGS_CREATE_INFO,
-        .pNext = nullptr,
         .bindingCount = static_cast<std::uint32_t>(flags.size()),
         .pBindingFlags = flags.data()};
     VkDescriptorSetLayoutCreateFlags ofLayout = 0;
@@ -53,7 +51,6 @@ Result<DescriptorSet> createSet(Context::State& context, VkDescriptorSetLayout l
         flags = VK_DESCRIPTOR_POOL_CREATE_UPDATE_AFTER_BIND_BIT;
     }
     const VkDescriptorPoolCreateInfo poolInfo{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                              .pNext = nullptr,
                                               .flags = flags,
                                               .maxSets = 1,
                                               .poolSizeCount = static_cast<std::uint32_t>(sizes.size()),
@@ -62,14 +59,11 @@ Result<DescriptorSet> createSet(Context::State& context, VkDescriptorSetLayout l
     GLINT_TRY(made.pool, createHandle<UniqueDescriptorPool>(context, context.vk.CreateDescriptorPool,
                                                             "vkCreateDescriptorPool", poolInfo));
     const VkDescriptorSetAllocateInfo setInfo{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                                              .pNext = nullptr,
                                               .descriptorPool = made.pool.get(),
                                               .descriptorSetCount = 1,
                                               .pSetLayouts = &layout};
-    const VkResult result = context.vk.AllocateDescriptorSets(context.handles.device, &setInfo, &made.set);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkAllocateDescriptorSets", result);
-    }
+    GLINT_TRY_DO(statusOf("vkAllocateDescriptorSets",
+                          context.vk.AllocateDescriptorSets(context.handles.device, &setInfo, &made.set)));
     nameObject(context, VK_OBJECT_TYPE_DESCRIPTOR_SET, (std::uint64_t)made.set, "set");  // NOLINT: pointer
     return made;
 }
@@ -78,8 +72,6 @@ Result<UniquePipelineLayout> createPipelineLayout(Context::State& context,
                                                   std::span<const VkDescriptorSetLayout> sets,
                                                   const VkPushConstantRange& range) {
     const VkPipelineLayoutCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                                          .pNext = nullptr,
-                                          .flags = 0,
                                           .setLayoutCount = static_cast<std::uint32_t>(sets.size()),
                                           .pSetLayouts = sets.data(),
                                           .pushConstantRangeCount = 1,

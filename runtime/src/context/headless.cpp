@@ -21,44 +21,33 @@ VKAPI_ATTR VkBool32 VKAPI_CALL collectMessage(VkDebugUtilsMessageSeverityFlagBit
 }
 
 VkDebugUtilsMessengerCreateInfoEXT messengerInfo(ValidationLog& log) {
-    VkDebugUtilsMessengerCreateInfoEXT info{};
-    info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
-    info.messageSeverity =
-        VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-    // GENERAL is left out, because its messages from the loader are about other drivers' files.
-    info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
-    info.pfnUserCallback = collectMessage;
-    info.pUserData = &log;
-    return info;
+    return {.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+            .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
+                               VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+            // GENERAL is left out, because its messages from the loader are about other drivers' files.
+            .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
+            .pfnUserCallback = collectMessage,
+            .pUserData = &log};
 }
 
 bool hasLayer(const GlobalTable& table, const char* name) {
-    std::uint32_t count = 0;
-    if (table.EnumerateInstanceLayerProperties(&count, nullptr) != VK_SUCCESS) {
-        return false;
-    }
-    std::vector<VkLayerProperties> layers(count);
-    if (table.EnumerateInstanceLayerProperties(&count, layers.data()) < VK_SUCCESS) {
-        return false;
-    }
-    layers.resize(count);
-    return std::ranges::any_of(
-        layers, [name](const VkLayerProperties& layer) { return std::strcmp(layer.layerName, name) == 0; });
+    std::vector<VkLayerProperties> layers;
+    const Status listed =
+        listAll("vkEnumerateInstanceLayerProperties", layers, table.EnumerateInstanceLayerProperties);
+    return listed && std::ranges::any_of(layers, [name](const VkLayerProperties& layer) {
+               return std::strcmp(layer.layerName, name) == 0;
+           });
 }
 
 bool hasInstanceExtension(const GlobalTable& table, const char* name) {
-    std::uint32_t count = 0;
-    if (table.EnumerateInstanceExtensionProperties(nullptr, &count, nullptr) != VK_SUCCESS) {
-        return false;
-    }
-    std::vector<VkExtensionProperties> extensions(count);
-    if (table.EnumerateInstanceExtensionProperties(nullptr, &count, extensions.data()) < VK_SUCCESS) {
-        return false;
-    }
-    extensions.resize(count);
-    return std::ranges::any_of(extensions, [name](const VkExtensionProperties& extension) {
-        return std::strcmp(extension.extensionName, name) == 0;
-    });
+    std::vector<VkExtensionProperties> extensions;
+    const Status listed = listAll("vkEnumerateInstanceExtensionProperties", extensions,
+                                  [&](std::uint32_t* count, VkExtensionProperties* list) {
+                                      return table.EnumerateInstanceExtensionProperties(nullptr, count, list);
+                                  });
+    return listed && std::ranges::any_of(extensions, [name](const auto& extension) {
+               return std::strcmp(extension.extensionName, name) == 0;
+           });
 }
 
 // Creates the instance and, with validation, the messenger.
@@ -86,64 +75,52 @@ Status createInstance(const GlobalTable& table, const HeadlessOptions& options, 
         extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
     }
 
-    VkApplicationInfo application{};
-    application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
-    application.pApplicationName = "glint";
-    application.apiVersion = DeviceRequirements::kApiVersion;
+    VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                  .pApplicationName = "glint",
+                                  .apiVersion = DeviceRequirements::kApiVersion};
 
     VkDebugUtilsMessengerCreateInfoEXT messenger = messengerInfo(state.log);
     constexpr VkValidationFeatureEnableEXT kEnabled =
         VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT;
-    VkValidationFeaturesEXT validationFeatures{};
-    validationFeatures.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT;
-    validationFeatures.pNext = &messenger;
-    validationFeatures.enabledValidationFeatureCount = 1;
-    validationFeatures.pEnabledValidationFeatures = &kEnabled;
+    VkValidationFeaturesEXT validationFeatures{.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+                                               .pNext = &messenger,
+                                               .enabledValidationFeatureCount = 1,
+                                               .pEnabledValidationFeatures = &kEnabled};
 
-    VkInstanceCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
-    info.pApplicationInfo = &application;
-    info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
-    info.ppEnabledExtensionNames = extensions.data();
-    info.enabledLayerCount = static_cast<std::uint32_t>(layers.size());
-    info.ppEnabledLayerNames = layers.data();
+    VkInstanceCreateInfo info{.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+                              .pApplicationInfo = &application,
+                              .enabledLayerCount = static_cast<std::uint32_t>(layers.size()),
+                              .ppEnabledLayerNames = layers.data(),
+                              .enabledExtensionCount = static_cast<std::uint32_t>(extensions.size()),
+                              .ppEnabledExtensionNames = extensions.data()};
     if (validation == Validation::On) {
         info.pNext = &messenger;
     } else if (validation == Validation::Synchronization) {
         info.pNext = &validationFeatures;
     }
-    VkResult result = table.CreateInstance(&info, nullptr, &state.handles.instance);
+    const VkResult result = table.CreateInstance(&info, nullptr, &state.handles.instance);
     if (result == VK_ERROR_INCOMPATIBLE_DRIVER) {
         return makeError("device-missing", "", "there is no Vulkan driver on this machine",
                          "install a driver, for instance mesa-vulkan-drivers");
     }
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateInstance", result);
-    }
+    GLINT_TRY_DO(statusOf("vkCreateInstance", result));
     GLINT_TRY(state.instance, loadInstanceTable(table.GetInstanceProcAddr, state.handles.instance));
     state.ownsInstance = true;
     state.handles.debugUtils = labels;
     if (validation != Validation::Off) {
-        result = state.instance.CreateDebugUtilsMessengerEXT(state.handles.instance, &messenger, nullptr,
-                                                             &state.messenger);
-        if (result != VK_SUCCESS) {
-            return vulkanError("vkCreateDebugUtilsMessengerEXT", result);
-        }
+        return statusOf("vkCreateDebugUtilsMessengerEXT",
+                        state.instance.CreateDebugUtilsMessengerEXT(state.handles.instance, &messenger,
+                                                                    nullptr, &state.messenger));
     }
     return okStatus();
 }
 
 Result<std::vector<VkPhysicalDevice>> enumerateDevices(const Context::State& state) {
-    std::uint32_t count = 0;
-    VkResult result = state.instance.EnumeratePhysicalDevices(state.handles.instance, &count, nullptr);
-    std::vector<VkPhysicalDevice> devices(count);
-    if (result == VK_SUCCESS && count > 0) {
-        result = state.instance.EnumeratePhysicalDevices(state.handles.instance, &count, devices.data());
-        devices.resize(count);
-    }
-    if (result != VK_SUCCESS && result != VK_INCOMPLETE) {
-        return vulkanError("vkEnumeratePhysicalDevices", result);
-    }
+    std::vector<VkPhysicalDevice> devices;
+    GLINT_TRY_DO(
+        listAll("vkEnumeratePhysicalDevices", devices, [&](std::uint32_t* count, VkPhysicalDevice* list) {
+            return state.instance.EnumeratePhysicalDevices(state.handles.instance, count, list);
+        }));
     if (devices.empty()) {
         return makeError("device-missing", "", "there is no Vulkan device on this machine",
                          "install a driver, for instance mesa-vulkan-drivers");
@@ -208,20 +185,6 @@ Result<VkPhysicalDevice> chooseDevice(const Context::State& state, const Headles
     return makeError("device-features", "", message, "update the driver or use another device");
 }
 
-std::uint32_t chooseQueueFamily(const Context::State& state) {
-    std::uint32_t count = 0;
-    state.instance.GetPhysicalDeviceQueueFamilyProperties(state.handles.physicalDevice, &count, nullptr);
-    std::vector<VkQueueFamilyProperties> families(count);
-    state.instance.GetPhysicalDeviceQueueFamilyProperties(state.handles.physicalDevice, &count,
-                                                          families.data());
-    constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-    const auto found = std::ranges::find_if(families, [](const VkQueueFamilyProperties& family) {
-        return (family.queueFlags & kNeeded) == kNeeded;
-    });
-    // chooseDevice() has checked that there is such a family.
-    return static_cast<std::uint32_t>(found - families.begin());
-}
-
 Status createDevice(Context::State& state, std::span<const std::string> further) {
     DeviceRequirements requirements(state.handles.tracers, state.handles.positionFetch,
                                     state.handles.shaderFloat16, state.handles.pipelineStatistics,
@@ -232,28 +195,27 @@ Status createDevice(Context::State& state, std::span<const std::string> further)
     const VkBool32 anisotropy = report.features.features.features.samplerAnisotropy;
     requirements.features.features.samplerAnisotropy = anisotropy;
     state.handles.samplerAnisotropy = anisotropy == VK_TRUE;
-    state.handles.queueFamily = chooseQueueFamily(state);
+    const std::vector<VkQueueFamilyProperties> families =
+        queueFamilies(state.instance, state.handles.physicalDevice);
+    // chooseDevice() has checked that one is suitable.
+    state.handles.queueFamily =
+        static_cast<std::uint32_t>(std::ranges::find_if(families, isSuitable) - families.begin());
     const float priority = 1.0F;
-    VkDeviceQueueCreateInfo queue{};
-    queue.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO;
-    queue.queueFamilyIndex = state.handles.queueFamily;
-    queue.queueCount = 1;
-    queue.pQueuePriorities = &priority;
-    VkDeviceCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO;
-    info.pNext = &requirements.features;
-    info.queueCreateInfoCount = 1;
-    info.pQueueCreateInfos = &queue;
+    VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                  .queueFamilyIndex = state.handles.queueFamily,
+                                  .queueCount = 1,
+                                  .pQueuePriorities = &priority};
+    VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                            .pNext = &requirements.features,
+                            .queueCreateInfoCount = 1,
+                            .pQueueCreateInfos = &queue};
     for (const std::string& extension : further) {
         requirements.extensions.push_back(extension.c_str());
     }
     info.enabledExtensionCount = static_cast<std::uint32_t>(requirements.extensions.size());
     info.ppEnabledExtensionNames = requirements.extensions.data();
-    const VkResult result =
-        state.instance.CreateDevice(state.handles.physicalDevice, &info, nullptr, &state.handles.device);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreateDevice", result);
-    }
+    GLINT_TRY_DO(statusOf("vkCreateDevice", state.instance.CreateDevice(state.handles.physicalDevice, &info,
+                                                                        nullptr, &state.handles.device)));
     state.ownsDevice = true;
     GLINT_TRY_DO(finishContext(state));
     state.vk.GetDeviceQueue(state.handles.device, state.handles.queueFamily, 0, &state.handles.queue);

@@ -106,16 +106,12 @@ Result<std::span<const std::uint8_t>> unwrapPipelineCache(const PipelineCacheOwn
 
 Result<VkPipelineCache> createPipelineCache(const Context::State& state, std::span<const std::uint8_t> data) {
     const VkPipelineCacheCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_CACHE_CREATE_INFO,
-                                         .pNext = nullptr,
-                                         .flags = 0,
                                          .initialDataSize = data.size(),
                                          .pInitialData = data.data()};
     VkPipelineCache cache = VK_NULL_HANDLE;
-    const VkResult result =
-        state.vk.CreatePipelineCache(state.handles.device, &info, state.services.allocation, &cache);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkCreatePipelineCache", result);
-    }
+    GLINT_TRY_DO(statusOf(
+        "vkCreatePipelineCache",
+        state.vk.CreatePipelineCache(state.handles.device, &info, state.services.allocation, &cache)));
     nameObject(state, VK_OBJECT_TYPE_PIPELINE_CACHE, (std::uint64_t)cache,  // NOLINT: pointer or number
                "pipeline cache");
     return cache;
@@ -125,20 +121,13 @@ namespace {
 
 Result<std::vector<std::uint8_t>> readCache(const Context::State& state, VkPipelineCache cache) {
     std::vector<std::uint8_t> data;
-    VkResult result = VK_INCOMPLETE;
-    // Other threads may add to the cache between the two calls.
-    while (result == VK_INCOMPLETE) {
-        std::size_t bytes = 0;
-        result = state.vk.GetPipelineCacheData(state.handles.device, cache, &bytes, nullptr);
-        if (result == VK_SUCCESS) {
-            data.resize(bytes);
-            result = state.vk.GetPipelineCacheData(state.handles.device, cache, &bytes, data.data());
-            data.resize(bytes);
-        }
-    }
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkGetPipelineCacheData", result);
-    }
+    // Other threads may add to the cache meanwhile.
+    GLINT_TRY_DO(listAll(
+        "vkGetPipelineCacheData", data,
+        [&](std::size_t* bytes, void* place) {
+            return state.vk.GetPipelineCacheData(state.handles.device, cache, bytes, place);
+        },
+        std::uint8_t{0}, std::size_t{0}));
     return data;
 }
 

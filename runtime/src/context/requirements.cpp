@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <array>
-#include <span>
+#include <iterator>
 #include <utility>
 
 namespace glint {
@@ -13,38 +13,48 @@ namespace {
 constexpr const char* kExtensions[] = {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME,
                                        VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME};
 
+// Who needs a feature.
+enum class Need : std::uint8_t {
+    Runtime,      // the runtime, or all modules
+    SomeModules,  // a device without it runs the packages whose modules do not need it
+    RayQuery,     // the tracer
+    RayPipeline,
+};
+
 // A feature's name, and the place of its bit in a DeviceRequirements.
-struct RequiredFeature {
+struct Feature {
+    Need need;
     const char* name;
     VkBool32& (*bit)(DeviceRequirements&);
 };
 
-#define GLINT_FEATURE(member, name)                                                                    \
-    RequiredFeature {                                                                                  \
-#name, [](DeviceRequirements & requirements) -> VkBool32& { return requirements.member.name; } \
+#define GLINT_FEATURE(need, member, name)                                                          \
+    Feature {                                                                                      \
+        Need::need, #name,                                                                         \
+            [](DeviceRequirements& requirements) -> VkBool32& { return requirements.member.name; } \
     }
 
-// The features that the runtime or all modules need.
-constexpr RequiredFeature kFeatures[] = {
-    GLINT_FEATURE(vulkan12, bufferDeviceAddress),
-    GLINT_FEATURE(vulkan12, scalarBlockLayout),
-    GLINT_FEATURE(vulkan12, descriptorBindingPartiallyBound),
-    GLINT_FEATURE(vulkan12, descriptorBindingSampledImageUpdateAfterBind),
-    GLINT_FEATURE(vulkan12, hostQueryReset),
-    GLINT_FEATURE(vulkan13, dynamicRendering),
-    GLINT_FEATURE(vulkan13, synchronization2),
-    GLINT_FEATURE(accelerationStructure, accelerationStructure),
-};
-
-// The features that some modules need. A device without them runs the packages whose modules do not.
-constexpr RequiredFeature kModuleFeatures[] = {
-    GLINT_FEATURE(features.features, shaderStorageImageExtendedFormats),
-    GLINT_FEATURE(features.features, shaderSampledImageArrayDynamicIndexing),
-    GLINT_FEATURE(vulkan12, runtimeDescriptorArray),
-    GLINT_FEATURE(vulkan12, shaderSampledImageArrayNonUniformIndexing),
+constexpr Feature kFeatures[] = {
+    GLINT_FEATURE(Runtime, vulkan12, bufferDeviceAddress),
+    GLINT_FEATURE(Runtime, vulkan12, scalarBlockLayout),
+    GLINT_FEATURE(Runtime, vulkan12, descriptorBindingPartiallyBound),
+    GLINT_FEATURE(Runtime, vulkan12, descriptorBindingSampledImageUpdateAfterBind),
+    GLINT_FEATURE(Runtime, vulkan12, hostQueryReset),
+    GLINT_FEATURE(Runtime, vulkan13, dynamicRendering),
+    GLINT_FEATURE(Runtime, vulkan13, synchronization2),
+    GLINT_FEATURE(Runtime, accelerationStructure, accelerationStructure),
+    GLINT_FEATURE(SomeModules, features.features, shaderStorageImageExtendedFormats),
+    GLINT_FEATURE(SomeModules, features.features, shaderSampledImageArrayDynamicIndexing),
+    GLINT_FEATURE(SomeModules, vulkan12, runtimeDescriptorArray),
+    GLINT_FEATURE(SomeModules, vulkan12, shaderSampledImageArrayNonUniformIndexing),
     // An umbrella of the two above. Modules do not name it.
-    GLINT_FEATURE(vulkan12, descriptorIndexing),
+    GLINT_FEATURE(SomeModules, vulkan12, descriptorIndexing),
+    GLINT_FEATURE(RayQuery, rayQuery, rayQuery),
+    GLINT_FEATURE(RayPipeline, rayPipeline, rayTracingPipeline),
+    // Lists of rays are dispatched by their length, which only the device knows. Modules do not name it.
+    GLINT_FEATURE(RayPipeline, rayPipeline, rayTracingPipelineTraceRaysIndirect),
 };
+#undef GLINT_FEATURE
 
 struct SubgroupOperation {
     const char* name;
@@ -65,41 +75,44 @@ constexpr SubgroupOperation kSubgroupOperations[] = {
 };
 #undef GLINT_SUBGROUP
 
-constexpr RequiredFeature kRayQueryFeatures[] = {GLINT_FEATURE(rayQuery, rayQuery)};
-// Lists of rays are dispatched by their length, which only the device knows.
-constexpr RequiredFeature kRayPipelineFeatures[] = {
-    GLINT_FEATURE(rayPipeline, rayTracingPipeline),
-    GLINT_FEATURE(rayPipeline, rayTracingPipelineTraceRaysIndirect)};
-
-#undef GLINT_FEATURE
-
-// The requirements of each tracer in addition to those of every device.
 struct TracerNeeds {
     package::Tracer tracer;
+    Need need;
     const char* extension;
-    std::span<const RequiredFeature> features;
+};
+constexpr TracerNeeds kTracerNeeds[] = {
+    {package::kTracerRayQuery, Need::RayQuery, VK_KHR_RAY_QUERY_EXTENSION_NAME},
+    {package::kTracerRayPipeline, Need::RayPipeline, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME},
 };
 
-constexpr TracerNeeds kTracerNeeds[] = {
-    {package::kTracerRayQuery, VK_KHR_RAY_QUERY_EXTENSION_NAME, kRayQueryFeatures},
-    {package::kTracerRayPipeline, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME, kRayPipelineFeatures},
-};
+// Returns whether a device with these tracers is created with features of the need.
+bool isNeeded(Need need, std::uint32_t tracers) {
+    const auto* const ofTracer = std::ranges::find(kTracerNeeds, need, &TracerNeeds::need);
+    return ofTracer == std::end(kTracerNeeds) || (tracers & ofTracer->tracer) != 0;
+}
 
 // The accessors take a mutable chain, but nothing is written through them here.
-bool hasFeature(const DeviceReport& report, const RequiredFeature& feature) {
+bool hasFeature(const DeviceReport& report, const Feature& feature) {
     return feature.bit(const_cast<DeviceRequirements&>(report.features)) != VK_FALSE;
+}
+
+// Returns the names of the features of a need that the report lacks, or of all.
+std::vector<std::string> featuresOf(Need need, const DeviceReport* report = nullptr) {
+    std::vector<std::string> names;
+    for (const Feature& feature : kFeatures) {
+        if (feature.need == need && (report == nullptr || !hasFeature(*report, feature))) {
+            names.emplace_back(feature.name);
+        }
+    }
+    return names;
 }
 
 // Returns a text such as "VK_KHR_ray_query (rayQuery) or VK_KHR_…".
 std::string tracerChoices() {
     std::string text;
     for (const TracerNeeds& needs : kTracerNeeds) {
-        std::vector<std::string> features;
-        for (const RequiredFeature& feature : needs.features) {
-            features.emplace_back(feature.name);
-        }
-        text +=
-            (text.empty() ? "" : " or ") + std::string(needs.extension) + " (" + joinNames(features) + ")";
+        text += (text.empty() ? "" : " or ") + std::string(needs.extension) + " (" +
+                joinNames(featuresOf(needs.need)) + ")";
     }
     return text;
 }
@@ -118,29 +131,16 @@ DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositi
                                        bool tellsOfPipelines, bool usesMicromaps, bool readsClock)
     : extensions(std::begin(kExtensions), std::end(kExtensions)),
       features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &vulkan11, {}},
-      vulkan11{},
-      vulkan12{},
-      vulkan13{},
-      accelerationStructure{},
-      rayQuery{},
-      rayPipeline{},
-      positionFetch{},
-      pipelineExecutables{},
-      opacityMicromap{},
-      clock{} {
-    vulkan11.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES;
-    vulkan11.pNext = &vulkan12;
-    vulkan12.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES;
-    vulkan12.pNext = &vulkan13;
-    vulkan13.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES;
-    vulkan13.pNext = &accelerationStructure;
-    accelerationStructure.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR;
-    rayQuery.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR;
-    rayPipeline.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR;
-    positionFetch.sType = kPositionFetchFeatures;
-    pipelineExecutables.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR;
-    opacityMicromap.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_OPACITY_MICROMAP_FEATURES_EXT;
-    clock.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_CLOCK_FEATURES_KHR;
+      vulkan11{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES, &vulkan12},
+      vulkan12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &vulkan13},
+      vulkan13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES, &accelerationStructure},
+      accelerationStructure{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR},
+      rayQuery{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR},
+      rayPipeline{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR},
+      positionFetch{kPositionFetchFeatures},
+      pipelineExecutables{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PIPELINE_EXECUTABLE_PROPERTIES_FEATURES_KHR},
+      opacityMicromap{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_OPACITY_MICROMAP_FEATURES_EXT},
+      clock{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_SHADER_CLOCK_FEATURES_KHR} {
     const auto chain = [&](auto& feature) {
         feature.pNext = std::exchange(accelerationStructure.pNext, &feature);
     };
@@ -169,41 +169,32 @@ DeviceRequirements::DeviceRequirements(std::uint32_t tracers, bool fetchesPositi
         demand(clock, clock.shaderSubgroupClock, VK_KHR_SHADER_CLOCK_EXTENSION_NAME);
     }
     vulkan12.shaderFloat16 = computesHalf ? VK_TRUE : VK_FALSE;
-    for (const RequiredFeature& feature : kFeatures) {
-        feature.bit(*this) = VK_TRUE;
-    }
-    for (const RequiredFeature& feature : kModuleFeatures) {
-        feature.bit(*this) = VK_TRUE;
+    for (const Feature& feature : kFeatures) {
+        if (isNeeded(feature.need, tracers)) {
+            feature.bit(*this) = VK_TRUE;
+        }
     }
     for (const TracerNeeds& needs : kTracerNeeds) {
         if ((tracers & needs.tracer) != 0) {
             extensions.push_back(needs.extension);
-            for (const RequiredFeature& feature : needs.features) {
-                feature.bit(*this) = VK_TRUE;
-            }
         }
     }
 }
 
 void leaveOutLacking(const DeviceReport& report, DeviceRequirements& requirements) {
-    for (const RequiredFeature& feature : kModuleFeatures) {
-        feature.bit(requirements) = hasFeature(report, feature) ? VK_TRUE : VK_FALSE;
+    for (const Feature& feature : kFeatures) {
+        if (feature.need == Need::SomeModules) {
+            feature.bit(requirements) = hasFeature(report, feature) ? VK_TRUE : VK_FALSE;
+        }
     }
 }
 
 std::vector<std::string> moduleFeatures(const DeviceReport& report, const DeviceHandles& handles) {
     std::vector<std::string> features;
-    for (const RequiredFeature& feature : kFeatures) {
-        features.emplace_back(feature.name);
-    }
-    for (const RequiredFeature& feature : kModuleFeatures) {
-        if (hasFeature(report, feature)) {
+    for (const Feature& feature : kFeatures) {
+        if (feature.need == Need::SomeModules ? hasFeature(report, feature)
+                                              : isNeeded(feature.need, handles.tracers)) {
             features.emplace_back(feature.name);
-        }
-    }
-    for (const TracerNeeds& needs : kTracerNeeds) {
-        if ((handles.tracers & needs.tracer) != 0) {
-            features.emplace_back(needs.features.front().name);
         }
     }
     for (const SubgroupOperation& operation : kSubgroupOperations) {
@@ -226,26 +217,10 @@ bool hasExtension(const DeviceReport& report, const char* name) {
     return std::ranges::find(report.extensions, name) != report.extensions.end();
 }
 
-void clearFeatures(DeviceReport& report) {
-    for (const RequiredFeature& feature : kFeatures) {
-        feature.bit(report.features) = VK_FALSE;
-    }
-    for (const RequiredFeature& feature : kModuleFeatures) {
-        feature.bit(report.features) = VK_FALSE;
-    }
-    for (const TracerNeeds& needs : kTracerNeeds) {
-        for (const RequiredFeature& feature : needs.features) {
-            feature.bit(report.features) = VK_FALSE;
-        }
-    }
-}
-
 std::uint32_t tracersOf(const DeviceReport& report) {
     std::uint32_t tracers = 0;
     for (const TracerNeeds& needs : kTracerNeeds) {
-        const bool complete = std::ranges::all_of(
-            needs.features, [&](const RequiredFeature& feature) { return hasFeature(report, feature); });
-        if (complete && hasExtension(report, needs.extension)) {
+        if (featuresOf(needs.need, &report).empty() && hasExtension(report, needs.extension)) {
             tracers |= needs.tracer;
         }
     }
@@ -263,11 +238,7 @@ std::vector<std::string> missingFrom(const DeviceReport& report) {
             missing.emplace_back(extension);
         }
     }
-    for (const RequiredFeature& feature : kFeatures) {
-        if (!hasFeature(report, feature)) {
-            missing.emplace_back(feature.name);
-        }
-    }
+    std::ranges::move(featuresOf(Need::Runtime, &report), std::back_inserter(missing));
     if (tracersOf(report) == 0) {
         missing.push_back(tracerChoices());
     }
@@ -301,20 +272,10 @@ namespace {
 
 Status queryExtensions(const InstanceTable& table, VkPhysicalDevice device, DeviceReport& report) {
     std::vector<VkExtensionProperties> extensions;
-    VkResult result = VK_INCOMPLETE;
-    // Layers may come and go between the two calls.
-    while (result == VK_INCOMPLETE) {
-        std::uint32_t count = 0;
-        result = table.EnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
-        if (result == VK_SUCCESS) {
-            extensions.resize(count);
-            result = table.EnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
-            extensions.resize(count);
-        }
-    }
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkEnumerateDeviceExtensionProperties", result);
-    }
+    GLINT_TRY_DO(listAll("vkEnumerateDeviceExtensionProperties", extensions,
+                         [&](std::uint32_t* count, VkExtensionProperties* list) {
+                             return table.EnumerateDeviceExtensionProperties(device, nullptr, count, list);
+                         }));
     for (const VkExtensionProperties& extension : extensions) {
         report.extensions.emplace_back(extension.extensionName);
     }
@@ -323,11 +284,10 @@ Status queryExtensions(const InstanceTable& table, VkPhysicalDevice device, Devi
 
 // Below Vulkan 1.3 the chains of queryFeatures() are not defined, so the report then has the version only.
 void queryFeatures(const InstanceTable& table, VkPhysicalDevice device, DeviceReport& report) {
-    VkPhysicalDeviceVulkan11Properties subgroup{};
-    subgroup.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES;
-    VkPhysicalDeviceProperties2 properties{};
-    properties.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2;
-    properties.pNext = &subgroup;
+    VkPhysicalDeviceVulkan11Properties subgroup{.sType =
+                                                    VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
+    VkPhysicalDeviceProperties2 properties{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                           .pNext = &subgroup};
     table.GetPhysicalDeviceProperties2(device, &properties);
     report.subgroupStages = subgroup.subgroupSupportedStages;
     report.subgroupOperations = subgroup.subgroupSupportedOperations;
@@ -339,18 +299,20 @@ void queryFeatures(const InstanceTable& table, VkPhysicalDevice device, DeviceRe
     table.GetPhysicalDeviceFeatures2(device, &report.features.features);
 }
 
-bool hasGraphicsQueue(const InstanceTable& table, VkPhysicalDevice device) {
+}  // namespace
+
+std::vector<VkQueueFamilyProperties> queueFamilies(const InstanceTable& table, VkPhysicalDevice device) {
     std::uint32_t count = 0;
     table.GetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
     std::vector<VkQueueFamilyProperties> families(count);
     table.GetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-    constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-    return std::ranges::any_of(families, [](const VkQueueFamilyProperties& family) {
-        return (family.queueFlags & kNeeded) == kNeeded;
-    });
+    return families;
 }
 
-}  // namespace
+bool isSuitable(const VkQueueFamilyProperties& family) {
+    constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+    return (family.queueFlags & kNeeded) == kNeeded;
+}
 
 Status queryDevice(const InstanceTable& table, VkPhysicalDevice device, DeviceReport& report) {
     VkPhysicalDeviceProperties properties{};
@@ -359,11 +321,13 @@ Status queryDevice(const InstanceTable& table, VkPhysicalDevice device, DeviceRe
     GLINT_TRY_DO(queryExtensions(table, device, report));
     // A device leaves structures of extensions that it lacks untouched, so the query starts from cleared
     // features.
-    clearFeatures(report);
+    for (const Feature& feature : kFeatures) {
+        feature.bit(report.features) = VK_FALSE;
+    }
     if (report.apiVersion >= DeviceRequirements::kApiVersion) {
         queryFeatures(table, device, report);
     }
-    report.hasQueue = hasGraphicsQueue(table, device);
+    report.hasQueue = std::ranges::any_of(queueFamilies(table, device), isSuitable);
     return okStatus();
 }
 

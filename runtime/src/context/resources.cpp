@@ -91,13 +91,11 @@ Result<MemoryPool::Block*> MemoryPool::addBlock(const HostServices::MemoryRange&
     block.free.push_back({0, bytes});
     if (use != MemoryUse::Device) {
         void* mapped = nullptr;
-        const VkResult result = context_->services.mapMemory
-                                    ? context_->services.mapMemory(range, mapped)
-                                    : context_->vk.MapMemory(context_->handles.device, range.memory, 0,
-                                                             VK_WHOLE_SIZE, 0, &mapped);
-        if (result != VK_SUCCESS) {
-            return vulkanError("vkMapMemory", result);
-        }
+        GLINT_TRY_DO(
+            statusOf("vkMapMemory", context_->services.mapMemory
+                                        ? context_->services.mapMemory(range, mapped)
+                                        : context_->vk.MapMemory(context_->handles.device, range.memory, 0,
+                                                                 VK_WHOLE_SIZE, 0, &mapped)));
         block.mapped = static_cast<std::uint8_t*>(mapped);
     }
     blocks_.push_back(std::move(block));
@@ -118,10 +116,7 @@ Result<MemoryPool::Block*> MemoryPool::askHost(const VkMemoryRequirements& requi
         .isImage = tiling != Tiling::Linear,
         .name = name.c_str()};
     HostServices::MemoryRange range;
-    const VkResult result = context_->services.allocateMemory(request, range);
-    if (result != VK_SUCCESS) {
-        return vulkanError("HostServices::allocateMemory", result);
-    }
+    GLINT_TRY_DO(statusOf("HostServices::allocateMemory", context_->services.allocateMemory(request, range)));
     return addBlock(range, tiling, requirements.size, use);
 }
 
@@ -137,20 +132,16 @@ Result<MemoryPool::Block*> MemoryPool::makeBlock(std::uint32_t type, Tiling tili
         return makeError("memory-count", "", "the scene needs more memory allocations than the device has",
                          "use a smaller scene");
     }
-    VkMemoryAllocateFlagsInfo flags{};
-    flags.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO;
-    flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
-    VkMemoryAllocateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO;
-    info.pNext = tiling == Tiling::Optimal ? nullptr : &flags;
-    info.allocationSize = bytes;
-    info.memoryTypeIndex = type;
+    const VkMemoryAllocateFlagsInfo flags{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
+                                          .flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT};
+    VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                              .pNext = tiling == Tiling::Optimal ? nullptr : &flags,
+                              .allocationSize = bytes,
+                              .memoryTypeIndex = type};
     HostServices::MemoryRange range{.type = type};
-    const VkResult result = context_->vk.AllocateMemory(context_->handles.device, &info,
-                                                        context_->services.allocation, &range.memory);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkAllocateMemory", result);
-    }
+    GLINT_TRY_DO(statusOf("vkAllocateMemory",
+                          context_->vk.AllocateMemory(context_->handles.device, &info,
+                                                      context_->services.allocation, &range.memory)));
     nameObject(*context_, VK_OBJECT_TYPE_DEVICE_MEMORY,
                (std::uint64_t)range.memory,  // NOLINT: may be a number
                name_);
@@ -282,10 +273,9 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
                              std::to_string(context.limits.maxBufferBytes),
                          "split the mesh or use a smaller image");
     }
-    VkBufferCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO;
-    info.size = buffer.bytes;
-    info.usage = usage | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
+    const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                                  .size = buffer.bytes,
+                                  .usage = usage | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT};
     GLINT_TRY(buffer.handle, createHandle<UniqueBuffer>(context, context.vk.CreateBuffer, "vkCreateBuffer",
                                                         info, pool.name()));
 
@@ -300,29 +290,25 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
     if (!memory) {
         return memory.error();
     }
-    const VkResult result = context.vk.BindBufferMemory(device, handle, memory->memory, memory->offset);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkBindBufferMemory", result);
-    }
+    GLINT_TRY_DO(statusOf("vkBindBufferMemory",
+                          context.vk.BindBufferMemory(device, handle, memory->memory, memory->offset)));
     buffer.memory = *memory;
     buffer.mapped = memory->mapped;
     buffer.use = use;
-    VkBufferDeviceAddressInfo address{};
-    address.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO;
-    address.buffer = handle;
+    VkBufferDeviceAddressInfo address{.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO,
+                                      .buffer = handle};
     buffer.address = context.vk.GetBufferDeviceAddress(device, &address);
     return buffer;
 }
 
 Result<UniqueImageView> createImageView(Context::State& context, VkImage image, const ImageInfo& info,
                                         std::uint32_t firstMip) {
-    VkImageViewCreateInfo view{};
-    view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
-    view.image = image;
-    view.viewType = VK_IMAGE_VIEW_TYPE_2D;
-    view.format = info.format;
-    view.components = info.components;
-    view.subresourceRange = wholeImage(info.aspect);
+    VkImageViewCreateInfo view{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                               .image = image,
+                               .viewType = VK_IMAGE_VIEW_TYPE_2D,
+                               .format = info.format,
+                               .components = info.components,
+                               .subresourceRange = wholeImage(info.aspect)};
     view.subresourceRange.baseMipLevel = firstMip;
     return createHandle<UniqueImageView>(context, context.vk.CreateImageView, "vkCreateImageView", view);
 }
@@ -334,16 +320,15 @@ Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const
     image.extent = info.extent;
     image.mips = info.mips;
     image.components = info.components;
-    VkImageCreateInfo create{};
-    create.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO;
-    create.imageType = VK_IMAGE_TYPE_2D;
-    create.format = info.format;
-    create.extent = {info.extent.width, info.extent.height, 1};
-    create.mipLevels = info.mips;
-    create.arrayLayers = 1;
-    create.samples = VK_SAMPLE_COUNT_1_BIT;
-    create.tiling = VK_IMAGE_TILING_OPTIMAL;
-    create.usage = info.usage;
+    const VkImageCreateInfo create{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                                   .imageType = VK_IMAGE_TYPE_2D,
+                                   .format = info.format,
+                                   .extent = {info.extent.width, info.extent.height, 1},
+                                   .mipLevels = info.mips,
+                                   .arrayLayers = 1,
+                                   .samples = VK_SAMPLE_COUNT_1_BIT,
+                                   .tiling = VK_IMAGE_TILING_OPTIMAL,
+                                   .usage = info.usage};
     GLINT_TRY(image.handle, createHandle<UniqueImage>(context, context.vk.CreateImage, "vkCreateImage",
                                                       create, pool.name()));
 
@@ -353,10 +338,8 @@ Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const
     context.vk.GetImageMemoryRequirements(device, handle, &requirements);
     image.bytes = requirements.size;
     GLINT_TRY(auto memory, pool.allocate(requirements, MemoryUse::Device, tiling));
-    const VkResult result = context.vk.BindImageMemory(device, handle, memory.memory, memory.offset);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkBindImageMemory", result);
-    }
+    GLINT_TRY_DO(statusOf("vkBindImageMemory",
+                          context.vk.BindImageMemory(device, handle, memory.memory, memory.offset)));
     image.memory = memory;
     GLINT_TRY(image.view, createImageView(context, handle, info, 0));
     return image;

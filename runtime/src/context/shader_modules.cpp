@@ -8,10 +8,9 @@
 namespace glint {
 
 Result<UniqueShaderModule> createShaderModule(Context::State& context, std::span<const std::uint32_t> words) {
-    VkShaderModuleCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
-    info.codeSize = words.size_bytes();
-    info.pCode = words.data();
+    const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                        .codeSize = words.size_bytes(),
+                                        .pCode = words.data()};
     return createHandle<UniqueShaderModule>(context, context.vk.CreateShaderModule, "vkCreateShaderModule",
                                             info);
 }
@@ -43,11 +42,10 @@ std::vector<std::uint32_t> withHalfImages(std::span<const std::uint32_t> words) 
 }
 
 VkPipelineShaderStageCreateInfo stageOf(VkShaderStageFlagBits stage, VkShaderModule module) {
-    VkPipelineShaderStageCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-    info.stage = stage;
-    info.module = module;
-    info.pName = "main";
+    VkPipelineShaderStageCreateInfo info{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                         .stage = stage,
+                                         .module = module,
+                                         .pName = "main"};
     return info;
 }
 
@@ -77,11 +75,10 @@ Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<
     GLINT_TRY(auto module, creation.halfPicture ? createShaderModule(context, withHalfImages(words))
                                                 : createShaderModule(context, words));
     const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation, 1);
-    VkComputePipelineCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
-    info.pNext = &feedback;
-    info.flags = creation.flags;
-    info.stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, module.get());
+    VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                                     .pNext = &feedback,
+                                     .flags = creation.flags,
+                                     .stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, module.get())};
     const VkSpecializationInfo specialization = specializationOf(creation.constants);
     info.stage.pSpecializationInfo = &specialization;
     info.layout = layout;
@@ -99,11 +96,11 @@ Result<UniquePipeline> createComputePipeline(Context::State& context, std::span<
 
 VkPipelineCreationFeedbackCreateInfo feedbackOf(PipelineCreation& creation, std::size_t stageCount) {
     creation.stageFeedbacks.resize(stageCount);
-    VkPipelineCreationFeedbackCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_PIPELINE_CREATION_FEEDBACK_CREATE_INFO;
-    info.pPipelineCreationFeedback = &creation.feedback;
-    info.pipelineStageCreationFeedbackCount = static_cast<std::uint32_t>(stageCount);
-    info.pPipelineStageCreationFeedbacks = creation.stageFeedbacks.data();
+    VkPipelineCreationFeedbackCreateInfo info{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_CREATION_FEEDBACK_CREATE_INFO,
+        .pPipelineCreationFeedback = &creation.feedback,
+        .pipelineStageCreationFeedbackCount = static_cast<std::uint32_t>(stageCount),
+        .pPipelineStageCreationFeedbacks = creation.stageFeedbacks.data()};
     return info;
 }
 

@@ -20,31 +20,20 @@ constexpr VkPipelineStageFlags2 kBlitStages = VK_PIPELINE_STAGE_2_BLIT_BIT;
 constexpr MemoryDependency kToShaders{kCopyStages | kBlitStages, VK_ACCESS_2_TRANSFER_WRITE_BIT,
                                       VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                                       VK_ACCESS_2_SHADER_SAMPLED_READ_BIT};
-constexpr MemoryDependency kToAll{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
-                                  VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                                  VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT};
 
 }  // namespace
 
-Result<std::unique_ptr<Uploader>> Uploader::create(Context::State& context) {
-    std::unique_ptr<Uploader> uploader(new Uploader(context, nullptr, kStagingBytes));
-    GLINT_TRY(auto runner, CommandRunner::create(context));
-    uploader->runner_ = std::make_unique<CommandRunner>(std::move(runner));
-    return uploader;
-}
-
-std::unique_ptr<Uploader> Uploader::createDeferred(Context::State& context, MemoryPool& pool,
-                                                   VkDeviceSize mostStaged) {
-    return std::unique_ptr<Uploader>(new Uploader(context, &pool, mostStaged));
-}
-
-std::vector<Buffer> Uploader::record(VkCommandBuffer commands) {
+void Uploader::recordWaiting(VkCommandBuffer commands) {
     for (const Command& command : queued_) {
         command(commands);
     }
     queued_.clear();
     current_ = 0;
     used_ = 0;
+}
+
+std::vector<Buffer> Uploader::record(VkCommandBuffer commands) {
+    recordWaiting(commands);
     staged_ = 0;
     return std::exchange(staging_, {});
 }
@@ -58,13 +47,8 @@ Status Uploader::finish() {
         runner_ = std::make_unique<CommandRunner>(std::move(runner));
     }
     GLINT_TRY(const auto commands, runner_->begin());
-    for (const Command& command : queued_) {
-        command(commands);
-    }
-    queued_.clear();
-    current_ = 0;
-    used_ = 0;
-    recordDependency(*context_, commands, kToAll);
+    recordWaiting(commands);
+    recordDependency(*context_, commands, kAllToAll);
     return runner_->submitAndWait();
 }
 
@@ -92,7 +76,7 @@ Status Uploader::nextStaging(VkDeviceSize wanted, VkDeviceSize unit) {
 }
 
 Result<VkDeviceSize> Uploader::reserve(VkDeviceSize wanted, VkDeviceSize unit) {
-    used_ = (used_ + kStagingAlignment - 1) / kStagingAlignment * kStagingAlignment;
+    used_ = alignUp(used_, kStagingAlignment);
     if (staging_.empty() || used_ + unit > staging_[current_].bytes) {
         GLINT_TRY_DO(nextStaging(wanted, unit));
     }
@@ -156,11 +140,11 @@ Status Uploader::copyRows(const MipRows& rows, std::uint32_t first, std::uint32_
         const auto count = static_cast<std::uint32_t>(room / rowBytes);
         std::memcpy(staging_[current_].mapped + used_, rows.texels.data() + first * rowBytes, room);
         const std::uint32_t top = first * rows.block.height;
-        VkBufferImageCopy region{};
-        region.bufferOffset = used_;
-        region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, rows.mip, 0, 1};
-        region.imageOffset = {0, static_cast<std::int32_t>(top), 0};
-        region.imageExtent = {width, std::min(count * rows.block.height, height - top), 1};
+        VkBufferImageCopy region{
+            .bufferOffset = used_,
+            .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, rows.mip, 0, 1},
+            .imageOffset = {0, static_cast<std::int32_t>(top), 0},
+            .imageExtent = {width, std::min(count * rows.block.height, height - top), 1}};
         add([&vk = context_->vk, region, from = staging_[current_].handle.get(),
              to = target.handle.get()](VkCommandBuffer commands) {
             vk.CmdCopyBufferToImage(commands, from, to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
@@ -215,8 +199,7 @@ void Uploader::addMips(const DeviceImage& target, std::uint32_t given) {
                      VK_ACCESS_2_TRANSFER_READ_BIT},
                     mip - 1,
                     1});
-        VkImageBlit region{};
-        region.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, 1};
+        VkImageBlit region{.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, 1}};
         region.srcOffsets[1] = {width, height, 1};
         width = std::max(width / 2, 1);
         height = std::max(height / 2, 1);
@@ -241,7 +224,7 @@ void Uploader::addMips(const DeviceImage& target, std::uint32_t given) {
 void StagedCopies::record(VkCommandBuffer commands, std::uint64_t frameNumber) {
     frame = frameNumber;
     kept = uploader->record(commands);
-    recordDependency(context, commands, kToAll);
+    recordDependency(context, commands, kAllToAll);
 }
 
 }  // namespace glint

@@ -34,15 +34,12 @@ class Uploader {
 public:
     using Command = std::function<void(VkCommandBuffer)>;
 
-    // Returns one that submits its commands itself: in finish(), and before that whenever it would have more
-    // than 16 MiB of staging memory.
-    static Result<std::unique_ptr<Uploader>> create(Context::State& context);
-    // Returns one whose commands wait for record(). Its staging memory is from `pool`, which must outlive it.
-    // If it would have more than `mostStaged` bytes of it, it submits the commands that wait, and waits for
-    // the device.
-    static std::unique_ptr<Uploader> createDeferred(Context::State& context, MemoryPool& pool,
-                                                    VkDeviceSize mostStaged = kUnlimited);
     static constexpr VkDeviceSize kUnlimited = ~VkDeviceSize{0};
+
+    // Commands wait for record(). Staging memory is from `pool`, which must outlive the uploader. If it would
+    // have more than `mostStaged` bytes of it, it submits the commands that wait, and waits for the device.
+    Uploader(Context::State& context, MemoryPool& pool, VkDeviceSize mostStaged = kUnlimited)
+        : context_(&context), pool_(&pool), mostStaged_(mostStaged) {}
 
     // Queues a command. Everything that it refers to must stay until it is recorded.
     void add(Command command) {
@@ -88,8 +85,8 @@ public:
     }
 
 private:
-    Uploader(Context::State& context, MemoryPool* pool, VkDeviceSize mostStaged)
-        : context_(&context), own_(context), pool_(pool != nullptr ? pool : &own_), mostStaged_(mostStaged) {}
+    // Records the waiting commands, and begins with the first staging buffer again.
+    void recordWaiting(VkCommandBuffer commands);
     // Makes a staging buffer with room for at least `unit` bytes the current one.
     Status nextStaging(VkDeviceSize wanted, VkDeviceSize unit);
     // Returns room for at least `unit` and at most `wanted` bytes in the current staging buffer.
@@ -103,8 +100,7 @@ private:
     void addMips(const DeviceImage& target, std::uint32_t given);
 
     Context::State* context_;
-    MemoryPool own_;  // of staging memory, unless another one is given
-    MemoryPool* pool_;
+    MemoryPool* pool_;  // of staging memory
     VkDeviceSize mostStaged_;
     std::vector<Buffer> staging_;
     std::size_t current_ = 0;  // index of the staging buffer that is being filled
@@ -116,11 +112,11 @@ private:
 
 // Copies that are recorded into a host's command buffer, with their staging memory.
 struct StagedCopies {
-    // `mostStaged` is as in Uploader::createDeferred().
+    // `mostStaged` is as in Uploader.
     explicit StagedCopies(Context::State& contextState, VkDeviceSize mostStaged = Uploader::kUnlimited)
         : context(contextState),
           pool(contextState),
-          uploader(Uploader::createDeferred(contextState, pool, mostStaged)) {}
+          uploader(std::make_unique<Uploader>(contextState, pool, mostStaged)) {}
 
     // Records the uploader's commands, and makes their results visible to all later commands.
     void record(VkCommandBuffer commands, std::uint64_t frameNumber);

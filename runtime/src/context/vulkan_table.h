@@ -7,7 +7,10 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include <cstdint>
 #include <memory>
+#include <string>
+#include <vector>
 
 // Functions that are needed before an instance exists.
 #define GLINT_GLOBAL_FUNCTIONS(X)       \
@@ -188,6 +191,28 @@ Result<InstanceTable> loadInstanceTable(PFN_vkGetInstanceProcAddr getInstancePro
 // Also loads the functions of the extensions that the handles say are enabled. Layers hand out those of
 // VK_EXT_debug_utils in any case.
 Result<DeviceTable> loadDeviceTable(const InstanceTable& instance, const DeviceHandles& handles);
+
+// Returns the outcome of a call of Vulkan. Error "vulkan-call".
+inline Status statusOf(const char* call, VkResult result) {
+    return result == VK_SUCCESS ? okStatus() : Status(vulkanError(call, result));
+}
+
+// Fills `list` with everything that the function `call` of Vulkan lists: ask(count, list) calls it. The
+// number may change between two calls. Error "vulkan-call".
+template <typename Element, typename Ask, typename Count = std::uint32_t>
+Status listAll(const char* call, std::vector<Element>& list, const Ask& ask, const Element& empty = {},
+               Count count = 0) {
+    VkResult result = VK_INCOMPLETE;
+    while (result == VK_INCOMPLETE) {
+        result = ask(&count, nullptr);
+        if (result == VK_SUCCESS) {
+            list.assign(count, empty);
+            result = ask(&count, list.data());
+            list.resize(count, empty);
+        }
+    }
+    return statusOf(call, result);
+}
 
 // Returns a name such as "VK_ERROR_DEVICE_LOST", or "VkResult -1234" for a code that this version does not
 // know.

@@ -5,7 +5,6 @@
 #include "context/vulkan_table.h"
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
 namespace glint {
@@ -15,17 +14,17 @@ Result<AccelerationStructure> createStructure(Context::State& context, MemoryPoo
     AccelerationStructure structure;
     GLINT_TRY(structure.buffer,
               createBuffer(context, pool, bytes, VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR));
-    VkAccelerationStructureCreateInfoKHR info{};
-    info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR;
-    info.buffer = structure.buffer.handle.get();
-    info.size = bytes;
-    info.type = type;
+    const VkAccelerationStructureCreateInfoKHR info{
+        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_CREATE_INFO_KHR,
+        .buffer = structure.buffer.handle.get(),
+        .size = bytes,
+        .type = type};
     GLINT_TRY(structure.handle,
               createHandle<UniqueAccelerationStructure>(context, context.vk.CreateAccelerationStructureKHR,
                                                         "vkCreateAccelerationStructureKHR", info));
-    VkAccelerationStructureDeviceAddressInfoKHR address{};
-    address.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR;
-    address.accelerationStructure = structure.handle.get();
+    VkAccelerationStructureDeviceAddressInfoKHR address{
+        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_DEVICE_ADDRESS_INFO_KHR,
+        .accelerationStructure = structure.handle.get()};
     structure.address = context.vk.GetAccelerationStructureDeviceAddressKHR(context.handles.device, &address);
     return structure;
 }
@@ -37,12 +36,25 @@ Result<Scratch> createScratch(Context::State& context, MemoryPool& pool, VkDevic
               createBuffer(context, pool, bytes + alignment, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
     Scratch scratch;
     scratch.buffer = std::move(buffer);
-    scratch.address = (scratch.buffer.address + alignment - 1) / alignment * alignment;
+    scratch.address = alignUp(scratch.buffer.address, alignment);
     return scratch;
 }
 
-Status describeTlas(const Context::State& context, VkDeviceAddress instances, std::size_t count,
-                    bool updatable, TlasBuild& build) {
+namespace {
+
+VkAccelerationStructureGeometryKHR describeInstances(VkDeviceAddress instances) {
+    VkAccelerationStructureGeometryKHR geometry{
+        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR,
+        .geometryType = VK_GEOMETRY_TYPE_INSTANCES_KHR};
+    geometry.geometry.instances = {
+        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_INSTANCES_DATA_KHR,
+        .data = {.deviceAddress = instances}};
+    return geometry;
+}
+
+}  // namespace
+
+Result<TlasBuild> describeTlas(const Context::State& context, std::size_t count, bool updatable) {
     const std::uint64_t limit = context.limits.accelerationStructure.maxInstanceCount;
     if (count > limit) {
         return makeError("tlas-limit", "",
@@ -50,63 +62,37 @@ Status describeTlas(const Context::State& context, VkDeviceAddress instances, st
                              std::to_string(limit),
                          "use a smaller scene");
     }
-    VkAccelerationStructureGeometryKHR& geometry = build.geometry;
-    geometry.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
-    geometry.geometryType = VK_GEOMETRY_TYPE_INSTANCES_KHR;
-    geometry.geometry.instances.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_INSTANCES_DATA_KHR;
-    geometry.geometry.instances.data.deviceAddress = instances;
-    build.info.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR;
-    build.info.type = VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR;
-    build.info.flags =
-        VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR |
-        (updatable
-             ? VkBuildAccelerationStructureFlagsKHR{VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR}
-             : 0U);
-    build.info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR;
-    build.info.geometryCount = 1;
-    build.info.pGeometries = &geometry;
-    build.sizes.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR;
+    const VkAccelerationStructureGeometryKHR geometry = describeInstances(0);
+    const VkBuildAccelerationStructureFlagsKHR updates =
+        updatable ? VkBuildAccelerationStructureFlagsKHR{VK_BUILD_ACCELERATION_STRUCTURE_ALLOW_UPDATE_BIT_KHR}
+                  : 0U;
+    TlasBuild build{.info = {.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_GEOMETRY_INFO_KHR,
+                             .type = VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR,
+                             .flags = VK_BUILD_ACCELERATION_STRUCTURE_PREFER_FAST_TRACE_BIT_KHR | updates,
+                             .mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR,
+                             .geometryCount = 1,
+                             .pGeometries = &geometry},
+                    .sizes = {.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR}};
     const auto primitives = static_cast<std::uint32_t>(count);
     context.vk.GetAccelerationStructureBuildSizesKHR(context.handles.device,
                                                      VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR,
                                                      &build.info, &primitives, &build.sizes);
-    return okStatus();
+    build.info.pGeometries = nullptr;
+    return build;
 }
 
-Result<PreparedTlas> prepareTlas(Context::State& context, MemoryPool& pool,
-                                 std::span<const VkAccelerationStructureInstanceKHR> instances,
-                                 bool updatable, std::vector<Buffer>& kept) {
-    // The device's rules for buffers of this usage align it to 16 bytes.
-    GLINT_TRY(auto buffer,
-              createBuffer(
-                  context, pool,
-                  std::max<VkDeviceSize>(instances.size_bytes(), sizeof(VkAccelerationStructureInstanceKHR)),
-                  VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR, MemoryUse::Upload));
-    if (!instances.empty()) {
-        std::memcpy(buffer.mapped, instances.data(), instances.size_bytes());
-    }
-    PreparedTlas prepared;
-    prepared.count = static_cast<std::uint32_t>(instances.size());
-    GLINT_TRY_DO(describeTlas(context, buffer.address, instances.size(), updatable, prepared.build));
-    GLINT_TRY(auto scratch, createScratch(context, pool, prepared.build.sizes.buildScratchSize));
-    prepared.scratch = scratch.address;
-    kept.push_back(std::move(buffer));
-    kept.push_back(std::move(scratch.buffer));
-    return prepared;
-}
-
-void recordTlasBuild(const Context::State& context, VkCommandBuffer commands, const PreparedTlas& prepared,
-                     VkAccelerationStructureKHR target, bool refit) {
-    VkAccelerationStructureBuildGeometryInfoKHR info = prepared.build.info;
-    info.pGeometries = &prepared.build.geometry;
+void recordTlasBuild(const Context::State& context, VkCommandBuffer commands, const TlasBuild& build,
+                     const TlasInput& input, VkAccelerationStructureKHR target, bool refit) {
+    const VkAccelerationStructureGeometryKHR geometry = describeInstances(input.instances);
+    VkAccelerationStructureBuildGeometryInfoKHR info = build.info;
+    info.pGeometries = &geometry;
     info.dstAccelerationStructure = target;
-    info.scratchData.deviceAddress = prepared.scratch;
+    info.scratchData.deviceAddress = input.scratch;
     if (refit) {
         info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_UPDATE_KHR;
         info.srcAccelerationStructure = target;
     }
-    VkAccelerationStructureBuildRangeInfoKHR range{};
-    range.primitiveCount = prepared.count;
+    const VkAccelerationStructureBuildRangeInfoKHR range{.primitiveCount = input.count};
     const VkAccelerationStructureBuildRangeInfoKHR* ranges = &range;
     context.vk.CmdBuildAccelerationStructuresKHR(commands, 1, &info, &ranges);
 }
@@ -128,9 +114,9 @@ constexpr VkBuildAccelerationStructureFlagsKHR kUpdatable =
 
 // Describes how a geometry uses a micromap, for the chain of its triangles. Points into `micromap`.
 VkAccelerationStructureTrianglesOpacityMicromapEXT describeMicromap(const DeviceMicromap& micromap) {
-    VkAccelerationStructureTrianglesOpacityMicromapEXT described{};
-    described.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_TRIANGLES_OPACITY_MICROMAP_EXT;
-    described.indexType = VK_INDEX_TYPE_UINT32;
+    VkAccelerationStructureTrianglesOpacityMicromapEXT described{
+        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_TRIANGLES_OPACITY_MICROMAP_EXT,
+        .indexType = VK_INDEX_TYPE_UINT32};
     described.indexBuffer.deviceAddress = micromap.indices.address;
     described.indexStride = sizeof(std::int32_t);
     described.usageCountsCount = static_cast<std::uint32_t>(micromap.usages.size());
@@ -142,9 +128,9 @@ VkAccelerationStructureTrianglesOpacityMicromapEXT describeMicromap(const Device
 constexpr VkDeviceSize kSharedScratchBytes = VkDeviceSize{64} << 20;
 
 VkAccelerationStructureGeometryKHR describeGeometry(const BlasGeometry& geometry) {
-    VkAccelerationStructureGeometryKHR described{};
-    described.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR;
-    described.geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR;
+    VkAccelerationStructureGeometryKHR described{
+        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR,
+        .geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR};
     described.flags |= geometry.opaque ? VK_GEOMETRY_OPAQUE_BIT_KHR : VkGeometryFlagBitsKHR{};
     described.flags |=
         geometry.once ? VK_GEOMETRY_NO_DUPLICATE_ANY_HIT_INVOCATION_BIT_KHR : VkGeometryFlagBitsKHR{};
@@ -171,8 +157,7 @@ BlasBuild describeBuild(const Context::State& context, const BlasInput& input) {
             build.micromaps.push_back(describeMicromap(*geometry.micromap));
             build.geometries.back().geometry.triangles.pNext = &build.micromaps.back();
         }
-        VkAccelerationStructureBuildRangeInfoKHR range{};
-        range.primitiveCount = geometry.triangleCount;
+        const VkAccelerationStructureBuildRangeInfoKHR range{.primitiveCount = geometry.triangleCount};
         build.ranges.push_back(range);
         counts.push_back(geometry.triangleCount);
     }
@@ -182,17 +167,17 @@ BlasBuild describeBuild(const Context::State& context, const BlasInput& input) {
     build.info.mode = VK_BUILD_ACCELERATION_STRUCTURE_MODE_BUILD_KHR;
     build.info.geometryCount = static_cast<std::uint32_t>(build.geometries.size());
     build.info.pGeometries = build.geometries.data();
-    VkAccelerationStructureBuildSizesInfoKHR sizes{};
-    sizes.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR;
+    VkAccelerationStructureBuildSizesInfoKHR sizes{
+        .sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_BUILD_SIZES_INFO_KHR};
     context.vk.GetAccelerationStructureBuildSizesKHR(context.handles.device,
                                                      VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR,
                                                      &build.info, counts.data(), &sizes);
     const VkDeviceSize alignment =
         context.limits.accelerationStructure.minAccelerationStructureScratchOffsetAlignment;
     build.structureBytes = sizes.accelerationStructureSize;
-    const auto rounded = [&](VkDeviceSize bytes) { return (bytes + alignment - 1) / alignment * alignment; };
-    build.scratchBytes = rounded(input.updatable ? std::max(sizes.buildScratchSize, sizes.updateScratchSize)
-                                                 : sizes.buildScratchSize);
+    build.scratchBytes = alignUp(
+        input.updatable ? std::max(sizes.buildScratchSize, sizes.updateScratchSize) : sizes.buildScratchSize,
+        alignment);
     return build;
 }
 

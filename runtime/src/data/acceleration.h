@@ -55,16 +55,13 @@ struct BlasInput {
 // buffers.
 BlasCapacity blasCapacity(const Context::State& context);
 
-// A TLAS in Vulkan's terms. `instances` is the address of their array, or 0 to ask for sizes only. `info`
-// points at `geometry`, so it must be set again after a move.
+// A TLAS in Vulkan's terms, without its instances.
 struct TlasBuild {
-    VkAccelerationStructureGeometryKHR geometry{};
     VkAccelerationStructureBuildGeometryInfoKHR info{};
     VkAccelerationStructureBuildSizesInfoKHR sizes{};
 };
-// Fills `build`. Error "tlas-limit".
-Status describeTlas(const Context::State& context, VkDeviceAddress instances, std::size_t count,
-                    bool updatable, TlasBuild& build);
+// Describes a TLAS of at most `count` instances. Error "tlas-limit".
+Result<TlasBuild> describeTlas(const Context::State& context, std::size_t count, bool updatable);
 
 // Creates a structure of `bytes` that is not built yet, for BLASes and TLASes.
 Result<AccelerationStructure> createStructure(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,
@@ -76,18 +73,15 @@ struct Scratch {
 };
 Result<Scratch> createScratch(Context::State& context, MemoryPool& pool, VkDeviceSize bytes);
 
-// A build of a TLAS with memory of its own for its input and its scratch. `kept` gets both, from `pool`.
-struct PreparedTlas {
-    TlasBuild build;
+// The input of a build of a TLAS: an array of VkAccelerationStructureInstanceKHR, and scratch memory.
+struct TlasInput {
+    VkDeviceAddress instances = 0;
+    std::uint32_t count = 0;
     VkDeviceAddress scratch = 0;
-    std::uint32_t count = 0;  // of instances
 };
-Result<PreparedTlas> prepareTlas(Context::State& context, MemoryPool& pool,
-                                 std::span<const VkAccelerationStructureInstanceKHR> instances,
-                                 bool updatable, std::vector<Buffer>& kept);
 // Records the build, or a refit of what was built in `target`.
-void recordTlasBuild(const Context::State& context, VkCommandBuffer commands, const PreparedTlas& prepared,
-                     VkAccelerationStructureKHR target, bool refit = false);
+void recordTlasBuild(const Context::State& context, VkCommandBuffer commands, const TlasBuild& build,
+                     const TlasInput& input, VkAccelerationStructureKHR target, bool refit);
 
 // An input in Vulkan's terms. `info` points into `geometries`, and these into `micromaps`. Both stay in place
 // when a BlasBuild moves, since they are vectors.

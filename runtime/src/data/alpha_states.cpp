@@ -26,30 +26,6 @@ struct TexelRange {
     std::uint32_t most = 0;
 };
 
-// Walks over every texel that a lookup in the triangle can read: row by row of texels, in each row between
-// the ends of the part of the triangle whose lookups reach the row. The walk is exact: it visits only texels
-// that some point of the triangle reaches when it is moved by at most the margins.
-class TexelWalk {
-public:
-    // Requires finite numbers. Keeps references.
-    TexelWalk(const AlphaLookup& lookup, const TexelTriangle& triangle);
-
-    // Extends `range` by the next row. Returns false if there was none.
-    bool next(TexelRange& range);
-
-private:
-    void extendAll(TexelRange& range) const;
-    void extendRow(std::int64_t row, std::int64_t first, std::int64_t last, TexelRange& range) const;
-
-    const AlphaLookup& lookup_;
-    const TexelTriangle& triangle_;
-    double below_;  // a lookup at x reaches texels from x - below on
-    double above_;  // and up to x + above
-    bool whole_ = false;
-    std::int64_t row_ = 0;
-    std::int64_t lastRow_ = -1;
-};
-
 // Beyond this distance 32 bits no longer distinguish texels, and the whole image counts as reached.
 constexpr double kFarthest = 0x1p22;
 // An image that is repeated more often counts as reached whole.
@@ -113,73 +89,87 @@ std::uint32_t wrapped(std::int64_t texel, std::uint32_t size, Wrap wrap) {
     return static_cast<std::uint32_t>(flipped ? count - 1 - within : within);
 }
 
-TexelWalk::TexelWalk(const AlphaLookup& lookup, const TexelTriangle& triangle)
-    : lookup_(lookup),
-      triangle_(triangle),
-      // A linear filter at x reads the texels whose centres are within one texel of x.
-      below_(lookup.linear ? 1.5 : 1.0),
-      above_(lookup.linear ? 0.5 : 0.0) {
-    const auto [lowX, highX] = std::ranges::minmax(triangle.x);
-    const auto [lowY, highY] = std::ranges::minmax(triangle.y);
-    const double far = std::max({-lowX, highX, -lowY, highY}) + triangle.marginX + triangle.marginY;
-    whole_ = !(far < kFarthest) || highY - lowY > kMostRepeats * lookup.texels->height + 16.0;
-    if (!whole_) {
-        row_ = static_cast<std::int64_t>(std::ceil(lowY - below_ - triangle.marginY));
-        lastRow_ = static_cast<std::int64_t>(std::floor(highY + above_ + triangle.marginY));
+// Walks over every texel that a lookup in the triangle can read: row by row of texels, in each row between
+// the ends of the part of the triangle whose lookups reach the row. The walk is exact: it visits only texels
+// that some point of the triangle reaches when it is moved by at most the margins.
+class TexelWalk {
+public:
+    // Requires finite numbers. Keeps references.
+    TexelWalk(const AlphaLookup& lookup, const TexelTriangle& triangle)
+        : lookup_(lookup),
+          triangle_(triangle),
+          // A linear filter at x reads the texels whose centres are within one texel of x.
+          below_(lookup.linear ? 1.5 : 1.0),
+          above_(lookup.linear ? 0.5 : 0.0) {
+        const auto [lowX, highX] = std::ranges::minmax(triangle.x);
+        const auto [lowY, highY] = std::ranges::minmax(triangle.y);
+        const double far = std::max({-lowX, highX, -lowY, highY}) + triangle.marginX + triangle.marginY;
+        whole_ = !(far < kFarthest) || highY - lowY > kMostRepeats * lookup.texels->height + 16.0;
+        if (!whole_) {
+            row_ = static_cast<std::int64_t>(std::ceil(lowY - below_ - triangle.marginY));
+            lastRow_ = static_cast<std::int64_t>(std::floor(highY + above_ + triangle.marginY));
+        }
     }
-}
 
-bool TexelWalk::next(TexelRange& range) {
-    if (whole_) {
-        whole_ = false;
-        extendAll(range);
+    // Extends `range` by the next row. Returns false if there was none.
+    bool next(TexelRange& range) {
+        if (whole_) {
+            whole_ = false;
+            extendAll(range);
+            return true;
+        }
+        if (row_ > lastRow_) {
+            return false;
+        }
+        const auto row = static_cast<double>(row_);
+        const Ends ends =
+            endsBetween(triangle_, row - above_ - triangle_.marginY, row + below_ + triangle_.marginY);
+        if (ends.least <= ends.most) {
+            extendRow(row_, static_cast<std::int64_t>(std::ceil(ends.least - below_ - triangle_.marginX)),
+                      static_cast<std::int64_t>(std::floor(ends.most + above_ + triangle_.marginX)), range);
+        }
+        ++row_;
         return true;
     }
-    if (row_ > lastRow_) {
-        return false;
-    }
-    const auto row = static_cast<double>(row_);
-    const Ends ends =
-        endsBetween(triangle_, row - above_ - triangle_.marginY, row + below_ + triangle_.marginY);
-    if (ends.least <= ends.most) {
-        extendRow(row_, static_cast<std::int64_t>(std::ceil(ends.least - below_ - triangle_.marginX)),
-                  static_cast<std::int64_t>(std::floor(ends.most + above_ + triangle_.marginX)), range);
-    }
-    ++row_;
-    return true;
-}
 
-void TexelWalk::extendAll(TexelRange& range) const {
-    const AlphaTexels& texels = *lookup_.texels;
-    extendRun(texels.alpha.data(), 0, std::int64_t{texels.width} * texels.height - 1, range);
-}
+private:
+    void extendAll(TexelRange& range) const {
+        const AlphaTexels& texels = *lookup_.texels;
+        extendRun(texels.alpha.data(), 0, std::int64_t{texels.width} * texels.height - 1, range);
+    }
 
-void TexelWalk::extendRow(std::int64_t row, std::int64_t first, std::int64_t last, TexelRange& range) const {
-    const AlphaTexels& texels = *lookup_.texels;
-    const auto width = static_cast<std::int64_t>(texels.width);
-    const std::uint8_t* const line =
-        texels.alpha.data() + std::size_t{wrapped(row, texels.height, lookup_.wrapV)} * texels.width;
-    if (lookup_.wrapU == Wrap::Clamp) {
-        extendRun(line, wrapped(first, texels.width, Wrap::Clamp), wrapped(last, texels.width, Wrap::Clamp),
-                  range);
-        return;
+    void extendRow(std::int64_t row, std::int64_t first, std::int64_t last, TexelRange& range) const {
+        const AlphaTexels& texels = *lookup_.texels;
+        const auto width = static_cast<std::int64_t>(texels.width);
+        const std::uint8_t* const line =
+            texels.alpha.data() + std::size_t{wrapped(row, texels.height, lookup_.wrapV)} * texels.width;
+        if (lookup_.wrapU == Wrap::Clamp) {
+            extendRun(line, wrapped(first, texels.width, Wrap::Clamp),
+                      wrapped(last, texels.width, Wrap::Clamp), range);
+            return;
+        }
+        if (last - first + 1 >= width) {
+            extendRun(line, 0, width - 1, range);
+            return;
+        }
+        // At most two repetitions of the image are touched.
+        while (first <= last) {
+            const std::int64_t end = std::min(last, (floorDivided(first, width) + 1) * width - 1);
+            const std::int64_t a = wrapped(first, texels.width, lookup_.wrapU);
+            const std::int64_t b = wrapped(end, texels.width, lookup_.wrapU);
+            extendRun(line, std::min(a, b), std::max(a, b), range);
+            first = end + 1;
+        }
     }
-    if (last - first + 1 >= width) {
-        extendRun(line, 0, width - 1, range);
-        return;
-    }
-    // At most two repetitions of the image are touched.
-    while (first <= last) {
-        const std::int64_t end = std::min(last, (floorDivided(first, width) + 1) * width - 1);
-        const std::int64_t a = wrapped(first, texels.width, lookup_.wrapU);
-        const std::int64_t b = wrapped(end, texels.width, lookup_.wrapU);
-        extendRun(line, std::min(a, b), std::max(a, b), range);
-        first = end + 1;
-    }
-}
 
-}  // namespace
-namespace {
+    const AlphaLookup& lookup_;
+    const TexelTriangle& triangle_;
+    double below_;  // a lookup at x reaches texels from x - below on
+    double above_;  // and up to x + above
+    bool whole_ = false;
+    std::int64_t row_ = 0;
+    std::int64_t lastRow_ = -1;
+};
 
 constexpr float kLeastNormal = std::numeric_limits<float>::min();
 constexpr double kSteps = 255.0;

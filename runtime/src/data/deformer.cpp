@@ -129,9 +129,8 @@ gpu::DeformRecord makeDeformRecord(const GpuPrimitive& primitive, const DeformSo
 }
 
 Result<UniquePipelineLayout> createDeformLayout(Context::State& context) {
-    VkPushConstantRange range{};
-    range.stageFlags = VK_SHADER_STAGE_COMPUTE_BIT;
-    range.size = sizeof(gpu::DeformConstants);
+    const VkPushConstantRange range{.stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
+                                    .size = sizeof(gpu::DeformConstants)};
     return createPipelineLayout(context, {}, range);
 }
 

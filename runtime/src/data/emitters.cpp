@@ -3,11 +3,13 @@
 #include "data/instance_math.h"
 #include "package/package.h"
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <map>
-#include <set>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -29,8 +31,7 @@ std::vector<float> channelValues(bool isWide, bool isColor) {
     std::vector<float> values(count);
     for (std::size_t i = 0; i < count; ++i) {
         const double value = static_cast<double>(i) / static_cast<double>(count - 1);
-        const double linear = value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
-        values[i] = static_cast<float>(isColor ? linear : value);
+        values[i] = static_cast<float>(isColor ? decodeSrgb(value) : value);
     }
     return values;
 }
@@ -236,47 +237,33 @@ void EmitterMeans::forgetUnused() {
 
 namespace {
 
-using Double3 = std::array<double, 3>;
-using package::EmissionEntry;
-
-Double3 differenceOf(const Double3& a, const Double3& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-Double3 crossOf(const Double3& a, const Double3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-Double3 pointAt(const std::array<float, 12>& rows, const std::array<float, 3>& point) {
-    Double3 result{};
+glm::dvec3 pointAt(const std::array<float, 12>& rows, const std::array<float, 3>& point) {
+    glm::dvec3 result{};
     for (std::size_t row = 0; row < 3; ++row) {
-        result[row] = rows[4 * row + 3];
+        double& sum = result[static_cast<glm::length_t>(row)];
+        sum = rows[4 * row + 3];
         for (std::size_t column = 0; column < 3; ++column) {
-            result[row] += static_cast<double>(rows[4 * row + column]) * point[column];
+            sum += static_cast<double>(rows[4 * row + column]) * point[column];
         }
     }
     return result;
 }
 
-EmitterBounds boundsOf(const std::array<Double3, 3>& corners, bool twoSided, bool mirrored,
+std::array<double, 3> toArray(const glm::dvec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+EmitterBounds boundsOf(const std::array<glm::dvec3, 3>& corners, bool twoSided, bool mirrored,
                        double luminance) {
     EmitterBounds bounds;
-    bounds.lower = bounds.upper = corners[0];
-    for (const Double3& corner : corners) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            bounds.lower[axis] = std::min(bounds.lower[axis], corner[axis]);
-            bounds.upper[axis] = std::max(bounds.upper[axis], corner[axis]);
-        }
-    }
-    const Double3 normal =
-        crossOf(differenceOf(corners[1], corners[0]), differenceOf(corners[2], corners[0]));
-    const double length = std::hypot(normal[0], normal[1], normal[2]);
+    bounds.lower = toArray(glm::min(glm::min(corners[0], corners[1]), corners[2]));
+    bounds.upper = toArray(glm::max(glm::max(corners[0], corners[1]), corners[2]));
+    const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const double length = std::hypot(normal.x, normal.y, normal.z);
     bounds.twoSided = twoSided;
     if (std::isfinite(length) && length > 0.0) {
         bounds.intensity = 0.5 * length * luminance;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            bounds.normal[axis] = (mirrored ? -normal[axis] : normal[axis]) / length;
-        }
+        bounds.normal = toArray((mirrored ? -normal : normal) / length);
     }
     return bounds;
 }
@@ -328,7 +315,7 @@ std::vector<EmitterBounds> Emitters::boundsAt(std::span<const InstanceView> inst
         const bool mirrored = (makeInstanceRecord(rows).flags & gpu::kInstanceMirrored) != 0;
         const Box box = part.motion != nullptr ? part.motion->at(instance) : Box::nothing();
         for (std::size_t i = part.first; i < std::size_t{part.first} + part.count; ++i) {
-            std::array<Double3, 3> corners{};
+            std::array<glm::dvec3, 3> corners{};
             for (std::size_t corner = 0; corner < 3; ++corner) {
                 corners[corner] = pointAt(rows, part.shape->positions[part.shape->indices[3 * i + corner]]);
             }

@@ -137,16 +137,14 @@ Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, 
     VkDeviceSize bytes = 0;
     for (AttributeUpload& attribute : attributes) {
         attribute.offset = bytes;
-        bytes +=
-            (attribute.bytes.size() + kAttributeAlignment - 1) / kAttributeAlignment * kAttributeAlignment;
+        bytes += alignUp(attribute.bytes.size(), kAttributeAlignment);
     }
     // The addresses of a buffer are aligned for its usage only. The slack aligns them for attributes too.
     GLINT_TRY(auto buffer,
               createBuffer(context, pool, bytes + kAttributeAlignment,
                            VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
                                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT));
-    const VkDeviceSize slack =
-        (kAttributeAlignment - buffer.address % kAttributeAlignment) % kAttributeAlignment;
+    const VkDeviceSize slack = alignUp(buffer.address, kAttributeAlignment) - buffer.address;
     for (const AttributeUpload& attribute : attributes) {
         if (attribute.bytes.empty()) {
             continue;

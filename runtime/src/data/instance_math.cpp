@@ -20,7 +20,7 @@ glm::dmat3 linearRows(const Rows& rows) {
 }  // namespace
 
 bool isInvertible(const Rows& objectToWorld) {
-    if (!std::ranges::all_of(objectToWorld, [](float value) { return std::isfinite(value); })) {
+    if (!isFinite(objectToWorld)) {
         return false;
     }
     const glm::dmat3 linear = glm::transpose(linearRows(objectToWorld));

@@ -5,7 +5,9 @@
 
 #include <glint/scene_view.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -16,6 +18,10 @@ using Rows = std::array<float, 12>;
 
 inline gpu::vec3 toVec3(const std::array<float, 3>& v) {
     return {v[0], v[1], v[2]};
+}
+
+inline bool isFinite(std::span<const float> values) {
+    return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
 }
 
 // Returns whether the linear part has an inverse that floats can hold, that is, it is finite and not

@@ -2,6 +2,11 @@
 
 #include "context/parallel.h"
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/gtc/type_ptr.hpp>
+#include <glm/vec3.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +17,7 @@
 namespace glint {
 namespace {
 
-using Double3 = std::array<double, 3>;
+using Double3 = glm::dvec3;
 
 constexpr double kLightPi = std::numbers::pi;
 constexpr std::size_t kLightBins = 12;
@@ -22,10 +27,6 @@ constexpr std::size_t kLightsOfThread = 8192;
 constexpr double kMaxIntensity = 1e16;
 // The bounds are rounded to float. A range grows by this factor, so that they stay bounds.
 constexpr double kReachSlack = 1.0 + 1e-5;
-
-double dotOf(const Double3& a, const Double3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 Double3 doublesOf(const gpu::vec3& v) {
     return {v.x, v.y, v.z};
@@ -63,25 +64,18 @@ Cone unite(const Cone& a, const Cone& b) {
     if (a.angle >= kLightPi) {
         return a;
     }
-    const double between = std::acos(std::clamp(dotOf(a.axis, b.axis), -1.0, 1.0));
+    const double between = std::acos(std::clamp(glm::dot(a.axis, b.axis), -1.0, 1.0));
     if (std::min(between + b.angle, kLightPi) <= a.angle) {
         return a;
     }
     const double angle = (a.angle + between + b.angle) / 2.0;
-    Double3 across{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        across[i] = b.axis[i] - dotOf(a.axis, b.axis) * a.axis[i];
-    }
-    const double length = std::sqrt(dotOf(across, across));
+    const Double3 across = b.axis - glm::dot(a.axis, b.axis) * a.axis;
+    const double length = std::sqrt(glm::dot(across, across));
     if (angle >= kLightPi || length < 1e-9) {
         return {};
     }
     const double turn = angle - a.angle;
-    Cone cone{{}, angle};
-    for (std::size_t i = 0; i < 3; ++i) {
-        cone.axis[i] = std::cos(turn) * a.axis[i] + std::sin(turn) * across[i] / length;
-    }
-    return cone;
+    return {std::cos(turn) * a.axis + std::sin(turn) * across / length, angle};
 }
 
 void extend(LightExtent& all, const LightExtent& other) {
@@ -89,10 +83,8 @@ void extend(LightExtent& all, const LightExtent& other) {
         all = all.isEmpty ? other : all;
         return;
     }
-    for (std::size_t i = 0; i < 3; ++i) {
-        all.lower[i] = std::min(all.lower[i], other.lower[i]);
-        all.upper[i] = std::max(all.upper[i], other.upper[i]);
-    }
+    all.lower = glm::min(all.lower, other.lower);
+    all.upper = glm::max(all.upper, other.upper);
     all.axes = unite(all.axes, other.axes);
     all.emission = std::max(all.emission, other.emission);
     all.intensity += other.intensity;
@@ -107,12 +99,9 @@ LightBounds unite(const LightBounds& a, const LightBounds& b) {
     extend(both, b);
     const double whole = a.intensity + b.intensity;
     const double share = whole > 0.0 ? b.intensity / whole : 0.5;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double apart = b.mean[i] - a.mean[i];
-        both.mean[i] = a.mean[i] + share * apart;
-        both.variance[i] =
-            (1.0 - share) * a.variance[i] + share * b.variance[i] + share * (1.0 - share) * apart * apart;
-    }
+    const Double3 apart = b.mean - a.mean;
+    both.mean = a.mean + share * apart;
+    both.variance = (1.0 - share) * a.variance + share * b.variance + share * (1.0 - share) * apart * apart;
     both.reach = std::max(a.reach, b.reach);
     both.twoSided = a.twoSided || b.twoSided;
     return both;
@@ -120,11 +109,9 @@ LightBounds unite(const LightBounds& a, const LightBounds& b) {
 
 // The light comes from everywhere in the box alike.
 void fillBox(LightBounds& bounds) {
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double size = bounds.upper[i] - bounds.lower[i];
-        bounds.mean[i] = bounds.lower[i] + 0.5 * size;
-        bounds.variance[i] = size * size / 12.0;
-    }
+    const Double3 size = bounds.upper - bounds.lower;
+    bounds.mean = bounds.lower + 0.5 * size;
+    bounds.variance = size * size / 12.0;
 }
 
 LightBounds boundsOfLight(const gpu::LightRecord& light) {
@@ -132,21 +119,19 @@ LightBounds boundsOfLight(const gpu::LightRecord& light) {
     bounds.isEmpty = false;
     bounds.lower = bounds.upper = doublesOf(light.position);
     // The upper part of a light may shine on a surface that its centre is below.
-    for (std::size_t i = 0; i < 3; ++i) {
-        bounds.lower[i] -= light.size;
-        bounds.upper[i] += light.size;
-    }
+    bounds.lower -= static_cast<double>(light.size);
+    bounds.upper += static_cast<double>(light.size);
     fillBox(bounds);
     bounds.emission = kLightPi / 2.0;
     const Double3 color = doublesOf(light.intensity);
     // The luminance of linear Rec. 709, as in bsdf/constants.glsl.
-    bounds.intensity = std::clamp(dotOf({0.2126, 0.7152, 0.0722}, color), 0.0, kMaxIntensity);
+    bounds.intensity = std::clamp(glm::dot(Double3(0.2126, 0.7152, 0.0722), color), 0.0, kMaxIntensity);
     bounds.reach = light.range > 0.0F ? light.range * kReachSlack : std::numeric_limits<double>::infinity();
     const Double3 axis = doublesOf(light.direction);
-    const double length = std::sqrt(dotOf(axis, axis));
+    const double length = std::sqrt(glm::dot(axis, axis));
     if (light.type == gpu::kLightSpot && length > 0.5 && light.spotScale > 0.0F) {
         const double cosOuter = -static_cast<double>(light.spotOffset) / light.spotScale;
-        bounds.axes = {{axis[0] / length, axis[1] / length, axis[2] / length}, 0.0};
+        bounds.axes = {axis / length, 0.0};
         bounds.emission = std::acos(std::clamp(cosOuter, -1.0, 1.0));
     }
     return bounds;
@@ -155,14 +140,15 @@ LightBounds boundsOfLight(const gpu::LightRecord& light) {
 LightBounds boundsOfEmitter(const EmitterBounds& emitter) {
     LightBounds bounds;
     bounds.isEmpty = false;
-    bounds.lower = emitter.lower;
-    bounds.upper = emitter.upper;
+    bounds.lower = glm::make_vec3(emitter.lower.data());
+    bounds.upper = glm::make_vec3(emitter.upper.data());
     fillBox(bounds);
     bounds.emission = kLightPi / 2.0;
     bounds.intensity = std::clamp(emitter.intensity, 0.0, kMaxIntensity);
     bounds.reach = std::numeric_limits<double>::infinity();
-    if (dotOf(emitter.normal, emitter.normal) > 0.5) {
-        bounds.axes = {emitter.normal, 0.0};
+    const Double3 normal = glm::make_vec3(emitter.normal.data());
+    if (glm::dot(normal, normal) > 0.5) {
+        bounds.axes = {normal, 0.0};
         bounds.twoSided = emitter.twoSided;
     }
     return bounds;
@@ -175,7 +161,7 @@ gpu::vec3 floatsOf(const Double3& v) {
 // Numbers in [0, 1], one for each axis, in 10 bits each.
 std::uint32_t packShares(const Double3& shares) {
     std::uint32_t packed = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (glm::length_t i = 0; i < 3; ++i) {
         const double share = std::clamp(shares[i], 0.0, 1.0) * gpu::kLightShares;
         packed |= static_cast<std::uint32_t>(std::lround(share)) << (10 * i);
     }
@@ -194,7 +180,7 @@ gpu::LightNode makeLightNode(const LightBounds& bounds, std::uint32_t next) {
     node.next = next;
     Double3 mean{};
     Double3 deviation{};
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (glm::length_t i = 0; i < 3; ++i) {
         const double size = bounds.upper[i] - bounds.lower[i];
         mean[i] = size > 0.0 ? (bounds.mean[i] - bounds.lower[i]) / size : 0.5;
         deviation[i] = size > 0.0 ? 2.0 * std::sqrt(std::max(bounds.variance[i], 0.0)) / size : 0.0;
@@ -222,16 +208,13 @@ double costOf(const LightExtent& bounds, double stretch) {
                               kLightPi / 2.0 *
                                   (2.0 * whole * std::sin(axes) - std::cos(axes - 2.0 * whole) -
                                    2.0 * axes * std::sin(axes) + std::cos(axes));
-    Double3 size{};
-    for (std::size_t i = 0; i < 3; ++i) {
-        size[i] = bounds.upper[i] - bounds.lower[i];
-    }
+    const Double3 size = bounds.upper - bounds.lower;
     const double area = 2.0 * (size[0] * size[1] + size[1] * size[2] + size[2] * size[0]);
     return bounds.intensity * directions * stretch * area;
 }
 
 struct LightSplit {
-    std::size_t axis = 0;
+    glm::length_t axis = 0;
     std::size_t bin = 0;  // the last one of the first child
     double cost = std::numeric_limits<double>::infinity();
 };
@@ -264,7 +247,7 @@ public:
     }
 
 private:
-    static std::size_t binOf(const LightExtent& bounds, const LightExtent& centres, std::size_t axis) {
+    static std::size_t binOf(const LightExtent& bounds, const LightExtent& centres, glm::length_t axis) {
         const double size = centres.upper[axis] - centres.lower[axis];
         const double middle = 0.5 * (bounds.lower[axis] + bounds.upper[axis]);
         const double place = (middle - centres.lower[axis]) / size * static_cast<double>(kLightBins);
@@ -272,11 +255,10 @@ private:
     }
 
     LightSplit bestSplit(std::size_t begin, std::size_t end, const LightExtent& all) const {
-        const Double3 size{all.upper[0] - all.lower[0], all.upper[1] - all.lower[1],
-                           all.upper[2] - all.lower[2]};
-        const double longest = *std::ranges::max_element(size);
+        const Double3 size = all.upper - all.lower;
+        const double longest = std::max({size.x, size.y, size.z});
         LightSplit best;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (glm::length_t axis = 0; axis < 3; ++axis) {
             if (!(size[axis] > 0.0)) {
                 continue;
             }
@@ -308,9 +290,10 @@ private:
 
     // Halves the members by their place along the longest axis. Lights at one place are halved by number.
     std::size_t halve(std::size_t begin, std::size_t end, const LightExtent& all) {
-        std::size_t axis = 0;
-        for (std::size_t i = 1; i < 3; ++i) {
-            axis = all.upper[i] - all.lower[i] > all.upper[axis] - all.lower[axis] ? i : axis;
+        const Double3 size = all.upper - all.lower;
+        glm::length_t axis = 0;
+        for (glm::length_t i = 1; i < 3; ++i) {
+            axis = size[i] > size[axis] ? i : axis;
         }
         const auto first = members_.begin();
         std::stable_sort(first + static_cast<std::ptrdiff_t>(begin), first + static_cast<std::ptrdiff_t>(end),
@@ -328,10 +311,8 @@ private:
         all.lower = members_[begin].bounds.lower;
         all.upper = members_[begin].bounds.upper;
         for (std::size_t i = begin + 1; i < end; ++i) {
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                all.lower[axis] = std::min(all.lower[axis], members_[i].bounds.lower[axis]);
-                all.upper[axis] = std::max(all.upper[axis], members_[i].bounds.upper[axis]);
-            }
+            all.lower = glm::min(all.lower, members_[i].bounds.lower);
+            all.upper = glm::max(all.upper, members_[i].bounds.upper);
         }
         const LightSplit best = bestSplit(begin, end, all);
         if (!std::isfinite(best.cost)) {

@@ -16,11 +16,6 @@ namespace {
 
 constexpr double kLargest16 = 65535.0;
 
-// The electro-optical transfer function of IEC 61966-2-1.
-double decodeSrgb(double encoded) {
-    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
-
 std::vector<std::uint16_t> makeLinearTable() {
     std::vector<std::uint16_t> table(65536);
     for (std::size_t i = 0; i < table.size(); ++i) {
@@ -31,6 +26,10 @@ std::vector<std::uint16_t> makeLinearTable() {
 }
 
 }  // namespace
+
+double decodeSrgb(double encoded) {
+    return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
 
 std::vector<std::uint8_t> linearizeRgba16(std::span<const std::uint8_t> texels) {
     const std::vector<std::uint16_t> table = makeLinearTable();
@@ -132,13 +131,12 @@ float anisotropyOf(const Context::State& context, const package::SamplerEntry& e
 }
 
 Result<UniqueSampler> createSampler(Context::State& context, const package::SamplerEntry& entry) {
-    VkSamplerCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
-    info.magFilter = filter(entry.magnification);
-    info.minFilter = filter(entry.minification);
-    info.addressModeU = addressMode(entry.wrapU);
-    info.addressModeV = addressMode(entry.wrapV);
-    info.addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    VkSamplerCreateInfo info{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                             .magFilter = filter(entry.magnification),
+                             .minFilter = filter(entry.minification),
+                             .addressModeU = addressMode(entry.wrapU),
+                             .addressModeV = addressMode(entry.wrapV),
+                             .addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT};
     if (entry.mipmapped != 0) {
         info.mipmapMode = entry.mip != 0 ? VK_SAMPLER_MIPMAP_MODE_LINEAR : VK_SAMPLER_MIPMAP_MODE_NEAREST;
         info.maxLod = VK_LOD_CLAMP_NONE;
@@ -267,8 +265,8 @@ void carryFields(const RecordFields& from, std::uint32_t modelBefore, std::span<
 void takeValues(std::span<const std::uint8_t> values, const MaterialTable& table,
                 std::span<std::uint8_t> record) {
     std::vector<std::uint8_t> taken(values.begin(), values.end());
-    const MaterialTable given{values, table.recordBytes, table.textureOffset, table.textureCount};
-    const MaterialTable kept{record, table.recordBytes, table.textureOffset, table.textureCount};
+    const MaterialTable given = tableWith(table, values);
+    const MaterialTable kept = tableWith(table, record);
     for (std::uint32_t slot = 0; slot < table.textureCount; ++slot) {
         const gpu::TextureRecord wanted = textureAt(given, 0, slot);
         gpu::TextureRecord texture = textureAt(kept, 0, slot);

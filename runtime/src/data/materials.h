@@ -64,6 +64,9 @@ std::vector<std::uint8_t> materialsWithSizes(const Context::State& context, cons
 Result<std::vector<UniqueSampler>> createSamplers(Context::State& context,
                                                   std::span<const package::SamplerEntry> samplers);
 
+// The electro-optical transfer function of IEC 61966-2-1.
+double decodeSrgb(double encoded);
+
 // Converts RGBA in sRGB of 16 bits a channel, native byte order, to linear values of 16 bits, because Vulkan
 // has no 16-bit sRGB format. A step of the result is 1.5e-5 and the darkest step of 8-bit sRGB is 3.0e-4, so
 // no difference is visible. Alpha is linear already. Requires 8 bytes a texel.

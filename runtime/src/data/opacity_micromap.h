@@ -5,8 +5,9 @@
 // space-filling curve, least significant bits first, with 1 bit (two states) or 2 bits (four states) each.
 #pragma once
 
+#include <vulkan/vulkan_core.h>
+
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -46,31 +47,12 @@ struct MicroTriangle {
 // point on where it has quantised the barycentrics. Requires level <= 16.
 std::uint32_t curveIndex(const MicroTriangle& micro, std::uint32_t level);
 
-// Returns the micro-triangle that has the point with these barycentrics (weights of corners 1 and 2).
-MicroTriangle microTriangleAt(float u, float v, std::uint32_t level);
-
 // The formats of a record (VkOpacityMicromapFormatEXT).
 inline constexpr std::uint16_t kTwoStates = 1;
 inline constexpr std::uint16_t kFourStates = 2;
 
-// VkMicromapTriangleEXT.
-struct MicromapRecord {
-    std::uint32_t dataOffset = 0;  // bytes
-    std::uint16_t subdivisionLevel = 0;
-    std::uint16_t format = 0;
-
-    friend bool operator==(const MicromapRecord&, const MicromapRecord&) = default;
-};
-static_assert(sizeof(MicromapRecord) == 8);
-
-// VkMicromapUsageEXT.
-struct MicromapUsage {
-    std::uint32_t count = 0;
-    std::uint32_t subdivisionLevel = 0;
-    std::uint32_t format = 0;
-
-    friend bool operator==(const MicromapUsage&, const MicromapUsage&) = default;
-};
+using MicromapRecord = VkMicromapTriangleEXT;
+using MicromapUsage = VkMicromapUsageEXT;
 
 // An index of a triangle is that of its record, or ~state for a triangle that has one state everywhere
 // (VK_OPACITY_MICROMAP_SPECIAL_INDEX_*: -1 fully transparent to -4 fully unknown opaque).
@@ -92,9 +74,8 @@ struct TriangleStates {
 };
 
 // Packs the states of triangles in their order. A triangle with one state everywhere gets a special index.
-// Triangles with equal states share a record. A record has two states if none of its own is unknown, or if
-// `twoStates` is set, which makes unknown states those that they lean to, and is no longer exact.
-MicromapArray packMicromaps(std::span<const TriangleStates> triangles, bool twoStates = false);
+// Triangles with equal states share a record. A record has two states if none of its own is unknown.
+MicromapArray packMicromaps(std::span<const TriangleStates> triangles);
 
 // Returns how many triangles have the records of each level and format. A BLAS asks for that
 // (VkAccelerationStructureTrianglesOpacityMicromapEXT::pUsageCounts). Requires valid indices.
@@ -104,15 +85,5 @@ std::vector<MicromapUsage> usagesOf(const MicromapArray& array);
 constexpr std::uint64_t bytesOfStates(std::uint32_t level, std::uint32_t format) {
     return (std::uint64_t{microTriangles(level)} * format + 7) / 8;
 }
-
-// Returns a state of a triangle. `place` is that on the curve of `level`, which must not be below the level
-// of the triangle's record; a coarser record's state holds for all micro-triangles within.
-// Requires an array that faultIn() finds no fault in.
-State stateAt(const MicromapArray& array, std::size_t triangle, std::uint32_t place, std::uint32_t level);
-
-// Returns the fault of an array from elsewhere, as a phrase, or no value: records outside of the data,
-// overlapping ones, levels above `maxLevel`, unknown formats, indices without a record, usages that do not
-// count the records.
-std::optional<const char*> faultIn(const MicromapArray& array, std::uint32_t maxLevel);
 
 }  // namespace glint::opacity

@@ -1,6 +1,7 @@
 #include "data/opacity_split.h"
 
 #include "context/parallel.h"
+#include "data/materials.h"
 #include "data/vertex_format.h"
 #include "package/package.h"
 
@@ -57,31 +58,21 @@ struct KnownAlpha {
 
 // Returns nothing for an image whose texels only the device can read.
 std::optional<KnownAlpha> knownAlpha(const ImageView& image) {
-    const std::size_t count = std::size_t{image.width} * image.height;
-    KnownAlpha known;
-    known.texels.width = image.width;
-    known.texels.height = image.height;
-    known.texels.alpha.resize(count);
-    const TexelChannel channel = image.channels[3];
-    if (image.format == TexelFormat::Rgba16) {
-        // The device may have them in 8 bits.
-        known.steps = 1;
-        for (std::size_t i = 0; i < count; ++i) {
-            std::array<std::uint8_t, 4> texel{};
-            for (std::size_t c = 0; c < 4; ++c) {
-                std::uint16_t wide = 0;
-                std::memcpy(&wide, &image.pixels[8 * i + 2 * c], sizeof wide);
-                texel[c] = static_cast<std::uint8_t>((wide * 255U + 32767U) / 65535U);
-            }
-            known.texels.alpha[i] = alphaOf(texel.data(), channel);
-        }
-        return known;
-    }
     if (isBlockFormat(image.format)) {
         return std::nullopt;
     }
+    const std::size_t count = std::size_t{image.width} * image.height;
+    KnownAlpha known{{image.width, image.height, std::vector<std::uint8_t>(count)}};
+    std::span<const std::uint8_t> texels = image.pixels;
+    std::vector<std::uint8_t> narrow;
+    if (image.format == TexelFormat::Rgba16) {
+        // The device may have them in 8 bits.
+        known.steps = 1;
+        narrow = narrowRgba16(texels.first(8 * count));
+        texels = narrow;
+    }
     for (std::size_t i = 0; i < count; ++i) {
-        known.texels.alpha[i] = alphaOf(&image.pixels[4 * i], channel);
+        known.texels.alpha[i] = alphaOf(&texels[4 * i], image.channels[3]);
     }
     return known;
 }

@@ -35,11 +35,7 @@ RetiredLot& RetiredLot::operator=(RetiredLot&& other) noexcept {
     free();
     pool_ = other.pool_;
     owner_ = std::move(other.owner_);
-    structures_ = std::move(other.structures_);
-    buffers_ = std::move(other.buffers_);
-    images_ = std::move(other.images_);
-    descriptors_ = std::move(other.descriptors_);
-    views_ = std::move(other.views_);
+    kinds_ = std::move(other.kinds_);
     return *this;
 }
 
@@ -48,73 +44,38 @@ RetiredLot::~RetiredLot() {
 }
 
 void RetiredLot::free() {
-    views_.clear();
-    descriptors_.clear();
-    for (AccelerationStructure& structure : structures_) {
-        discard(*pool_, std::move(structure));
-    }
-    for (Buffer& buffer : buffers_) {
-        discard(*pool_, std::move(buffer));
-    }
-    for (DeviceImage& image : images_) {
-        discard(*pool_, std::move(image));
-    }
-    structures_.clear();
-    buffers_.clear();
-    images_.clear();
-}
-
-void RetiredLot::add(Buffer&& buffer) {
-    if (buffer.handle.get() != VK_NULL_HANDLE) {
-        buffers_.push_back(std::move(buffer));
-    }
-}
-
-void RetiredLot::add(DeviceImage&& image) {
-    if (image.handle.get() != VK_NULL_HANDLE) {
-        images_.push_back(std::move(image));
-    }
-}
-
-void RetiredLot::add(AccelerationStructure&& structure) {
-    if (structure.handle.get() != VK_NULL_HANDLE) {
-        structures_.push_back(std::move(structure));
-    }
-}
-
-void RetiredLot::add(UniqueDescriptorPool&& descriptors) {
-    if (descriptors.get() != VK_NULL_HANDLE) {
-        descriptors_.push_back(std::move(descriptors));
-    }
-}
-
-void RetiredLot::add(UniqueImageView&& view) {
-    if (view.get() != VK_NULL_HANDLE) {
-        views_.push_back(std::move(view));
-    }
+    const auto freeAll = [&](auto& resources) {
+        for (auto& resource : resources) {
+            if constexpr (requires { discard(*pool_, std::move(resource)); }) {
+                discard(*pool_, std::move(resource));
+            }
+        }
+        resources.clear();
+    };
+    std::apply([&](auto&... resources) { (freeAll(resources), ...); }, kinds_);
 }
 
 bool RetiredLot::isEmpty() const {
-    return structures_.empty() && buffers_.empty() && images_.empty() && descriptors_.empty() &&
-           views_.empty();
+    return std::apply([](const auto&... resources) { return (resources.empty() && ...); }, kinds_);
 }
 
 std::uint64_t RetiredLot::bytes() const {
     std::uint64_t sum = 0;
-    for (const AccelerationStructure& structure : structures_) {
+    for (const AccelerationStructure& structure : all<AccelerationStructure>()) {
         sum += structure.buffer.bytes;
     }
-    for (const Buffer& buffer : buffers_) {
+    for (const Buffer& buffer : all<Buffer>()) {
         sum += buffer.bytes;
     }
-    for (const DeviceImage& image : images_) {
+    for (const DeviceImage& image : all<DeviceImage>()) {
         sum += image.bytes;
     }
     return sum;
 }
 
 std::uint32_t RetiredLot::count() const {
-    return static_cast<std::uint32_t>(structures_.size() + buffers_.size() + images_.size());
+    return static_cast<std::uint32_t>(all<AccelerationStructure>().size() + all<Buffer>().size() +
+                                      all<DeviceImage>().size());
 }
 
 void Retired::close(std::uint64_t frame) {

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -28,11 +30,14 @@ public:
     RetiredLot& operator=(const RetiredLot&) = delete;
     ~RetiredLot();
 
-    void add(Buffer&& buffer);
-    void add(DeviceImage&& image);
-    void add(AccelerationStructure&& structure);
-    void add(UniqueDescriptorPool&& descriptors);
-    void add(UniqueImageView&& view);
+    // Takes a resource of one of the kinds below. One without a handle changes nothing.
+    template <typename Resource>
+    void add(Resource&& resource) {
+        if (isThere(resource)) {
+            std::get<std::vector<std::remove_cvref_t<Resource>>>(kinds_).push_back(
+                std::forward<Resource>(resource));
+        }
+    }
     // Lets the lot outlive everything else that uses its pool.
     void keep(std::shared_ptr<MemoryPool> pool) {
         owner_ = std::move(pool);
@@ -42,15 +47,26 @@ public:
     std::uint32_t count() const;  // of buffers and images
 
 private:
+    template <typename Resource>
+    static bool isThere(const Resource& resource) {
+        if constexpr (requires { resource.handle; }) {
+            return isThere(resource.handle);
+        } else {
+            return resource.get() != VK_NULL_HANDLE;
+        }
+    }
+    template <typename Resource>
+    const std::vector<Resource>& all() const {
+        return std::get<std::vector<Resource>>(kinds_);
+    }
     void free();
 
     std::shared_ptr<MemoryPool> owner_;  // may be null; destroyed last
     MemoryPool* pool_ = nullptr;
-    std::vector<AccelerationStructure> structures_;
-    std::vector<Buffer> buffers_;
-    std::vector<DeviceImage> images_;
-    std::vector<UniqueDescriptorPool> descriptors_;
-    std::vector<UniqueImageView> views_;
+    // In the order in which they are destroyed.
+    std::tuple<std::vector<UniqueImageView>, std::vector<UniqueDescriptorPool>,
+               std::vector<AccelerationStructure>, std::vector<Buffer>, std::vector<DeviceImage>>
+        kinds_;
 };
 
 // A retired resource waits for the next recording, whose commands may still use it, and then for its frame.

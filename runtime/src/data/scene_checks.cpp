@@ -1,6 +1,7 @@
 #include "data/scene_checks.h"
 
 #include "data/geometry.h"
+#include "data/instance_math.h"
 #include "package/package.h"
 
 #include <algorithm>
@@ -252,8 +253,7 @@ Status checkLights(std::span<const LightView> lights) {
             light.position[1],  light.position[2],    light.direction[0],   light.direction[1],
             light.direction[2], light.innerConeAngle, light.outerConeAngle, light.range,
             light.size};
-        const bool finite = std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
-        if (!finite || light.type > LightView::Type::Spot) {
+        if (!isFinite(values) || light.type > LightView::Type::Spot) {
             return makeError("scene-light", "light " + std::to_string(&light - lights.data()),
                              "the light has a value that is not finite, or an unknown type",
                              "repair the light");
@@ -340,10 +340,6 @@ std::size_t jointsNeeded(std::span<const PrimitiveView> primitives) {
     return needed;
 }
 
-bool isFinite(std::span<const float> values) {
-    return std::ranges::all_of(values, [](float value) { return std::isfinite(value); });
-}
-
 Status checkFinite(const InstanceView& instance, const std::string& where) {
     for (const std::array<float, 12>& joint : instance.joints) {
         if (!isFinite(joint)) {
@@ -407,28 +403,29 @@ Status checkDeformation(const SceneView& scene) {
 }
 
 Status checkMotion(const MotionView& motion, const MotionShape& shape) {
-    if (motion.instances.size() != shape.meshes.size()) {
-        return otherCount("", "instances", motion.instances.size(), shape.meshes.size());
+    if (motion.instances.size() != shape.instances.size()) {
+        return otherCount("", "instances", motion.instances.size(), shape.instances.size());
     }
-    if (motion.lights.size() != shape.lightTypes.size()) {
-        return otherCount("", "lights", motion.lights.size(), shape.lightTypes.size());
+    if (motion.lights.size() != shape.lights.size()) {
+        return otherCount("", "lights", motion.lights.size(), shape.lights.size());
     }
     for (std::size_t i = 0; i < motion.instances.size(); ++i) {
         const InstanceView& instance = motion.instances[i];
         const std::string where = "instance " + std::to_string(i);
-        if (instance.mesh != shape.meshes[i]) {
+        const MotionShape::Instance& uploaded = shape.instances[i];
+        if (instance.mesh != uploaded.mesh) {
             return makeError("scene-motion", where, "the instance has another mesh than at upload", kGiveAll);
         }
-        if (instance.joints.size() != shape.jointCounts[i]) {
-            return otherCount(where, "joints", instance.joints.size(), shape.jointCounts[i]);
+        if (instance.joints.size() != uploaded.joints) {
+            return otherCount(where, "joints", instance.joints.size(), uploaded.joints);
         }
-        if (instance.morphWeights.size() != shape.weightCounts[i]) {
-            return otherCount(where, "morph weights", instance.morphWeights.size(), shape.weightCounts[i]);
+        if (instance.morphWeights.size() != uploaded.weights) {
+            return otherCount(where, "morph weights", instance.morphWeights.size(), uploaded.weights);
         }
         GLINT_TRY_DO(checkFinite(instance, where));
     }
     for (std::size_t i = 0; i < motion.lights.size(); ++i) {
-        if (static_cast<std::uint32_t>(motion.lights[i].type) != shape.lightTypes[i]) {
+        if (motion.lights[i].type != shape.lights[i]) {
             return makeError("scene-motion", "light " + std::to_string(i),
                              "the light has another type than at upload", kGiveAll);
         }

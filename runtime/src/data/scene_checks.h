@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace glint {
 
@@ -45,13 +46,16 @@ Status checkDeformation(const SceneView& scene);
 // Errors: "scene-index", "scene-motion".
 Status checkPose(const InstanceView& pose, std::size_t joints, std::size_t targets, const std::string& where);
 
-// The properties that a MotionView must share with the scene that was uploaded. They are listed in the order
-// of instances and of lights.
+// The properties that a MotionView must share with the scene that was uploaded, in the order of instances and
+// of lights.
 struct MotionShape {
-    std::span<const std::uint32_t> meshes;
-    std::span<const std::size_t> jointCounts;
-    std::span<const std::size_t> weightCounts;
-    std::span<const std::uint32_t> lightTypes;
+    struct Instance {
+        std::uint32_t mesh = 0;
+        std::size_t joints = 0;
+        std::size_t weights = 0;
+    };
+    std::vector<Instance> instances;
+    std::vector<LightView::Type> lights;
 };
 
 // Pure. Errors: "scene-motion", "scene-light", "scene-origin".

@@ -181,20 +181,9 @@ private:
         } else {
             best = bestOf(leaves, ranks, left);
         }
-        switch (best.key) {
-            case Key::X:
-                partBy<Key::X>(leaves, ranks, left, best.pivot);
-                break;
-            case Key::Y:
-                partBy<Key::Y>(leaves, ranks, left, best.pivot);
-                break;
-            case Key::Z:
-                partBy<Key::Z>(leaves, ranks, left, best.pivot);
-                break;
-            case Key::Size:
-                partBy<Key::Size>(leaves, ranks, left, best.pivot);
-                break;
-        }
+        constexpr decltype(&partBy<Key::X>) kPartBy[] = {partBy<Key::X>, partBy<Key::Y>, partBy<Key::Z>,
+                                                         partBy<Key::Size>};
+        kPartBy[static_cast<std::size_t>(best.key)](leaves, ranks, left, best.pivot);
     }
 
     std::span<Leaf> leaves_;

@@ -282,16 +282,10 @@ bool isStep(double value, double most) {
     return std::abs(steps - std::round(steps)) <= 0.01;
 }
 
-// The numbers that coordinates are made of on one axis.
-struct Range {
-    float least = 0.0F;
-    float step = 0.0F;
-};
-
 // The largest step of coordinates: an eighth of a texel of 2048.
 constexpr double kMostStep = 1.0 / 16384.0;
 
-std::optional<Range> rangeOf(std::span<const std::array<float, 2>> texCoords, std::size_t axis) {
+std::optional<AxisGrid> rangeOf(std::span<const std::array<float, 2>> texCoords, std::size_t axis) {
     double least = std::numeric_limits<double>::infinity();
     double most = -least;
     bool integers = true;
@@ -304,21 +298,13 @@ std::optional<Range> rangeOf(std::span<const std::array<float, 2>> texCoords, st
         integers = integers && isStep(uv[axis], 65535.0);
     }
     if (integers && least >= 0.0 && most <= 1.0) {
-        return Range{0.0F, static_cast<float>(1.0 / 65535.0)};
+        return AxisGrid{0.0F, static_cast<float>(1.0 / 65535.0)};
     }
-    const double step = (most - least) / 65535.0;
+    const double step = (most - least) / kMostCode;
     if (!(step <= kMostStep)) {
         return std::nullopt;
     }
-    return Range{static_cast<float>(least), static_cast<float>(step)};
-}
-
-std::uint32_t codeOf(float value, const Range& range) {
-    if (range.step == 0.0F) {
-        return 0;
-    }
-    const double code = (static_cast<double>(value) - range.least) / range.step;
-    return static_cast<std::uint32_t>(std::clamp(std::round(code), 0.0, 65535.0));
+    return AxisGrid{static_cast<float>(least), static_cast<float>(step)};
 }
 
 }  // namespace
@@ -353,8 +339,8 @@ std::optional<std::vector<std::uint32_t>> packTangents(std::span<const std::arra
 }
 
 std::optional<std::vector<std::uint32_t>> packTexCoords(std::span<const std::array<float, 2>> texCoords) {
-    const std::optional<Range> u = rangeOf(texCoords, 0);
-    const std::optional<Range> v = rangeOf(texCoords, 1);
+    const std::optional<AxisGrid> u = rangeOf(texCoords, 0);
+    const std::optional<AxisGrid> v = rangeOf(texCoords, 1);
     if (!u || !v) {
         return std::nullopt;
     }
@@ -363,7 +349,7 @@ std::optional<std::vector<std::uint32_t>> packTexCoords(std::span<const std::arr
         std::bit_cast<std::uint32_t>(u->step), std::bit_cast<std::uint32_t>(v->step)};
     words.reserve(words.size() + texCoords.size());
     for (const std::array<float, 2>& uv : texCoords) {
-        words.push_back(codeOf(uv[0], *u) | codeOf(uv[1], *v) << 16U);
+        words.push_back(codeOnAxis(uv[0], *u) | codeOnAxis(uv[1], *v) << 16U);
     }
     return words;
 }

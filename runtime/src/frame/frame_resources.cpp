@@ -151,10 +151,11 @@ Status createImages(Context::State& context, const FrameSize& size, FrameResourc
 }
 
 struct WantedBuffer {
+    const char* name;  // for reports
     Buffer FrameResources::*member;
     VkDeviceSize bytes;  // 0: the frame needs none
     VkBufferUsageFlags usage;
-    MemoryUse use;
+    MemoryUse use = MemoryUse::Device;
     // Nothing writes or reads the buffer until the shadow rays of first hits are traced, which need theirs no
     // longer.
     bool followsShadows = false;
@@ -167,7 +168,7 @@ struct WantedBuffer {
     }
 };
 
-// Returns the buffers in the order of FrameResources::buffers().
+// Returns all buffers of a frame.
 std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const FrameSize& size) {
     constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     constexpr VkBufferUsageFlags kCleared =
@@ -200,39 +201,39 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
     const VkDeviceSize shadowLists = shadows > 0 ? 1 : 0;
     using Frame = FrameResources;
     return {{
-        {&Frame::constants, sizeof(gpu::FrameConstants), kCleared, MemoryUse::Device},
-        {&Frame::sampleStarts, samples * sizeof(gpu::SampleStart), kRead, MemoryUse::Device},
-        {&Frame::sampleAims, samples * (size.packedSamples ? sizeof(gpu::uvec2) : sizeof(gpu::SampleAim)),
-         kRead, MemoryUse::Device},
-        {&Frame::sampleWeights, size.packedSamples ? 0 : samples * sizeof(gpu::SampleWeight), kRead,
-         MemoryUse::Device},
-        {&Frame::listed, ownRays * sizeof(std::uint32_t), kRead, MemoryUse::Device},
-        {&Frame::radiance, size.paths ? samples * sizeof(gpu::vec4) : 0, kRead, MemoryUse::Device},
-        {&Frame::nextListed, size.paths ? ownRays * sizeof(std::uint32_t) : 0, kStorage, MemoryUse::Device},
-        {&Frame::paths, size.paths ? samples * sizeof(gpu::PathState) : 0, kStorage, MemoryUse::Device},
-        {&Frame::lobeRays, size.emissiveLights ? samples * sizeof(gpu::LobeRay) : 0, kStorage,
-         MemoryUse::Device},
-        {&Frame::skyShares, size.skyLight ? samples * sizeof(float) : 0, kStorage, MemoryUse::Device},
-        {&Frame::rayHits, size.layerRays ? samples * sizeof(gpu::RayHit) : 0, kStorage, MemoryUse::Device},
-        {&Frame::bounceLight, samples * size.layerBounces * sizeof(gpu::BounceLight), kStorage,
-         MemoryUse::Device},
-        {&Frame::walkedLight, size.layerWalks ? samples * sizeof(gpu::BounceLight) : 0, kCleared,
-         MemoryUse::Device},
-        {&Frame::shadows, shadowBytes, kStorage, MemoryUse::Device},
-        {&Frame::shadowDispatch, shadowLists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
-        {&Frame::firstShadowCounts, firstShadows * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
-        {&Frame::hits, hits * size.hitBytes, kStorage, MemoryUse::Device,
+        {"constants", &Frame::constants, sizeof(gpu::FrameConstants), kCleared},
+        {"starts of samples", &Frame::sampleStarts, samples * sizeof(gpu::SampleStart), kRead},
+        {"directions of samples", &Frame::sampleAims,
+         samples * (size.packedSamples ? sizeof(gpu::uvec2) : sizeof(gpu::SampleAim)), kRead},
+        {"weights of samples", &Frame::sampleWeights,
+         size.packedSamples ? 0 : samples * sizeof(gpu::SampleWeight), kRead},
+        {"rays", &Frame::listed, ownRays * sizeof(std::uint32_t), kRead},
+        {"radiance of paths", &Frame::radiance, size.paths ? samples * sizeof(gpu::vec4) : 0, kRead},
+        {"next rays", &Frame::nextListed, size.paths ? ownRays * sizeof(std::uint32_t) : 0, kStorage},
+        {"paths", &Frame::paths, size.paths ? samples * sizeof(gpu::PathState) : 0, kStorage},
+        {"rays of lobes", &Frame::lobeRays, size.emissiveLights ? samples * sizeof(gpu::LobeRay) : 0,
+         kStorage},
+        {"shares of the sky", &Frame::skyShares, size.skyLight ? samples * sizeof(float) : 0, kStorage},
+        {"hits of layers", &Frame::rayHits, size.layerRays ? samples * sizeof(gpu::RayHit) : 0, kStorage},
+        {"light of bounces", &Frame::bounceLight, samples * size.layerBounces * sizeof(gpu::BounceLight),
+         kStorage},
+        {"light of walks", &Frame::walkedLight, size.layerWalks ? samples * sizeof(gpu::BounceLight) : 0,
+         kCleared},
+        {"shadow rays", &Frame::shadows, shadowBytes, kStorage},
+        {"shadow dispatch", &Frame::shadowDispatch, shadowLists * sizeof(gpu::DispatchArguments), kIndirect},
+        {"first shadow counts", &Frame::firstShadowCounts, firstShadows * sizeof(std::uint32_t), kCleared},
+        {"hits", &Frame::hits, hits * size.hitBytes, kStorage, MemoryUse::Device,
          firstShadows > 0 && !size.deferredShadows},
-        {&Frame::orderedHits, slots * sizeof(std::uint32_t), kStorage, MemoryUse::Device},
-        {&Frame::visitedHits, visitedWords * sizeof(std::uint32_t), kCleared, MemoryUse::Device},
-        {&Frame::bucketKeys, keys * size.keyBytes, kStorage, MemoryUse::Device},
-        {&Frame::bucketCounts, buckets, kCleared, MemoryUse::Device},
-        {&Frame::bucketBegins, buckets, kStorage, MemoryUse::Device},
-        {&Frame::bucketCursors, buckets, kCleared, MemoryUse::Device},
-        {&Frame::rayDispatch, lists * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
-        {&Frame::bucketDispatch, orderings * sizeof(gpu::DispatchArguments), kIndirect, MemoryUse::Device},
-        {&Frame::counters, counterBytes(size), kCleared, MemoryUse::Device},
-        {&Frame::readback, readbackDepth(size, size.paths ? BounceLevels::kSlots : 0),
+        {"ordered hits", &Frame::orderedHits, slots * sizeof(std::uint32_t), kStorage},
+        {"visited hits", &Frame::visitedHits, visitedWords * sizeof(std::uint32_t), kCleared},
+        {"bucket keys", &Frame::bucketKeys, keys * size.keyBytes, kStorage},
+        {"bucket counts", &Frame::bucketCounts, buckets, kCleared},
+        {"bucket begins", &Frame::bucketBegins, buckets, kStorage},
+        {"bucket cursors", &Frame::bucketCursors, buckets, kCleared},
+        {"ray dispatch", &Frame::rayDispatch, lists * sizeof(gpu::DispatchArguments), kIndirect},
+        {"bucket dispatch", &Frame::bucketDispatch, orderings * sizeof(gpu::DispatchArguments), kIndirect},
+        {"counters", &Frame::counters, counterBytes(size), kCleared},
+        {"read-back", &Frame::readback, readbackDepth(size, size.paths ? BounceLevels::kSlots : 0),
          VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::Readback},
     }};
 }
@@ -414,6 +415,15 @@ EarlierBuffers replaceBuffers(NextBuffers next, FrameResources& frame) {
     return earlier;
 }
 
+std::vector<std::pair<const char*, const Buffer*>> buffersOf(const FrameResources& frame,
+                                                             const FrameSize& size) {
+    std::vector<std::pair<const char*, const Buffer*>> buffers;
+    for (const WantedBuffer& wanted : wantedBuffers(size)) {
+        buffers.emplace_back(wanted.name, &(frame.*wanted.member));
+    }
+    return buffers;
+}
+
 VkDeviceSize allocatedBytes(const FrameResources& frame) {
     std::set<const MemoryPool*> pools{&frame.pool};
     for (const std::shared_ptr<MemoryPool>& pool : frame.bufferPools) {
@@ -431,15 +441,11 @@ Result<DescriptorSet> createFrameSet(Context::State& context, const FrameSize& s
     GLINT_TRY(auto made, createSet(context, frame.setLayout.get(), setBindings(context, size), false));
     const auto write = [&](std::uint32_t binding, VkDescriptorType type, const VkDescriptorImageInfo& image) {
         const VkWriteDescriptorSet one{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                       .pNext = nullptr,
                                        .dstSet = made.set,
                                        .dstBinding = binding,
-                                       .dstArrayElement = 0,
                                        .descriptorCount = 1,
                                        .descriptorType = type,
-                                       .pImageInfo = &image,
-                                       .pBufferInfo = nullptr,
-                                       .pTexelBufferView = nullptr};
+                                       .pImageInfo = &image};
         context.vk.UpdateDescriptorSets(context.handles.device, 1, &one, 0, nullptr);
     };
     const auto bind = [&](std::uint32_t binding, const DeviceImage& own) {

@@ -33,8 +33,8 @@ struct FrameResources {
     explicit FrameResources(Context::State& context) : pool(context, "frame") {}
 
     MemoryPool pool;
-    // The memory of buffers that replaceBuffers() has exchanged, in the order of buffers(). The memory of the
-    // others is `pool`.
+    // The memory of buffers that replaceBuffers() has exchanged, in the order of buffersOf(). The memory of
+    // the others is `pool`.
     static constexpr std::size_t kBufferCount = 27;
     std::array<std::shared_ptr<MemoryPool>, kBufferCount> bufferPools{};
     // The images by binding, in the layout GENERAL. Bindings that share an image have it in one place
@@ -74,37 +74,6 @@ struct FrameResources {
     UniqueSetLayout setLayout;
     DescriptorSet set;
     bool prepared = false;  // by prepareImages()
-
-    // All buffers, with names for reports.
-    std::array<std::pair<const char*, const Buffer*>, kBufferCount> buffers() const {
-        return {{{"constants", &constants},
-                 {"starts of samples", &sampleStarts},
-                 {"directions of samples", &sampleAims},
-                 {"weights of samples", &sampleWeights},
-                 {"rays", &listed},
-                 {"radiance of paths", &radiance},
-                 {"next rays", &nextListed},
-                 {"paths", &paths},
-                 {"rays of lobes", &lobeRays},
-                 {"shares of the sky", &skyShares},
-                 {"hits of layers", &rayHits},
-                 {"light of bounces", &bounceLight},
-                 {"light of walks", &walkedLight},
-                 {"shadow rays", &shadows},
-                 {"shadow dispatch", &shadowDispatch},
-                 {"first shadow counts", &firstShadowCounts},
-                 {"hits", &hits},
-                 {"ordered hits", &orderedHits},
-                 {"visited hits", &visitedHits},
-                 {"bucket keys", &bucketKeys},
-                 {"bucket counts", &bucketCounts},
-                 {"bucket begins", &bucketBegins},
-                 {"bucket cursors", &bucketCursors},
-                 {"ray dispatch", &rayDispatch},
-                 {"bucket dispatch", &bucketDispatch},
-                 {"counters", &counters},
-                 {"read-back", &readback}}};
-    }
 };
 
 struct FrameSize {
@@ -230,7 +199,7 @@ void prepareImages(Context::State& context, VkCommandBuffer commands, FrameResou
 // Buffers for frames of another size in memory, which replace those that have another size now.
 struct NextBuffers {
     struct Exchange {
-        std::size_t place = 0;  // in FrameResources::buffers()
+        std::size_t place = 0;  // in buffersOf()
         Buffer FrameResources::*member = nullptr;
         Buffer buffer;  // without a handle if the frame no longer needs it
     };
@@ -258,6 +227,10 @@ struct EarlierBuffers {
     std::vector<Buffer> buffers;
 };
 EarlierBuffers replaceBuffers(NextBuffers next, FrameResources& frame);
+
+// Returns all buffers, with names for reports.
+std::vector<std::pair<const char*, const Buffer*>> buffersOf(const FrameResources& frame,
+                                                             const FrameSize& size);
 
 // Returns the size of the memory of all images and buffers.
 VkDeviceSize allocatedBytes(const FrameResources& frame);

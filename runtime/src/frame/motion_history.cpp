@@ -76,7 +76,7 @@ Status MotionHistory::makeVertices() {
         if (known == copies.end()) {
             const VkDeviceSize size = VkDeviceSize{3 * sizeof(float)} * own.vertexCount;
             copies.push_back({own.buffer, {own.offset, bytes, size}});
-            bytes += (size + kVertexAlignment - 1) / kVertexAlignment * kVertexAlignment;
+            bytes += alignUp(size, kVertexAlignment);
         }
     }
     Buffer vertices;

@@ -9,15 +9,14 @@
 
 namespace glint {
 
-Diagnostic frameNotRecorded() {
-    return makeError("frame-not-recorded", "", "no frame has been recorded",
-                     "record a frame, submit it and wait for it first");
+Status checkRecorded(const PassState& state) {
+    return state.recorded ? okStatus()
+                          : Status(makeError("frame-not-recorded", "", "no frame has been recorded",
+                                             "record a frame, submit it and wait for it first"));
 }
 
 Result<std::vector<PassTiming>> passTimings(PassState& state) {
-    if (!state.recorded) {
-        return frameNotRecorded();
-    }
+    GLINT_TRY_DO(checkRecorded(state));
     const auto count = static_cast<std::uint32_t>(state.timed.size());
     GLINT_TRY(auto milliseconds, state.timer.read(count));
     std::vector<PassTiming> timings;
@@ -47,6 +46,23 @@ PassRecorder::PassRecorder(PassState& state, VkCommandBuffer commands, Timing ti
 
 void PassRecorder::barrier(const MemoryDependency& dependency) {
     recordDependency(state_.context, commands_, dependency);
+}
+
+void PassRecorder::fill(const Buffer& buffer, std::uint32_t value, VkDeviceSize bytes, VkDeviceSize from) {
+    if (buffer.bytes > from) {
+        vk_.CmdFillBuffer(commands_, buffer.handle.get(), from, bytes, value);
+    }
+}
+
+void PassRecorder::clearLists() {
+    fill(state_.frame.bucketCounts, 0);
+    fill(state_.frame.bucketCursors, 0);
+    fill(state_.frame.visitedHits, 0);
+}
+
+void PassRecorder::readBack(const Buffer& source, VkDeviceSize bytes, VkDeviceSize to, VkDeviceSize from) {
+    const VkBufferCopy region{from, to, bytes};
+    vk_.CmdCopyBuffer(commands_, source.handle.get(), state_.frame.readback.handle.get(), 1, &region);
 }
 
 void PassRecorder::beginPass(const PassLabel& label) {
@@ -90,22 +106,19 @@ void PassRecorder::push() {
 }
 
 void PassRecorder::beginRendering() {
-    VkRenderingAttachmentInfo color{};
-    color.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
-    color.imageView = state_.frame.images[gpu::kBindingSurface].view.get();
-    color.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
-    color.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
-    color.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    VkRenderingAttachmentInfo color{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                                    .imageView = state_.frame.images[gpu::kBindingSurface].view.get(),
+                                    .imageLayout = VK_IMAGE_LAYOUT_GENERAL,
+                                    .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
+                                    .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
     color.clearValue.color.uint32[0] = gpu::kNoSurface;
-    VkRenderingAttachmentInfo depth{};
-    depth.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO;
+    VkRenderingAttachmentInfo depth{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
     depth.imageView = state_.frame.depth.view.get();
     depth.imageLayout = VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_OPTIMAL;
     depth.loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR;
     depth.storeOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
     depth.clearValue.depthStencil.depth = 0.0F;  // far, as depth is reversed
-    VkRenderingInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_RENDERING_INFO;
+    VkRenderingInfo info{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO};
     info.renderArea.extent = {state_.size.width, state_.size.height};
     info.layerCount = 1;
     info.colorAttachmentCount = 1;

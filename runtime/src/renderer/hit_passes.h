@@ -9,6 +9,7 @@
 
 #include <glint/renderer_options.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -47,8 +48,8 @@ struct PassState {
 // Returns the times of the last recording. Errors: "frame-not-recorded", and those of reading device times.
 Result<std::vector<PassTiming>> passTimings(PassState& state);
 
-// Makes the error "frame-not-recorded".
-Diagnostic frameNotRecorded();
+// Error "frame-not-recorded".
+Status checkRecorded(const PassState& state);
 
 inline constexpr VkPipelineStageFlags2 kRasterStage = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
 inline constexpr VkPipelineStageFlags2 kDepthStages =
@@ -100,6 +101,19 @@ public:
     void endStretch(std::uint32_t stretch);
 
     void barrier(const MemoryDependency& dependency);
+    // Fills the bytes of a buffer from an offset on; one that the frame lacks is left out.
+    void fill(const Buffer& buffer, std::uint32_t value, VkDeviceSize bytes = VK_WHOLE_SIZE,
+              VkDeviceSize from = 0);
+    // Clears the buckets of the list of rays.
+    void clearLists();
+    // Copies bytes into the read-back buffer, at the offset `to`.
+    void readBack(const Buffer& source, VkDeviceSize bytes, VkDeviceSize to, VkDeviceSize from = 0);
+    // Sets FrameConstants, or the bytes from an offset on.
+    template <typename Value>
+    void setConstants(const Value& value, std::size_t offset = 0) {
+        static_assert(sizeof(value) <= 65536 && sizeof(value) % 4 == 0, "limits of the command");
+        vk_.CmdUpdateBuffer(commands_, state_.frame.constants.handle.get(), offset, sizeof(value), &value);
+    }
     // Binds descriptor sets for every kind of pass except the raster pass.
     void bindSets(std::span<const VkDescriptorSet> sets);
     // Draws a scene into the G-buffer's visibility image.

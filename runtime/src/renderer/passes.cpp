@@ -32,7 +32,7 @@ std::uint32_t shadowRounds(const FrameSize& size, const gpu::FrameConstants& con
 class FrameRecorder {
 public:
     FrameRecorder(Renderer::State& state, VkCommandBuffer commands, Timing timing)
-        : state_(state), vk_(state.context.vk), commands_(commands), passes_(state, commands, timing) {
+        : state_(state), commands_(commands), passes_(state, commands, timing) {
         setBand(state.size, 0, band_);
     }
 
@@ -42,8 +42,7 @@ public:
         passes_.barrier(kAllToAll);
         const std::uint32_t whole = passes_.beginStretch({"frame", Pass::Frame});
         clear(constants);
-        static_assert(sizeof(constants) <= 65536 && sizeof(constants) % 4 == 0, "limits of the command");
-        vk_.CmdUpdateBuffer(commands_, state_.frame.constants.handle.get(), 0, sizeof(constants), &constants);
+        passes_.setConstants(constants);
         passes_.barrier(dependencies().clearToPasses);
         const VkDescriptorSet sets[] = {state_.scene.set, state_.frame.set.set};
         passes_.drawScene(state_.scene.batches, sets);
@@ -65,7 +64,7 @@ public:
             state_.history->record(commands_, state_.recordings + 1);
         }
         passes_.barrier(dependencies().passesToCopy);
-        copy(state_.frame.counters, 0, state_.frame.counters.bytes, 0);
+        passes_.readBack(state_.frame.counters, state_.frame.counters.bytes, 0);
         keepDepth();
         passes_.barrier(kCopyToHost);
     }
@@ -90,8 +89,9 @@ private:
             state_.bounceLevels.skipped(recording);
             return;
         }
-        copy(state_.frame.counters, gpu::kCounterDeepest * sizeof(std::uint32_t), sizeof(std::uint32_t),
-             readbackDepth(state_.size, BounceLevels::slotOf(recording)));
+        passes_.readBack(state_.frame.counters, sizeof(std::uint32_t),
+                         readbackDepth(state_.size, BounceLevels::slotOf(recording)),
+                         gpu::kCounterDeepest * sizeof(std::uint32_t));
         state_.bounceLevels.recorded(recording, bounces_.count);
     }
 
@@ -101,17 +101,6 @@ private:
 
     const PassPipeline& pass(ModuleRole role) const {
         return state_.pipelines.passes.at(role);
-    }
-
-    void fill(const Buffer& buffer, VkDeviceSize bytes, std::uint32_t value, VkDeviceSize from = 0) {
-        if (buffer.bytes > from) {
-            vk_.CmdFillBuffer(commands_, buffer.handle.get(), from, bytes, value);
-        }
-    }
-
-    void copy(const Buffer& source, VkDeviceSize from, VkDeviceSize bytes, VkDeviceSize to) {
-        const VkBufferCopy region{from, to, bytes};
-        vk_.CmdCopyBuffer(commands_, source.handle.get(), state_.frame.readback.handle.get(), 1, &region);
     }
 
     // Shades the rows of a band.
@@ -132,7 +121,8 @@ private:
         HitPasses hits(state_, passes_);
         hits.orderFirst();
         passes_.barrier(dependencies().passesToCopy);
-        copy(state_.frame.bucketCounts, 0, bucketBytes(state_.size), readbackFirst(state_.size, band));
+        passes_.readBack(state_.frame.bucketCounts, bucketBytes(state_.size),
+                         readbackFirst(state_.size, band));
         state_.orderedBands = band + 1;
         hits.shadeFirst(shadowRounds(state_.size, constants));
     }
@@ -141,9 +131,9 @@ private:
     void startBand(std::uint32_t band, const gpu::FrameConstants& constants) {
         setBand(state_.size, band, band_);
         passes_.barrier(dependencies().passToClear);
-        updateConstant(offsetof(gpu::FrameConstants, firstRow), band_.firstRow);
-        updateConstant(offsetof(gpu::FrameConstants, endRow), band_.endRow);
-        updateConstant(offsetof(gpu::FrameConstants, bandFirst), band_.bandFirst);
+        passes_.setConstants(band_.firstRow, offsetof(gpu::FrameConstants, firstRow));
+        passes_.setConstants(band_.endRow, offsetof(gpu::FrameConstants, endRow));
+        passes_.setConstants(band_.bandFirst, offsetof(gpu::FrameConstants, bandFirst));
         clearOfPixels();
         startRound(constants);
         passes_.barrier(dependencies().passToPass);
@@ -152,28 +142,21 @@ private:
     // Drafts have no walk, walks of packs need not store their results, and only lit surfaces send shadow
     // rays.
     void clearOfPixels() {
-        fill(state_.frame.walkedLight, VK_WHOLE_SIZE, 0);
-        fill(state_.frame.firstShadowCounts, VK_WHOLE_SIZE, 0);
+        passes_.fill(state_.frame.walkedLight, 0);
+        passes_.fill(state_.frame.firstShadowCounts, 0);
     }
 
     void clear(const gpu::FrameConstants& constants) {
         // This counter belongs to the accumulated picture, so it is reset with the picture only.
         constexpr VkDeviceSize kKept = gpu::kCounterNonFinite * sizeof(std::uint32_t);
         if (constants.averaged == 0 || !state_.recorded) {
-            fill(state_.frame.counters, VK_WHOLE_SIZE, 0);
+            passes_.fill(state_.frame.counters, 0);
         } else {
-            fill(state_.frame.counters, kKept, 0);
-            fill(state_.frame.counters, VK_WHOLE_SIZE, 0, kKept + sizeof(std::uint32_t));
+            passes_.fill(state_.frame.counters, 0, kKept);
+            passes_.fill(state_.frame.counters, 0, VK_WHOLE_SIZE, kKept + sizeof(std::uint32_t));
         }
-        clearLists();
+        passes_.clearLists();
         clearOfPixels();
-    }
-
-    // Clears the lists at the start of a round of rays.
-    void clearLists() {
-        fill(state_.frame.bucketCounts, VK_WHOLE_SIZE, 0);
-        fill(state_.frame.bucketCursors, VK_WHOLE_SIZE, 0);
-        fill(state_.frame.visitedHits, VK_WHOLE_SIZE, 0);
     }
 
     // Records the rays of all effects that are on, either together or effect by effect.
@@ -226,22 +209,18 @@ private:
         setBounce(constants, bounce);
     }
 
-    template <typename Value>
-    void updateConstant(std::size_t offset, const Value& value) {
-        vk_.CmdUpdateBuffer(commands_, state_.frame.constants.handle.get(), offset, sizeof(value), &value);
-    }
-
     // Tells the passes which bounce they shade, and which list has its rays: odd bounces use the list that
     // the effects fill. Makes the writes of the earlier passes visible to the later ones.
     void setBounce(const gpu::FrameConstants& constants, std::uint32_t bounce) {
         const bool swapped = bounce > 0 && bounce % 2 == 0;
         passes_.barrier(dependencies().passToClear);
-        updateConstant(offsetof(gpu::FrameConstants, listed),
-                       swapped ? constants.nextListed : constants.listed);
-        updateConstant(offsetof(gpu::FrameConstants, nextListed),
-                       swapped ? constants.listed : constants.nextListed);
-        updateConstant(offsetof(gpu::FrameConstants, bounce), bounce);
-        updateConstant(offsetof(gpu::FrameConstants, bounceWeight), weightBehind(bounce, bounces_.certain));
+        passes_.setConstants(swapped ? constants.nextListed : constants.listed,
+                             offsetof(gpu::FrameConstants, listed));
+        passes_.setConstants(swapped ? constants.listed : constants.nextListed,
+                             offsetof(gpu::FrameConstants, nextListed));
+        passes_.setConstants(bounce, offsetof(gpu::FrameConstants, bounce));
+        passes_.setConstants(weightBehind(bounce, bounces_.certain),
+                             offsetof(gpu::FrameConstants, bounceWeight));
         passes_.barrier(dependencies().clearToPasses);
         passes_.barrier(dependencies().passToPass);
     }
@@ -257,8 +236,8 @@ private:
         // The previous round read these lists. Their counts are the first counters.
         static_assert(gpu::kCounterRays == 0 && gpu::kCounterShadowRays == 1);
         passes_.barrier(dependencies().passToClear);
-        fill(state_.frame.counters, kRoundCounterBytes, 0);
-        clearLists();
+        passes_.fill(state_.frame.counters, 0, kRoundCounterBytes);
+        passes_.clearLists();
         passes_.barrier(dependencies().clearToPasses);
     }
 
@@ -267,9 +246,9 @@ private:
         passes_.barrier(dependencies().passesToCopy);
         // The list's own counts follow the other counters, round by round.
         const VkDeviceSize place = readbackRound(state_.size, round);
-        copy(state_.frame.counters, 0, kRoundCounterBytes, place);
+        passes_.readBack(state_.frame.counters, kRoundCounterBytes, place);
         if (state_.size.ordered) {
-            copy(state_.frame.bucketCounts, 0, bucketBytes(state_.size), place + kRoundCounterBytes);
+            passes_.readBack(state_.frame.bucketCounts, bucketBytes(state_.size), place + kRoundCounterBytes);
         }
     }
 
@@ -291,7 +270,6 @@ private:
     }
 
     Renderer::State& state_;
-    const DeviceTable& vk_;
     VkCommandBuffer commands_;
     PassRecorder passes_;
     RecordedBounces bounces_;

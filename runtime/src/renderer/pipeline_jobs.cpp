@@ -35,13 +35,13 @@ Result<std::uint32_t> addStage(Context::State& context, VkShaderStageFlagBits st
 }
 
 VkRayTracingShaderGroupCreateInfoKHR emptyGroup(VkRayTracingShaderGroupTypeKHR type) {
-    VkRayTracingShaderGroupCreateInfoKHR group{};
-    group.sType = VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR;
-    group.type = type;
-    group.generalShader = VK_SHADER_UNUSED_KHR;
-    group.closestHitShader = VK_SHADER_UNUSED_KHR;
-    group.anyHitShader = VK_SHADER_UNUSED_KHR;
-    group.intersectionShader = VK_SHADER_UNUSED_KHR;
+    VkRayTracingShaderGroupCreateInfoKHR group{
+        .sType = VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR,
+        .type = type,
+        .generalShader = VK_SHADER_UNUSED_KHR,
+        .closestHitShader = VK_SHADER_UNUSED_KHR,
+        .anyHitShader = VK_SHADER_UNUSED_KHR,
+        .intersectionShader = VK_SHADER_UNUSED_KHR};
     return group;
 }
 
@@ -132,12 +132,10 @@ std::vector<std::uint8_t> fillTable(const RayPipelineSource& source, const Table
 Result<std::vector<std::uint8_t>> groupHandles(Context::State& context, VkPipeline pipeline,
                                                std::size_t groupCount) {
     std::vector<std::uint8_t> handles(groupCount * context.limits.rayPipeline.shaderGroupHandleSize);
-    const VkResult result = context.vk.GetRayTracingShaderGroupHandlesKHR(
-        context.handles.device, pipeline, 0, static_cast<std::uint32_t>(groupCount), handles.size(),
-        handles.data());
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkGetRayTracingShaderGroupHandlesKHR", result);
-    }
+    GLINT_TRY_DO(statusOf("vkGetRayTracingShaderGroupHandlesKHR",
+                          context.vk.GetRayTracingShaderGroupHandlesKHR(
+                              context.handles.device, pipeline, 0, static_cast<std::uint32_t>(groupCount),
+                              handles.size(), handles.data())));
     return handles;
 }
 
@@ -151,20 +149,20 @@ Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayo
         stage.pSpecializationInfo = &specialization;
     }
     const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation, parts.stages.size());
-    VkRayTracingPipelineCreateInfoKHR info{};
-    info.sType = VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR;
-    info.pNext = &feedback;
-    // Without this flag rays must not meet structures with micromaps. Ray queries need no flag.
-    info.flags =
-        creation.flags | (context.handles.opacityMicromaps
-                              ? VkPipelineCreateFlags{VK_PIPELINE_CREATE_RAY_TRACING_OPACITY_MICROMAP_BIT_EXT}
-                              : 0U);
-    info.stageCount = static_cast<std::uint32_t>(parts.stages.size());
-    info.pStages = parts.stages.data();
-    info.groupCount = static_cast<std::uint32_t>(parts.groups.size());
-    info.pGroups = parts.groups.data();
-    info.maxPipelineRayRecursionDepth = 1;
-    info.layout = layout;
+    VkRayTracingPipelineCreateInfoKHR info{
+        .sType = VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR,
+        .pNext = &feedback,
+        // Without this flag rays must not meet structures with micromaps. Ray queries need no flag.
+        .flags = creation.flags |
+                 (context.handles.opacityMicromaps
+                      ? VkPipelineCreateFlags{VK_PIPELINE_CREATE_RAY_TRACING_OPACITY_MICROMAP_BIT_EXT}
+                      : 0U),
+        .stageCount = static_cast<std::uint32_t>(parts.stages.size()),
+        .pStages = parts.stages.data(),
+        .groupCount = static_cast<std::uint32_t>(parts.groups.size()),
+        .pGroups = parts.groups.data(),
+        .maxPipelineRayRecursionDepth = 1,
+        .layout = layout};
     VkPipeline pipeline = VK_NULL_HANDLE;
     const VkResult result =
         context.vk.CreateRayTracingPipelinesKHR(context.handles.device, VK_NULL_HANDLE, context.pipelineCache,
@@ -277,24 +275,8 @@ std::string textOf(const char (&field)[VK_MAX_DESCRIPTION_SIZE]) {
     return {field, strnlen(field, sizeof(field))};
 }
 
-// Collects everything that `ask(count, list)` lists. The first call returns the number.
-template <typename Structure, typename Ask>
-VkResult listAll(const Structure& empty, const Ask& ask, std::vector<Structure>& list) {
-    VkResult result = VK_INCOMPLETE;
-    while (result == VK_INCOMPLETE) {
-        std::uint32_t count = 0;
-        result = ask(&count, nullptr);
-        if (result == VK_SUCCESS) {
-            list.assign(count, empty);
-            result = ask(&count, list.data());
-            list.resize(count, empty);
-        }
-    }
-    return result;
-}
-
-PipelineStatistic statisticOf(const VkPipelineExecutableStatisticKHR& raw) {
-    PipelineStatistic statistic{textOf(raw.name), textOf(raw.description), raw.value.u64};
+PipelineStatistics::Statistic statisticOf(const VkPipelineExecutableStatisticKHR& raw) {
+    PipelineStatistics::Statistic statistic{textOf(raw.name), textOf(raw.description), raw.value.u64};
     switch (raw.format) {
         case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_BOOL32_KHR:
             statistic.value = raw.value.b32 != VK_FALSE;
@@ -313,47 +295,33 @@ PipelineStatistic statisticOf(const VkPipelineExecutableStatisticKHR& raw) {
 
 }  // namespace
 
-Result<std::vector<PipelineExecutable>> readExecutables(const Context::State& context, VkPipeline pipeline) {
+Result<std::vector<PipelineStatistics::Executable>> readExecutables(const Context::State& context,
+                                                                    VkPipeline pipeline) {
     const DeviceTable& vk = context.vk;
     const VkDevice device = context.handles.device;
-    VkPipelineInfoKHR info{};
-    info.sType = VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR;
-    info.pipeline = pipeline;
-    VkPipelineExecutablePropertiesKHR noProperties{};
-    noProperties.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR;
+    VkPipelineInfoKHR info{.sType = VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR, .pipeline = pipeline};
     std::vector<VkPipelineExecutablePropertiesKHR> properties;
-    VkResult result = listAll(
-        noProperties,
-        [&](std::uint32_t* count, VkPipelineExecutablePropertiesKHR* list) {
-            return vk.GetPipelineExecutablePropertiesKHR(device, &info, count, list);
-        },
-        properties);
-    if (result != VK_SUCCESS) {
-        return vulkanError("vkGetPipelineExecutablePropertiesKHR", result);
-    }
-    std::vector<PipelineExecutable> executables;
+    GLINT_TRY_DO(listAll("vkGetPipelineExecutablePropertiesKHR", properties,
+                         [&](std::uint32_t* count, VkPipelineExecutablePropertiesKHR* list) {
+                             return vk.GetPipelineExecutablePropertiesKHR(device, &info, count, list);
+                         },
+                         {.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR}));
+    std::vector<PipelineStatistics::Executable> executables;
     for (std::uint32_t i = 0; i < properties.size(); ++i) {
-        PipelineExecutable executable{textOf(properties[i].name),
-                                      textOf(properties[i].description),
-                                      properties[i].stages,
-                                      properties[i].subgroupSize,
-                                      {}};
-        VkPipelineExecutableInfoKHR which{};
-        which.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR;
-        which.pipeline = pipeline;
-        which.executableIndex = i;
-        VkPipelineExecutableStatisticKHR noStatistic{};
-        noStatistic.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR;
+        PipelineStatistics::Executable executable{textOf(properties[i].name),
+                                                  textOf(properties[i].description),
+                                                  properties[i].stages,
+                                                  properties[i].subgroupSize,
+                                                  {}};
+        VkPipelineExecutableInfoKHR which{.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR,
+                                          .pipeline = pipeline,
+                                          .executableIndex = i};
         std::vector<VkPipelineExecutableStatisticKHR> statistics;
-        result = listAll(
-            noStatistic,
-            [&](std::uint32_t* count, VkPipelineExecutableStatisticKHR* list) {
-                return vk.GetPipelineExecutableStatisticsKHR(device, &which, count, list);
-            },
-            statistics);
-        if (result != VK_SUCCESS) {
-            return vulkanError("vkGetPipelineExecutableStatisticsKHR", result);
-        }
+        GLINT_TRY_DO(listAll("vkGetPipelineExecutableStatisticsKHR", statistics,
+                             [&](std::uint32_t* count, VkPipelineExecutableStatisticKHR* list) {
+                                 return vk.GetPipelineExecutableStatisticsKHR(device, &which, count, list);
+                             },
+                             {.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_STATISTIC_KHR}));
         for (const VkPipelineExecutableStatisticKHR& raw : statistics) {
             executable.statistics.push_back(statisticOf(raw));
         }

@@ -266,62 +266,57 @@ Result<UniquePipeline> createGBuffer(Context::State& context, const Package& pac
     GLINT_TRY(auto fragment, createShaderModule(context, package.spirv({ModuleRole::GBufferFragment})));
     const std::array stages{stageOf(VK_SHADER_STAGE_VERTEX_BIT, vertex.get()),
                             stageOf(VK_SHADER_STAGE_FRAGMENT_BIT, fragment.get())};
-    VkPipelineVertexInputStateCreateInfo vertexInput{};
-    vertexInput.sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO;
-    VkPipelineInputAssemblyStateCreateInfo assembly{};
-    assembly.sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO;
-    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-    VkPipelineViewportStateCreateInfo viewport{};
-    viewport.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO;
-    viewport.viewportCount = 1;
-    viewport.scissorCount = 1;
-    VkPipelineRasterizationStateCreateInfo raster{};
-    raster.sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO;
-    raster.lineWidth = 1.0F;
-    VkPipelineMultisampleStateCreateInfo multisample{};
-    multisample.sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO;
-    multisample.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-    VkPipelineDepthStencilStateCreateInfo depth{};
-    depth.sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO;
-    depth.depthTestEnable = VK_TRUE;
-    depth.depthWriteEnable = VK_TRUE;
-    depth.depthCompareOp = VK_COMPARE_OP_GREATER;
-    VkPipelineColorBlendAttachmentState attachment{};
-    attachment.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT;
-    VkPipelineColorBlendStateCreateInfo blend{};
-    blend.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO;
-    blend.attachmentCount = 1;
-    blend.pAttachments = &attachment;
+    VkPipelineVertexInputStateCreateInfo vertexInput{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
+    VkPipelineInputAssemblyStateCreateInfo assembly{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO,
+        .topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST};
+    VkPipelineViewportStateCreateInfo viewport{.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
+                                               .viewportCount = 1,
+                                               .scissorCount = 1};
+    VkPipelineRasterizationStateCreateInfo raster{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO, .lineWidth = 1.0F};
+    VkPipelineMultisampleStateCreateInfo multisample{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+        .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
+    VkPipelineDepthStencilStateCreateInfo depth{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO,
+        .depthTestEnable = VK_TRUE,
+        .depthWriteEnable = VK_TRUE,
+        .depthCompareOp = VK_COMPARE_OP_GREATER};
+    VkPipelineColorBlendAttachmentState attachment{.colorWriteMask =
+                                                       VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT};
+    VkPipelineColorBlendStateCreateInfo blend{
+        .sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
+        .attachmentCount = 1,
+        .pAttachments = &attachment};
     constexpr VkDynamicState kDynamic[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR,
                                            VK_DYNAMIC_STATE_CULL_MODE, VK_DYNAMIC_STATE_FRONT_FACE};
-    VkPipelineDynamicStateCreateInfo dynamic{};
-    dynamic.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO;
-    dynamic.dynamicStateCount = std::size(kDynamic);
-    dynamic.pDynamicStates = kDynamic;
-    VkPipelineRenderingCreateInfo rendering{};
-    rendering.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO;
-    rendering.colorAttachmentCount = 1;
-    rendering.pColorAttachmentFormats = &kSurfaceFormat;
-    rendering.depthAttachmentFormat = kDepthFormat;
+    VkPipelineDynamicStateCreateInfo dynamic{.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+                                             .dynamicStateCount = std::size(kDynamic),
+                                             .pDynamicStates = kDynamic};
+    VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
+                                            .colorAttachmentCount = 1,
+                                            .pColorAttachmentFormats = &kSurfaceFormat,
+                                            .depthAttachmentFormat = kDepthFormat};
 
     const VkPipelineCreationFeedbackCreateInfo feedback = feedbackOf(creation, stages.size());
     rendering.pNext = &feedback;
 
-    VkGraphicsPipelineCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO;
-    info.pNext = &rendering;
-    info.flags = creation.flags;
-    info.stageCount = stages.size();
-    info.pStages = stages.data();
-    info.pVertexInputState = &vertexInput;
-    info.pInputAssemblyState = &assembly;
-    info.pViewportState = &viewport;
-    info.pRasterizationState = &raster;
-    info.pMultisampleState = &multisample;
-    info.pDepthStencilState = &depth;
-    info.pColorBlendState = &blend;
-    info.pDynamicState = &dynamic;
-    info.layout = layout;
+    VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+                                      .pNext = &rendering,
+                                      .flags = creation.flags,
+                                      .stageCount = stages.size(),
+                                      .pStages = stages.data(),
+                                      .pVertexInputState = &vertexInput,
+                                      .pInputAssemblyState = &assembly,
+                                      .pViewportState = &viewport,
+                                      .pRasterizationState = &raster,
+                                      .pMultisampleState = &multisample,
+                                      .pDepthStencilState = &depth,
+                                      .pColorBlendState = &blend,
+                                      .pDynamicState = &dynamic,
+                                      .layout = layout};
     VkPipeline pipeline = VK_NULL_HANDLE;
     const VkResult result = context.vk.CreateGraphicsPipelines(
         context.handles.device, context.pipelineCache, 1, &info, context.services.allocation, &pipeline);
@@ -534,6 +529,34 @@ Result<UniquePipelineLayout> createPassLayout(Context::State& context,
     return createPipelineLayout(context, sets, {pushStages(context), 0, pushBytes});
 }
 
+namespace {
+
+VkPipelineCreateFlags flagsOf(const PipelineMaking& making) {
+    return making.captureStatistics ? VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR : 0;
+}
+
+}  // namespace
+
+Result<std::vector<BackgroundPipelines::Done>> makeNow(std::vector<PlannedPipeline> plan,
+                                                       const PipelineMaking& making) {
+    std::vector<PipelineJob> jobs;
+    std::ranges::transform(plan, std::back_inserter(jobs), &PlannedPipeline::job);
+    GLINT_TRY(auto made, makePipelines(jobs, flagsOf(making), pipelineThreads(making.threads, jobs.size())));
+    std::vector<BackgroundPipelines::Done> done;
+    for (std::size_t i = 0; i < plan.size(); ++i) {
+        done.push_back({std::move(plan[i]), std::move(made[i])});
+    }
+    return done;
+}
+
+std::unique_ptr<BackgroundPipelines> makeLater(Context::State& context, std::vector<PlannedPipeline> plan,
+                                               const PipelineMaking& making) {
+    // One thread is the caller's.
+    const std::uint32_t threads = pipelineThreads(making.threads, plan.size() + 1);
+    return std::make_unique<BackgroundPipelines>(context.jobs, std::move(plan), flagsOf(making),
+                                                 std::max(threads, 2U) - 1);
+}
+
 Result<Pipelines> createPipelines(Context::State& context, const Package& package,
                                   const PipelineChoice& choice, const PipelineMaking& making,
                                   std::span<const std::uint32_t> shaderIds, const LayoutSource& source) {
@@ -548,19 +571,12 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
     std::vector<PlannedPipeline> laterPlan(std::make_move_iterator(later),
                                            std::make_move_iterator(plan.end()));
     plan.erase(later, plan.end());
-    std::vector<PipelineJob> jobs;
-    jobs.reserve(plan.size());
-    for (const PlannedPipeline& planned : plan) {
-        jobs.push_back(planned.job);
-    }
-    pipelines.threads = pipelineThreads(making.threads, jobs.size());
+    pipelines.threads = pipelineThreads(making.threads, plan.size());
     pipelines.captureStatistics = making.captureStatistics;
-    const VkPipelineCreateFlags flags =
-        making.captureStatistics ? VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR : 0;
-    GLINT_TRY(auto made, makePipelines(jobs, flags, pipelines.threads));
+    GLINT_TRY(auto made, makeNow(std::move(plan), making));
     pipelines.makeRoom(package, choice.strategy);
-    for (std::size_t i = 0; i < plan.size(); ++i) {
-        GLINT_TRY_DO(addPipeline(context, plan[i], std::move(made[i]), pipelines));
+    for (BackgroundPipelines::Done& done : made) {
+        GLINT_TRY_DO(addPipeline(context, done.planned, std::move(done.made), pipelines));
     }
     pipelines.draft = choice.draft;
     pipelines.drafted = &package;
@@ -570,10 +586,7 @@ Result<Pipelines> createPipelines(Context::State& context, const Package& packag
     }
     pipelines.shadesUnknown = hasUnknown(package, shaderIds);
     if (!laterPlan.empty()) {
-        // One thread is the caller's.
-        const std::uint32_t threads = pipelineThreads(making.threads, laterPlan.size() + 1);
-        pipelines.background = std::make_unique<BackgroundPipelines>(context.jobs, std::move(laterPlan),
-                                                                     flags, std::max(threads, 2U) - 1);
+        pipelines.background = makeLater(context, std::move(laterPlan), making);
     }
     const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start;
     pipelines.creationMs = elapsed.count();

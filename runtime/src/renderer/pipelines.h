@@ -128,6 +128,13 @@ std::vector<PlannedPipeline> planPipelines(Context::State& context, const Packag
                                            const PipelineChoice& choice,
                                            std::span<const std::uint32_t> shaderIds, VkPipelineLayout layout);
 
+// Makes the pipelines in the call. The error is that of the first that failed.
+Result<std::vector<BackgroundPipelines::Done>> makeNow(std::vector<PlannedPipeline> plan,
+                                                       const PipelineMaking& making);
+// Starts threads that make the pipelines while frames are drawn.
+std::unique_ptr<BackgroundPipelines> makeLater(Context::State& context, std::vector<PlannedPipeline> plan,
+                                               const PipelineMaking& making);
+
 // Takes a pipeline, and lets the passes that it serves use it. Errors: those of buffers, "vulkan-call".
 Status addPipeline(Context::State& context, const PlannedPipeline& planned, MadePipeline made,
                    Pipelines& pipelines);

@@ -18,42 +18,47 @@ namespace {
 constexpr MemoryDependency kWriteToCopy{VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_SHADER_WRITE_BIT,
                                         VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT};
 
-void recordCopy(const Renderer::State& state, VkCommandBuffer commands, const DeviceImage& image,
-                const Buffer& target) {
+// Reads bytes that copy(commands, target) copies into a buffer.
+template <typename Copy>
+Status readBytes(const Renderer::State& state, CommandRunner& runner, std::span<std::uint8_t> bytes,
+                 const Copy& copy) {
+    MemoryPool pool(state.context, "read-back");
+    GLINT_TRY(auto target, createBuffer(state.context, pool, bytes.size(), VK_BUFFER_USAGE_TRANSFER_DST_BIT,
+                                        MemoryUse::Readback));
+    GLINT_TRY(auto commands, runner.begin());
     recordDependency(state.context, commands, kWriteToCopy);
-    VkBufferImageCopy region{};
-    region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-    region.imageExtent = {state.size.width, state.size.height, 1};
-    state.context.vk.CmdCopyImageToBuffer(commands, image.handle.get(), VK_IMAGE_LAYOUT_GENERAL,
-                                          target.handle.get(), 1, &region);
+    copy(commands, target.handle.get());
     recordDependency(state.context, commands, kCopyToHost);
+    GLINT_TRY_DO(runner.submitAndWait());
+    std::memcpy(bytes.data(), target.mapped, bytes.size());
+    return okStatus();
 }
 
-PixelPath pathOf(std::uint32_t path, std::uint32_t outcome) {
+Renderer::PixelPath pathOf(std::uint32_t path, std::uint32_t outcome) {
     if (path == gpu::kPathScreen) {
-        return PixelPath::Screen;
+        return Renderer::PixelPath::Screen;
     }
     if (path == gpu::kPathHit) {
-        return PixelPath::Hit;
+        return Renderer::PixelPath::Hit;
     }
     if (path == gpu::kPathMiss) {
-        return PixelPath::Miss;
+        return Renderer::PixelPath::Miss;
     }
-    return outcome == gpu::kRayNoSurface ? PixelPath::NoSurface : PixelPath::NoRay;
+    return outcome == gpu::kRayNoSurface ? Renderer::PixelPath::NoSurface : Renderer::PixelPath::NoRay;
 }
 
 template <typename Pixel>
 Result<std::vector<Pixel>> readImage(const Renderer::State& state, CommandRunner& runner,
                                      const DeviceImage& image, std::size_t count) {
-    MemoryPool pool(state.context, "read-back");
     std::vector<Pixel> pixels(count);
-    const std::size_t bytes = pixels.size() * sizeof(pixels[0]);
-    GLINT_TRY(auto buffer, createBuffer(state.context, pool, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                        MemoryUse::Readback));
-    GLINT_TRY(auto commands, runner.begin());
-    recordCopy(state, commands, image, buffer);
-    GLINT_TRY_DO(runner.submitAndWait());
-    std::memcpy(pixels.data(), buffer.mapped, bytes);
+    const VkBufferImageCopy region{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                   .imageExtent = {state.size.width, state.size.height, 1}};
+    GLINT_TRY_DO(readBytes(state, runner,
+                           {reinterpret_cast<std::uint8_t*>(pixels.data()), count * sizeof(Pixel)},
+                           [&](VkCommandBuffer commands, VkBuffer target) {
+                               state.context.vk.CmdCopyImageToBuffer(
+                                   commands, image.handle.get(), VK_IMAGE_LAYOUT_GENERAL, target, 1, &region);
+                           }));
     return pixels;
 }
 
@@ -132,19 +137,15 @@ Result<std::vector<std::array<float, 4>>> readFrameImage(Renderer::State& state,
 
 Result<std::vector<std::uint8_t>> readFrameBuffer(Renderer::State& state, CommandRunner& runner,
                                                   const Buffer& buffer) {
-    MemoryPool pool(state.context, "read-back");
-    GLINT_TRY(auto target, createBuffer(state.context, pool, buffer.bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
-                                        MemoryUse::Readback));
-    GLINT_TRY(auto commands, runner.begin());
-    recordDependency(state.context, commands, kWriteToCopy);
+    std::vector<std::uint8_t> bytes(buffer.bytes);
     const VkBufferCopy region{0, 0, buffer.bytes};
-    state.context.vk.CmdCopyBuffer(commands, buffer.handle.get(), target.handle.get(), 1, &region);
-    recordDependency(state.context, commands, kCopyToHost);
-    GLINT_TRY_DO(runner.submitAndWait());
-    return std::vector<std::uint8_t>(target.mapped, target.mapped + buffer.bytes);
+    GLINT_TRY_DO(readBytes(state, runner, bytes, [&](VkCommandBuffer commands, VkBuffer target) {
+        state.context.vk.CmdCopyBuffer(commands, buffer.handle.get(), target, 1, &region);
+    }));
+    return bytes;
 }
 
-std::vector<LayerImage> Renderer::layers() const {
+std::vector<Renderer::LayerImage> Renderer::layers() const {
     std::vector<LayerImage> images;
     for (std::size_t i = 0; i < state_->size.layers.size(); ++i) {
         const package::PackageLayer& layer = state_->size.layers[i];
@@ -161,9 +162,7 @@ Result<LayerValues> Renderer::readLayer(std::string_view name) try {
         return makeError("layer-missing", "", "the package has no layer " + std::string(name),
                          "compile the package with --layers");
     }
-    if (!state_->recorded) {
-        return frameNotRecorded();
-    }
+    GLINT_TRY_DO(checkRecorded(*state_));
     GLINT_TRY(auto runner, CommandRunner::create(state_->context));
     const DeviceImage& image =
         state_->frame.layers[static_cast<std::size_t>(found - state_->size.layers.begin())];
@@ -180,9 +179,7 @@ Result<LayerValues> Renderer::readLayer(std::string_view name) try {
 GLINT_CATCH
 
 Result<std::vector<std::uint8_t>> Renderer::readSurfaces() try {
-    if (!state_->recorded) {
-        return frameNotRecorded();
-    }
+    GLINT_TRY_DO(checkRecorded(*state_));
     GLINT_TRY(const auto identities, readIdentities(*state_));
     std::vector<std::uint8_t> surfaces(identities.size());
     std::ranges::transform(identities, surfaces.begin(), [](const SurfaceIdentity& pixel) {
@@ -192,10 +189,8 @@ Result<std::vector<std::uint8_t>> Renderer::readSurfaces() try {
 }
 GLINT_CATCH
 
-Result<std::optional<SurfacePlace>> Renderer::readPlace(std::uint32_t x, std::uint32_t y) try {
-    if (!state_->recorded) {
-        return frameNotRecorded();
-    }
+Result<std::optional<Renderer::SurfacePlace>> Renderer::readPlace(std::uint32_t x, std::uint32_t y) try {
+    GLINT_TRY_DO(checkRecorded(*state_));
     if (x >= state_->size.width || y >= state_->size.height) {
         return makeError("render-size", "", "the picture has no such pixel",
                          "name one within its width and height");
@@ -215,19 +210,15 @@ Result<std::optional<SurfacePlace>> Renderer::readPlace(std::uint32_t x, std::ui
 GLINT_CATCH
 
 Result<LinearImage> Renderer::readOutput() try {
-    if (!state_->recorded) {
-        return frameNotRecorded();
-    }
+    GLINT_TRY_DO(checkRecorded(*state_));
     GLINT_TRY(auto runner, CommandRunner::create(state_->context));
     GLINT_TRY(auto pixels, readFrameImage(*state_, runner, gpu::kBindingAccumulated));
     return LinearImage{state_->size.width, state_->size.height, std::move(pixels)};
 }
 GLINT_CATCH
 
-Result<std::vector<PixelPath>> Renderer::readCoverage(package::Effect effect) try {
-    if (!state_->recorded) {
-        return frameNotRecorded();
-    }
+Result<std::vector<Renderer::PixelPath>> Renderer::readCoverage(package::Effect effect) try {
+    GLINT_TRY_DO(checkRecorded(*state_));
     if (!std::has_single_bit(effect) || (state_->size.effects.rays & effect) == 0) {
         return makeError("effect-missing", "", "the package has no such effect with rays",
                          "compile the package with that effect");
@@ -364,9 +355,7 @@ std::vector<std::uint32_t> Renderer::State::hits() const {
 }
 
 Result<FrameCounters> Renderer::counters() try {
-    if (!state_->recorded) {
-        return frameNotRecorded();
-    }
+    GLINT_TRY_DO(checkRecorded(*state_));
     const std::uint8_t* const bytes = state_->frame.readback.mapped;
     std::vector<std::uint32_t> values(counterBytes(state_->size) / sizeof(std::uint32_t));
     std::memcpy(values.data(), bytes, values.size() * sizeof(values[0]));

@@ -16,7 +16,6 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
-#include <mutex>
 #include <string_view>
 #include <utility>
 
@@ -102,7 +101,6 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.seed = options.seed;
     constants.averaged = options.sampleIndex - state.firstSample;
     constants.time = options.time;
-    constants.lightCount = state.scene.lightCount;
     constants.mirrorRoughness = options.mirrorRoughness;
     constants.maxReflectionRoughness = options.maxReflectionRoughness;
     constants.faintWeight = options.faintWeight;
@@ -117,16 +115,7 @@ gpu::FrameConstants makeConstants(const Renderer::State& state, const FrameOptio
     constants.screenSteps = options.screenSteps;
     constants.screenThickness = options.screenThickness;
     fillOutside(outsideOf(options), constants);
-    constants.geometries = state.scene.geometries.address;
-    constants.instances = state.scene.instances.address;
-    constants.materials = state.scene.materials.address;
-    constants.lights = state.scene.lights.address;
-    constants.lightNodes = state.scene.lightNodes.address;
-    constants.lightTreeNodes = state.scene.lightTree.treeNodes;
-    constants.lightsApart = state.scene.lightTree.apart;
-    constants.emitters = state.scene.emitterRecords.address;
-    constants.firstEmitters = state.scene.firstEmitters.address;
-    constants.emitterCount = state.scene.emitterCount;
+    fillScene(state.scene, constants);
     constants.lastBounce = bouncesOf(state.size, options);
     constants.accumulates = (state.size.accumulates ? gpu::kPictureHasResidual : 0U) |
                             (state.size.halfPicture ? gpu::kPictureIsHalf : 0U);
@@ -397,7 +386,7 @@ std::vector<MemoryItem> Renderer::memory() const {
     }
     // Memory that buffers share with the depth image counts as the buffers' memory.
     VkDeviceSize shared = 0;
-    for (const auto& [name, buffer] : frame.buffers()) {
+    for (const auto& [name, buffer] : buffersOf(frame, state_->size)) {
         const Allocation& place = buffer->memory;
         const Allocation& depth = frame.depth.memory;
         const bool shares = buffer->handle.get() != VK_NULL_HANDLE && place.memory == depth.memory &&
@@ -407,7 +396,7 @@ std::vector<MemoryItem> Renderer::memory() const {
     if (frame.depth.handle.get() != VK_NULL_HANDLE) {
         addTo(items, {"depth", MemoryUse::Device, true, 1, frame.depth.bytes - shared});
     }
-    for (const auto& [name, buffer] : frame.buffers()) {
+    for (const auto& [name, buffer] : buffersOf(frame, state_->size)) {
         addTo(items, name, *buffer);
     }
     if (state_->history != nullptr) {

@@ -64,27 +64,10 @@ bool isSpare(const PlannedPipeline& planned, bool shadesUnknown) {
            (ofRays || (!planned.keys.empty() && std::ranges::all_of(planned.keys, isFallback)));
 }
 
-// Makes `missing` in this call.
-Status makeNow(std::vector<PlannedPipeline> missing, const PipelineMaking& making,
-               VkPipelineCreateFlags flags, NextPackage& next) {
-    std::vector<PipelineJob> jobs;
-    jobs.reserve(missing.size());
-    for (const PlannedPipeline& planned : missing) {
-        jobs.push_back(planned.job);
-    }
-    GLINT_TRY(auto made, makePipelines(jobs, flags, pipelineThreads(making.threads, jobs.size())));
-    for (std::size_t i = 0; i < missing.size(); ++i) {
-        next.ready.push_back({std::move(missing[i]), std::move(made[i])});
-    }
-    return okStatus();
-}
-
 // Plans the pipelines, keeps those that are known, and makes the others or starts threads that do.
 Status makePipelinesOf(PackageUser& state, NextPackage& next) {
     PackageReplacement& result = next.report;
     const PipelineMaking making{state.options.pipelineThreads, state.options.pipelineStatistics};
-    const VkPipelineCreateFlags flags =
-        making.captureStatistics ? VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR : 0;
     Pipelines& pipelines = next.pipelines;
     pipelines.package = next.package;
     pipelines.ownLayout = state.pipelines.ownLayout;
@@ -121,13 +104,12 @@ Status makePipelinesOf(PackageUser& state, NextPackage& next) {
     result.pipelinesKept = static_cast<std::uint32_t>(next.ready.size());
     result.pipelinesMade = static_cast<std::uint32_t>(missing.size());
     if (!next.choice.background) {
-        return makeNow(std::move(missing), making, flags, next);
+        GLINT_TRY(auto made, makeNow(std::move(missing), making));
+        std::ranges::move(made, std::back_inserter(next.ready));
+        return okStatus();
     }
     if (!missing.empty()) {
-        // One thread is the caller's.
-        const std::uint32_t threads = pipelineThreads(making.threads, missing.size() + 1);
-        pipelines.background = std::make_unique<BackgroundPipelines>(state.context.jobs, std::move(missing),
-                                                                     flags, std::max(threads, 2U) - 1);
+        pipelines.background = makeLater(state.context, std::move(missing), making);
         if (state.recorded && next.size.bucketCount == state.size.bucketCount) {
             pipelines.background->setHits(state.hits());
         }

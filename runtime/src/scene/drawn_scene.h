@@ -23,7 +23,8 @@ struct PackageUser;
 struct PackageFit {
     std::uint32_t scene = 0;               // its index, or kNoPackageScene
     std::vector<std::uint32_t> shaderIds;  // of the shader binding table
-    std::vector<MissingCase> missing{};    // of a scene that is edited: materials that the fallback shades
+    std::vector<EditReport::MissingCase>
+        missing{};  // of a scene that is edited: materials that the fallback shades
 };
 
 struct DrawnScene {

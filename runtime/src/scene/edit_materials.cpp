@@ -201,7 +201,7 @@ Result<Shading> shadingOf(const SceneStore& store, MaterialHandle material, Attr
 }
 
 void addTo(EditReport& report, const CaseTable& cases, MaterialHandle material, const Shading& shading) {
-    const bool listed = std::ranges::any_of(report.missing, [&](const MissingCase& other) {
+    const bool listed = std::ranges::any_of(report.missing, [&](const EditReport::MissingCase& other) {
         return other.material == material && other.features == shading.features;
     });
     if (shading.missing && !listed) {
@@ -264,10 +264,7 @@ Result<TextureHandle> SceneEditor::addTexture(const ImageView& image, bool srgb)
 GLINT_CATCH
 
 Status SceneEditor::replaceTexture(TextureHandle texture, const ImageView& image) try {
-    StoredTexture* const entry = store_->textures.find(texture);
-    if (entry == nullptr) {
-        return unknownHandle("texture");
-    }
+    GLINT_TRY(StoredTexture* const entry, findNamed(store_->textures, texture, "texture"));
     if (store_->trustsTextures) {
         return makeError("texture-trusted", "", "the shaders of the package rely on what its textures hold",
                          "compile it with --no-trust-textures, or with --fallback");
@@ -288,9 +285,7 @@ Status SceneEditor::replaceTexture(TextureHandle texture, const ImageView& image
             if (use.texture == texture) {
                 const std::span<const std::uint8_t> old = store_->materials.at(handle.index);
                 std::vector<std::uint8_t> record(old.begin(), old.end());
-                const MaterialTable table{record, store_->scene.materialLayout.recordBytes,
-                                          store_->scene.materialLayout.textureOffset,
-                                          store_->scene.materialLayout.textureCount};
+                const MaterialTable table = tableWith(store_->scene.materialLayout, record);
                 gpu::TextureRecord settled = textureAt(table, 0, use.slot);
                 settled.texels = {static_cast<float>(image.width), static_cast<float>(image.height)};
                 std::memcpy(&record[placeOfTexture(table, 0, use.slot)], &settled, sizeof settled);
@@ -303,10 +298,7 @@ Status SceneEditor::replaceTexture(TextureHandle texture, const ImageView& image
 GLINT_CATCH
 
 Status SceneEditor::removeTexture(TextureHandle texture) try {
-    const StoredTexture* const entry = store_->textures.find(texture);
-    if (entry == nullptr) {
-        return unknownHandle("texture");
-    }
+    GLINT_TRY(const StoredTexture* const entry, findNamed(store_->textures, texture, "texture"));
     if (entry->uses > 0) {
         return makeError("scene-edit-used", placeOf("texture", texture.index),
                          std::to_string(entry->uses) + " materials use the texture",
@@ -336,10 +328,7 @@ Result<MaterialHandle> SceneEditor::addMaterial(const MaterialSource& source) tr
 GLINT_CATCH
 
 Result<EditReport> SceneEditor::setMaterial(MaterialHandle material, const MaterialSource& source) try {
-    StoredMaterial* const entry = store_->materialSlots.find(material);
-    if (entry == nullptr) {
-        return unknownHandle("material");
-    }
+    GLINT_TRY(StoredMaterial* const entry, findNamed(store_->materialSlots, material, "material"));
     const std::string where = placeOf("material", material.index);
     GLINT_TRY_DO(checkSource(*store_, source, where));
     EditReport report;
@@ -368,10 +357,7 @@ Result<EditReport> SceneEditor::setMaterial(MaterialHandle material, const Mater
 GLINT_CATCH
 
 Status SceneEditor::setMaterialValues(MaterialHandle material, std::span<const std::uint8_t> record) try {
-    StoredMaterial* const entry = store_->materialSlots.find(material);
-    if (entry == nullptr) {
-        return unknownHandle("material");
-    }
+    GLINT_TRY(StoredMaterial* const entry, findNamed(store_->materialSlots, material, "material"));
     if (record.size() != store_->scene.materialLayout.recordBytes) {
         return badValue(placeOf("material", material.index), "the record has another size than the package's",
                         "make the record in the package's layout");
@@ -386,10 +372,7 @@ Status SceneEditor::setMaterialValues(MaterialHandle material, std::span<const s
 GLINT_CATCH
 
 Status SceneEditor::removeMaterial(MaterialHandle material) try {
-    const StoredMaterial* const entry = store_->materialSlots.find(material);
-    if (entry == nullptr) {
-        return unknownHandle("material");
-    }
+    GLINT_TRY(const StoredMaterial* const entry, findNamed(store_->materialSlots, material, "material"));
     std::uint32_t uses = 0;
     for (const auto* const users : {&entry->meshes, &entry->instances}) {
         for (const auto& [index, count] : *users) {

@@ -8,6 +8,7 @@
 #include "data/geometry.h"
 #include "data/light_tree.h"
 #include "data/materials.h"
+#include "interop/frame.h"
 #include "scene/drawn_scene.h"
 #include "scene/scene_upload.h"
 
@@ -143,6 +144,9 @@ std::uint64_t shapeVersion(const GpuScene::State& state);
 std::vector<GeometryPositions> geometryPositions(const GpuScene::State& state);
 // Returns nothing if no instance has the record.
 std::optional<GeometryPlace> placeOf(const GpuScene::State& state, std::uint32_t geometry);
+
+// Sets the addresses and numbers of the scene's records.
+void fillScene(const GpuScene::State& state, gpu::FrameConstants& constants);
 
 // Returns how many textures the array of set 0 has.
 inline std::uint32_t textureCapacity(const GpuScene::State& state) {

@@ -118,8 +118,7 @@ Status recordPose(GpuScene::State& state, VkCommandBuffer commands, const Motion
                          "set SceneView::moves before the upload");
     }
     GLINT_TRY_DO(checkFrame(store, frame));
-    GLINT_TRY_DO(
-        checkMotion(view, {store.posedMeshes, store.posedJoints, store.posedWeights, store.posedLights}));
+    GLINT_TRY_DO(checkMotion(view, store.posedShape));
     GLINT_TRY_DO(poseMaterials(store, view.materials));
     moveOrigin(store, view.origin);
     GLINT_TRY_DO(poseInstances(store, view.instances));
@@ -129,14 +128,14 @@ Status recordPose(GpuScene::State& state, VkCommandBuffer commands, const Motion
     return okStatus();
 }
 
-Result<MotionStatistics> readMotion(const GpuScene::State& state) {
+Result<GpuScene::MotionStatistics> readMotion(const GpuScene::State& state) {
     const SceneStore& store = *state.store;
     if (!store.posed) {
         return makeError("frame-not-recorded", "", "no update has been recorded",
                          "record an update, submit it and wait for it first");
     }
-    MotionStatistics statistics = store.statistics;
-    const bool isTimed = statistics.topLevel != MotionStatistics::TopLevel::Kept;
+    GpuScene::MotionStatistics statistics = store.statistics;
+    const bool isTimed = statistics.topLevel != GpuScene::MotionStatistics::TopLevel::Kept;
     if (isTimed && store.timer->available()) {
         GLINT_TRY(const auto times, readTimes(store));
         statistics.deformMs = times[0];

@@ -1,6 +1,16 @@
-// Entries that handles name, and arrays of records on the device that are edited in place and grow.
+// Entries that handles name, and arrays of records that are edited in place and grow, on the host and on the
+// device.
 #pragma once
 
+#include "context/context.h"
+#include "context/resources.h"
+#include "data/retired.h"
+
+#include <glint/result.h>
+
+#include <vulkan/vulkan_core.h>
+
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -86,11 +96,8 @@ public:
     }
     template <typename Visit>
     void forEach(const Visit& visit) const {
-        for (std::uint32_t i = 0; i < end(); ++i) {
-            if (slots_[i].entry) {
-                visit(Handle{i, slots_[i].generation}, *slots_[i].entry);
-            }
-        }
+        const_cast<Slots*>(this)->forEach(
+            [&](Handle handle, Entry& entry) { visit(handle, std::as_const(entry)); });
     }
 
 private:
@@ -176,9 +183,6 @@ public:
     std::size_t stride() const {
         return stride_;
     }
-    bool isDirty() const {
-        return !dirty_.empty();
-    }
     // The records that were written since clearDirty(), as runs that do not touch.
     std::vector<IndexRange> dirty() const;
     void clearDirty() {
@@ -200,6 +204,52 @@ private:
     std::size_t stride_;
     std::vector<std::uint8_t> bytes_;
     std::vector<IndexRange> dirty_;  // may overlap
+};
+
+// An array on the device, and the size that it should have.
+struct RecordArray {
+    RecordStore& store;
+    Buffer& device;
+    std::uint32_t capacity = 0;  // in records; 0 if nothing reads the array, which then has no buffer
+    MemoryPool* pool = nullptr;  // of a buffer of another size
+    VkBufferUsageFlags usage = 0;
+};
+
+// The capacity of an array that doubles when it is full.
+inline std::uint32_t grownCapacity(std::uint32_t count, std::uint32_t now) {
+    return count > now ? std::max(count, 2 * now) : std::max(now, 1U);
+}
+
+// Brings arrays up to date in one recording. Its functions get the same arrays in the same order. Everything
+// that it has made is discarded with it, unless it was recorded.
+class ArrayUpdate {
+public:
+    // `staging` is the pool of staging memory.
+    ArrayUpdate(Context::State& context, MemoryPool& staging) : context_(context), stagingPool_(staging) {}
+    ~ArrayUpdate();
+    ArrayUpdate(const ArrayUpdate&) = delete;
+    ArrayUpdate& operator=(const ArrayUpdate&) = delete;
+
+    // Makes the buffers of arrays that get another capacity. Errors: those of buffers.
+    Status prepareBuffers(std::span<const RecordArray> arrays);
+    // Makes the staging memory of the records that the device does not have. Errors: those of buffers.
+    Status prepareStaging(std::span<const RecordArray> arrays);
+    // Returns the new buffer of an array, which has no handle if the array keeps the one that it has.
+    const Buffer& bufferOf(std::size_t array) const {
+        return made_[array];
+    }
+    bool hasWork() const;
+    // Copies old content into new buffers, which the arrays get. `retired` gets the old ones.
+    void recordResizes(VkCommandBuffer commands, std::span<const RecordArray> arrays, Retired& retired);
+    // Copies the changed records. The caller keeps the result until the device has completed the copies.
+    Buffer recordCopies(VkCommandBuffer commands, std::span<const RecordArray> arrays);
+
+private:
+    Context::State& context_;
+    MemoryPool& stagingPool_;
+    std::vector<Buffer> made_;
+    std::vector<MemoryPool*> pools_;  // of these buffers
+    Buffer staging_;
 };
 
 }  // namespace glint

@@ -1,9 +1,301 @@
-// SceneEditor: handles of the upload, lights, and the recording of edits.
+// SceneEditor: handles of the upload, meshes, instances, lights, and the recording of edits.
 #include "context/parallel.h"
+#include "data/geometry.h"
+#include "data/instance_math.h"
 #include "data/scene_checks.h"
+#include "data/traversal_order.h"
 #include "scene/scene_store.h"
 
+#include <algorithm>
+
 namespace glint {
+namespace {
+
+Diagnostic notFinite(const std::string& where) {
+    return makeError("scene-edit-value", where, "the transform has a number that is not finite",
+                     "give finite numbers");
+}
+
+Status checkPrimitive(const SceneStore& store, const SceneEditor::EditedPrimitive& primitive,
+                      const std::string& where) {
+    const PrimitiveView& view = primitive.geometry;
+    GLINT_TRY_DO(checkGeometry(view, where));
+    if (view.indices.empty()) {
+        return makeError("scene-edit-value", where, "the primitive has no triangle",
+                         "leave such primitives out");
+    }
+    for (const package::AttributeEntry& row : store.cases->package().attributes()) {
+        const std::string name(store.cases->package().string(row.name));
+        const auto given = std::ranges::find(view.attributes, name, &AttributeView::name);
+        if (given != view.attributes.end() &&
+            (given->channels != row.channels ||
+             given->values.size() != view.positions.size() * row.channels)) {
+            return makeError("scene-attribute", where,
+                             name + " has another number of channels than the package reads, or of values",
+                             "give as many values as the positions have, times the package's channels");
+        }
+    }
+    return okStatus();
+}
+
+// Checks the materials of an instance of a mesh and reports those without a case. Materials of the mesh are
+// reported by the edits of the mesh.
+Result<EditReport> checkMaterials(const SceneStore& store, const StoredMesh& mesh,
+                                  std::span<const MaterialHandle> materials, const std::string& where) {
+    if (!materials.empty() && materials.size() != mesh.primitives.size()) {
+        return makeError("scene-edit-value", where,
+                         "there are " + std::to_string(materials.size()) + " materials for " +
+                             std::to_string(mesh.primitives.size()) + " primitives",
+                         "give one for each primitive, or none");
+    }
+    EditReport report;
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        if (materials[i].generation == 0) {
+            continue;
+        }
+        GLINT_TRY(auto shading, shadingOf(store, materials[i], mesh.primitives[i].attributes));
+        addTo(report, *store.cases, materials[i], shading);
+    }
+    return report;
+}
+
+}  // namespace
+
+AttributeMask attributesOf(const Package& package, const PrimitiveView& primitive) {
+    AttributeMask mask = 0;
+    mask |= primitive.normals.empty() ? 0 : kAttributeNormals;
+    mask |= primitive.tangents.empty() ? 0 : kAttributeTangents;
+    mask |= primitive.texCoords0.empty() ? 0 : kAttributeTexCoords0;
+    mask |= primitive.texCoords1.empty() ? 0 : kAttributeTexCoords1;
+    constexpr std::array<float, 4> kWhite{1, 1, 1, 1};
+    const bool white =
+        std::ranges::all_of(primitive.colors, [&](const auto& color) { return color == kWhite; });
+    mask |= white ? 0 : kAttributeColors;
+    std::uint32_t bit = kDeclaredAttributesShift;
+    for (const package::AttributeEntry& row : package.attributes()) {
+        const bool given = std::ranges::find(primitive.attributes, package.string(row.name),
+                                             &AttributeView::name) != primitive.attributes.end();
+        mask |= AttributeMask{given} << bit++;
+    }
+    return mask;
+}
+
+Result<SceneEditor::AddedMesh> SceneEditor::addMesh(std::span<const EditedPrimitive> primitives,
+                                                    MeshUse use) try {
+    if (primitives.empty()) {
+        return makeError("scene-edit-value", "", "the mesh has no primitive", "give at least one");
+    }
+    AddedMesh added;
+    std::vector<PrimitiveView> views;
+    for (const EditedPrimitive& primitive : primitives) {
+        const std::string where = placeOf("mesh", store_->meshes.next().index) + ", " +
+                                  placeOf("primitive", static_cast<std::uint32_t>(views.size()));
+        GLINT_TRY_DO(checkPrimitive(*store_, primitive, where));
+        const AttributeMask attributes = attributesOf(store_->cases->package(), primitive.geometry);
+        GLINT_TRY(auto shading, shadingOf(*store_, primitive.material, attributes));
+        addTo(added.report, *store_->cases, primitive.material, shading);
+        views.push_back(primitive.geometry);
+    }
+    SceneView shapes;
+    shapes.primitives = views;
+    GLINT_TRY_DO(checkDeformation(shapes));
+    const bool changes = use == MeshUse::Changing;
+    const std::vector<GridPositions> positions =
+        packPositions(views, changes ? VertexForm::Full : store_->vertices);
+    const std::vector<PrimitiveView> placed = withPositions(views, positions);
+    MeshContent content{placed, positions};
+    content.changes = changes;
+    std::vector<std::vector<std::uint32_t>> ordered;
+    if (store_->leafOrder != nullptr) {
+        ordered = orderedTriangles(placed, store_->capacity, store_->leafOrder);
+        content.ordered = ordered;
+    }
+    GLINT_TRY(added.mesh, glint::addMesh(*store_, store_->cases->package(), content));
+    StoredMesh& mesh = *store_->meshes.find(added.mesh);
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+        mesh.primitives[i].material = primitives[i].material;
+        countUse(store_->materialSlots, primitives[i].material, &StoredMaterial::meshes, added.mesh.index,
+                 true);
+    }
+    return added;
+}
+GLINT_CATCH
+
+Status SceneEditor::setVertices(MeshHandle mesh, std::uint32_t primitive, const VertexValues& vertices) try {
+    GLINT_TRY(const StoredMesh* const entry, findNamed(store_->meshes, mesh, "mesh"));
+    const std::string where = placeOf("mesh", mesh.index);
+    if (!entry->changes || entry->mayDeform() || primitive >= entry->primitives.size()) {
+        return makeError(
+            "scene-edit-value", where,
+            "the mesh has no such primitive, or was not added with MeshUse::Changing, or follows "
+            "joints or morph targets",
+            "add the mesh with MeshUse::Changing, without joints and targets");
+    }
+    const GpuPrimitive& device = entry->primitives[primitive].device;
+    const auto fits = [&](const auto& values, VkDeviceAddress address) {
+        return values.empty() || (values.size() == device.vertexCount && address != 0);
+    };
+    if (vertices.positions.size() != device.vertexCount || !fits(vertices.normals, device.normals) ||
+        !fits(vertices.tangents, device.tangents)) {
+        return makeError("scene-edit-value", where,
+                         "the vertices are not as many as the primitive's, or it has no such attribute",
+                         "give as many, or exchange the mesh by setInstanceMesh()");
+    }
+    for (const std::array<float, 3>& point : vertices.positions) {
+        if (!isFinite(point)) {
+            return makeError("scene-edit-value", where, "a position is not finite", "give finite numbers");
+        }
+    }
+    return changeVertices(*store_, mesh, primitive, vertices);
+}
+GLINT_CATCH
+
+Result<EditReport> SceneEditor::setMeshMaterial(MeshHandle mesh, std::uint32_t primitive,
+                                                MaterialHandle material) try {
+    GLINT_TRY(StoredMesh* const entry, findNamed(store_->meshes, mesh, "mesh"));
+    if (primitive >= entry->primitives.size()) {
+        return makeError("scene-edit-value", placeOf("mesh", mesh.index),
+                         "the mesh has no primitive " + std::to_string(primitive), "count from 0");
+    }
+    StoredPrimitive& place = entry->primitives[primitive];
+    GLINT_TRY(auto shading, shadingOf(*store_, material, place.attributes));
+    EditReport report;
+    addTo(report, *store_->cases, material, shading);
+    countUse(store_->materialSlots, place.material, &StoredMaterial::meshes, mesh.index, false);
+    countUse(store_->materialSlots, material, &StoredMaterial::meshes, mesh.index, true);
+    place.material = material;
+    for (const std::uint32_t index : entry->instances) {
+        writeGeometries(*store_, store_->instanceSlots.handleAt(index), store_->instanceSlots.at(index));
+    }
+    return report;
+}
+GLINT_CATCH
+
+Status SceneEditor::removeMesh(MeshHandle mesh) try {
+    GLINT_TRY(const StoredMesh* const entry, findNamed(store_->meshes, mesh, "mesh"));
+    if (!entry->instances.empty()) {
+        return makeError("scene-edit-used", placeOf("mesh", mesh.index),
+                         std::to_string(entry->instances.size()) + " instances use the mesh",
+                         "remove them first, or give them another mesh");
+    }
+    for (const StoredPrimitive& primitive : entry->primitives) {
+        countUse(store_->materialSlots, primitive.material, &StoredMaterial::meshes, mesh.index, false);
+    }
+    retireMesh(*store_, mesh);
+    return okStatus();
+}
+GLINT_CATCH
+
+namespace {
+
+Status checkRoom(const SceneStore& store, const StoredMesh& mesh, const std::string& where) {
+    if (store.geometryRuns.end() > kMostGeometries - mesh.geometryCount) {
+        return tooManyGeometries(where);
+    }
+    return okStatus();
+}
+
+}  // namespace
+
+Result<SceneEditor::AddedInstance> SceneEditor::addInstance(const PlacedMesh& placed) try {
+    const std::string where = placeOf("instance", store_->instanceSlots.next().index);
+    GLINT_TRY(const StoredMesh* const mesh, findNamed(store_->meshes, placed.mesh, "mesh"));
+    if (!isFinite(placed.objectToWorld)) {
+        return notFinite(where);
+    }
+    InstanceView pose;
+    pose.joints = placed.joints;
+    pose.morphWeights = placed.morphWeights;
+    GLINT_TRY_DO(checkPose(pose, mesh->jointCount, mesh->weightCount, where));
+    GLINT_TRY(auto report, checkMaterials(*store_, *mesh, placed.materials, where));
+    GLINT_TRY_DO(checkRoom(*store_, *mesh, where));
+    StoredInstance instance;
+    instance.mesh = placed.mesh;
+    instance.objectToWorld = placed.objectToWorld;
+    instance.visible = placed.visible;
+    instance.materials.assign(placed.materials.begin(), placed.materials.end());
+    GLINT_TRY(const auto handle,
+              placeInstance(*store_, &store_->cases->package(), std::move(instance), pose));
+    return AddedInstance{handle, std::move(report)};
+}
+GLINT_CATCH
+
+Status SceneEditor::moveInstance(InstanceHandle instance, const std::array<float, 12>& objectToWorld) try {
+    GLINT_TRY(const StoredInstance* const entry, findNamed(store_->instanceSlots, instance, "instance"));
+    if (!isFinite(objectToWorld)) {
+        return notFinite(placeOf("instance", instance.index));
+    }
+    glint::moveInstance(*store_, instance, objectToWorld, entry->visible);
+    return okStatus();
+}
+GLINT_CATCH
+
+Status SceneEditor::poseInstance(InstanceHandle instance, std::span<const std::array<float, 12>> joints,
+                                 std::span<const float> morphWeights) try {
+    GLINT_TRY(const StoredInstance* const entry, findNamed(store_->instanceSlots, instance, "instance"));
+    InstanceView pose;
+    pose.joints = joints;
+    pose.morphWeights = morphWeights;
+    const StoredMesh& mesh = *store_->meshes.find(entry->mesh);
+    GLINT_TRY_DO(checkPose(pose, mesh.jointCount, mesh.weightCount, placeOf("instance", instance.index)));
+    return glint::poseInstance(*store_, &store_->cases->package(), instance, pose);
+}
+GLINT_CATCH
+
+Status SceneEditor::showInstance(InstanceHandle instance, bool visible) try {
+    GLINT_TRY(const StoredInstance* const entry, findNamed(store_->instanceSlots, instance, "instance"));
+    if (entry->visible != visible) {
+        const Rows rows = entry->objectToWorld;
+        glint::moveInstance(*store_, instance, rows, visible);
+    }
+    return okStatus();
+}
+GLINT_CATCH
+
+Result<EditReport> SceneEditor::setInstanceMesh(InstanceHandle instance, MeshHandle mesh,
+                                                std::span<const MaterialHandle> materials) try {
+    const StoredMesh* const wanted = store_->meshes.find(mesh);
+    const bool known = store_->instanceSlots.find(instance) != nullptr;
+    if (!known || wanted == nullptr) {
+        return unknownHandle(known ? "mesh" : "instance");
+    }
+    const std::string where = placeOf("instance", instance.index);
+    GLINT_TRY(auto report, checkMaterials(*store_, *wanted, materials, where));
+    GLINT_TRY_DO(checkRoom(*store_, *wanted, where));
+    exchangeMesh(*store_, instance, mesh, materials);
+    return report;
+}
+GLINT_CATCH
+
+Result<EditReport> SceneEditor::setInstanceMaterial(InstanceHandle instance, std::uint32_t primitive,
+                                                    MaterialHandle material) try {
+    GLINT_TRY(StoredInstance* const entry, findNamed(store_->instanceSlots, instance, "instance"));
+    const StoredMesh& mesh = *store_->meshes.find(entry->mesh);
+    if (primitive >= mesh.primitives.size()) {
+        return makeError("scene-edit-value", placeOf("instance", instance.index),
+                         "its mesh has no primitive " + std::to_string(primitive), "count from 0");
+    }
+    EditReport report;
+    if (material.generation != 0) {
+        GLINT_TRY(auto shading, shadingOf(*store_, material, mesh.primitives[primitive].attributes));
+        addTo(report, *store_->cases, material, shading);
+    }
+    setOwnMaterial(*store_, instance, primitive, material);
+    return report;
+}
+GLINT_CATCH
+
+Status SceneEditor::removeInstance(InstanceHandle instance) try {
+    if (store_->instanceSlots.find(instance) == nullptr) {
+        return unknownHandle("instance");
+    }
+    glint::removeInstance(*store_, instance);
+    return okStatus();
+}
+GLINT_CATCH
+
+// --- Handles of the upload, lights, recordings ---
+
 namespace {
 
 // Returns a handle of the upload if the thing that it names is still there.

@@ -81,17 +81,7 @@ Result<std::vector<std::uint32_t>> runSceneKernel(SceneKernel::State& kernel, gp
     GLINT_TRY_DO(buffers.create(context, input.size_bytes(), outputBytes));
     GLINT_TRY(auto runner, CommandRunner::create(context));
     constants.width = invocations;
-    constants.geometries = scene.geometries.address;
-    constants.instances = scene.instances.address;
-    constants.materials = scene.materials.address;
-    constants.lights = scene.lights.address;
-    constants.lightNodes = scene.lightNodes.address;
-    constants.lightTreeNodes = scene.lightTree.treeNodes;
-    constants.lightsApart = scene.lightTree.apart;
-    constants.lightCount = scene.lightCount;
-    constants.emitters = scene.emitterRecords.address;
-    constants.firstEmitters = scene.firstEmitters.address;
-    constants.emitterCount = scene.emitterCount;
+    fillScene(scene, constants);
     constants.rays = buffers.input.address;
     constants.orderedHits = buffers.input.address;
     constants.counters = buffers.output.address;

@@ -17,9 +17,9 @@
 #include "data/instance_math.h"
 #include "data/motion_bounds.h"
 #include "data/retired.h"
+#include "data/scene_checks.h"
 #include "scene/case_table.h"
 #include "scene/gpu_scene_state.h"
-#include "scene/record_arrays.h"
 #include "scene/record_store.h"
 #include "scene/scene_upload.h"
 #include "scene/top_level.h"
@@ -230,18 +230,14 @@ struct SceneStore {
     // Null after the upload, in which BLASes are built together.
     SceneUpload* upload = nullptr;
 
-    // The properties of the upload that every pose must have.
-    std::vector<std::uint32_t> posedMeshes;
-    std::vector<std::size_t> posedJoints;
-    std::vector<std::size_t> posedWeights;
-    std::vector<std::uint32_t> posedLights;
+    MotionShape posedShape;  // of the upload, which every pose must have
     // The values of the last pose, or of the upload. A pose writes what differs from them, so edits of other
     // things stay.
     std::vector<Rows> lastRows;
     std::vector<bool> lastVisible;
     std::vector<gpu::LightRecord> lastLights;
     std::optional<Timer> timer;  // deform, BLASes, TLAS
-    MotionStatistics statistics;
+    GpuScene::MotionStatistics statistics;
     bool posed = false;
 
     bool keeps() const {
@@ -269,7 +265,7 @@ struct MeshContent {
 Result<MeshHandle> addMesh(SceneStore& store, const Package& package, const MeshContent& content);
 // Gives a primitive of a mesh that may change other vertices, which have been checked.
 Status changeVertices(SceneStore& store, MeshHandle mesh, std::size_t primitive,
-                      const VertexValues& vertices);
+                      const SceneEditor::VertexValues& vertices);
 // Retires a mesh that no instance has.
 void retireMesh(SceneStore& store, MeshHandle mesh);
 
@@ -420,10 +416,16 @@ Status uploadScene(GpuScene::State& state, const Package& package, const Package
 // These implement GpuScene::update() and GpuScene::motion().
 Status recordPose(GpuScene::State& state, VkCommandBuffer commands, const MotionView& view,
                   std::uint64_t frame);
-Result<MotionStatistics> readMotion(const GpuScene::State& state);
+Result<GpuScene::MotionStatistics> readMotion(const GpuScene::State& state);
 
 std::string placeOf(const char* what, std::uint32_t index);
 // Error "scene-edit-handle".
 Diagnostic unknownHandle(const char* what);
+// Finds what a handle names. Error "scene-edit-handle", with the name of the kind of thing.
+template <typename Entries, typename Handle>
+auto findNamed(Entries& entries, Handle handle, const char* what) -> Result<decltype(entries.find(handle))> {
+    auto* const entry = entries.find(handle);
+    return entry != nullptr ? Result<decltype(entries.find(handle))>(entry) : unknownHandle(what);
+}
 
 }  // namespace glint

@@ -1,12 +1,14 @@
-// The parts of an upload that scenes do not have later: sizes for compaction, and opacity micromaps.
+// The parts of an upload that scenes do not have later: compaction of the BLASes, and opacity micromaps.
 #include "scene/scene_upload.h"
 
 #include "context/commands.h"
 #include "context/vulkan_table.h"
 #include "data/acceleration.h"
+#include "scene/scene_store.h"
 
 #include <algorithm>
 #include <memory>
+#include <unordered_map>
 #include <utility>
 
 namespace glint {
@@ -30,10 +32,10 @@ Status prepareCompaction(SceneUpload& upload) {
     if (upload.compaction == nullptr) {
         return okStatus();
     }
-    VkQueryPoolCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
-    info.queryType = VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR;
-    info.queryCount = static_cast<std::uint32_t>(upload.compaction->parts.size());
+    const VkQueryPoolCreateInfo info{
+        .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+        .queryType = VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR,
+        .queryCount = static_cast<std::uint32_t>(upload.compaction->parts.size())};
     Context::State& context = upload.context;
     GLINT_TRY(upload.compaction->sizes,
               createHandle<UniqueQueryPool>(context, context.vk.CreateQueryPool, "vkCreateQueryPool", info));
@@ -54,6 +56,109 @@ void recordCompactedSizes(const SceneUpload& upload, VkCommandBuffer commands,
 
 namespace {
 
+// A structure of the scene with its copy. The copy has the place of the structure when this is recorded.
+struct Replacement {
+    AccelerationStructure* structure = nullptr;
+    AccelerationStructure copy;
+};
+
+// Returns no value if the device has not written the sizes yet.
+Result<std::optional<std::vector<VkDeviceSize>>> readSizes(const GpuScene::State& state) {
+    const Compaction& compaction = *state.compaction;
+    std::vector<VkDeviceSize> sizes(compaction.parts.size());
+    const VkResult result = state.context.vk.GetQueryPoolResults(
+        state.context.handles.device, compaction.sizes.get(), 0, static_cast<std::uint32_t>(sizes.size()),
+        sizes.size() * sizeof(VkDeviceSize), sizes.data(), sizeof(VkDeviceSize), VK_QUERY_RESULT_64_BIT);
+    if (result == VK_NOT_READY) {
+        return std::optional<std::vector<VkDeviceSize>>();
+    }
+    GLINT_TRY_DO(statusOf("vkGetQueryPoolResults", result));
+    return std::optional(std::move(sizes));
+}
+
+Result<std::vector<Replacement>> makeCopies(GpuScene::State& state, std::span<const VkDeviceSize> sizes) {
+    std::vector<Replacement> replacements;
+    for (std::size_t i = 0; i < sizes.size(); ++i) {
+        AccelerationStructure* const structure = structureAt(*state.store, state.compaction->parts[i]);
+        if (structure == nullptr) {
+            continue;  // edits have removed it
+        }
+        Result<AccelerationStructure> copy = createStructure(state.context, state.pool, sizes[i],
+                                                             VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR);
+        if (!copy) {
+            for (Replacement& made : replacements) {
+                discard(state.pool, std::move(made.copy));
+            }
+            return copy.error();
+        }
+        replacements.push_back({structure, std::move(*copy)});
+    }
+    return replacements;
+}
+
+using Pair = std::pair<VkAccelerationStructureKHR, VkAccelerationStructureKHR>;
+
+void recordCompactCopies(const Context::State& context, VkCommandBuffer commands,
+                         std::span<const Pair> pairs) {
+    for (const auto& [from, to] : pairs) {
+        VkCopyAccelerationStructureInfoKHR copy{
+            .sType = VK_STRUCTURE_TYPE_COPY_ACCELERATION_STRUCTURE_INFO_KHR,
+            .src = from,
+            .dst = to,
+            .mode = VK_COPY_ACCELERATION_STRUCTURE_MODE_COMPACT_KHR};
+        context.vk.CmdCopyAccelerationStructureKHR(commands, &copy);
+    }
+}
+
+// Queues the copies, puts them into their places, and lets the next recording build the TLAS over them.
+void exchange(GpuScene::State& state, std::vector<Replacement>& replacements) {
+    SceneStore& store = *state.store;
+    std::vector<Pair> pairs;
+    std::unordered_map<VkDeviceAddress, VkDeviceAddress> moved;
+    std::uint64_t& bytes = state.statistics.blasBytes;
+    for (Replacement& replacement : replacements) {
+        pairs.emplace_back(replacement.structure->handle.get(), replacement.copy.handle.get());
+        moved.emplace(replacement.structure->address, replacement.copy.address);
+        bytes = bytes + replacement.copy.buffer.bytes - replacement.structure->buffer.bytes;
+        state.compaction->replaced.push_back(
+            std::exchange(*replacement.structure, std::move(replacement.copy)));
+    }
+    store.uploader->add([&context = state.context, pairs = std::move(pairs)](VkCommandBuffer commands) {
+        recordCompactCopies(context, commands, pairs);
+    });
+    store.topLevel.moveBlases(moved);
+    state.compaction->queued = true;
+}
+
+}  // namespace
+
+Result<bool> recordCompaction(GpuScene::State& state, VkCommandBuffer commands, std::uint64_t frame) {
+    if (!state.compaction || state.upload || state.compaction->frame) {
+        return false;
+    }
+    if (!state.compaction->queued) {
+        GLINT_TRY(const auto sizes, readSizes(state));
+        if (!sizes) {
+            return false;
+        }
+        GLINT_TRY(auto replacements, makeCopies(state, *sizes));
+        exchange(state, replacements);
+    }
+    GLINT_TRY_DO(recordChanges(*state.store, commands, frame));
+    state.compaction->frame = frame;
+    return true;
+}
+
+void completeCompaction(GpuScene::State& state, std::uint64_t frame) {
+    if (state.compaction && state.compaction->frame && *state.compaction->frame <= frame) {
+        state.compaction.reset();
+    }
+}
+
+// --- Opacity micromaps ---
+
+namespace {
+
 // VkMicromapBuildInfoEXT requires this alignment (VUID-vkCmdBuildMicromapsEXT-pInfos-07515).
 constexpr VkDeviceSize kInputAlignment = 256;
 
@@ -61,14 +166,6 @@ constexpr MemoryDependency kMicromapToStructures{
     VK_PIPELINE_STAGE_2_MICROMAP_BUILD_BIT_EXT, VK_ACCESS_2_MICROMAP_WRITE_BIT_EXT,
     VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR | VK_PIPELINE_STAGE_2_MICROMAP_BUILD_BIT_EXT,
     VK_ACCESS_2_MICROMAP_READ_BIT_EXT};
-
-std::vector<VkMicromapUsageEXT> vulkanUsages(std::span<const opacity::MicromapUsage> usages) {
-    std::vector<VkMicromapUsageEXT> made;
-    for (const opacity::MicromapUsage& usage : usages) {
-        made.push_back({usage.count, usage.subdivisionLevel, usage.format});
-    }
-    return made;
-}
 
 // A buffer whose content is at an address with the alignment of build inputs.
 struct InputBuffer {
@@ -81,8 +178,7 @@ Result<InputBuffer> uploadInput(Context::State& context, MemoryPool& pool, Uploa
     GLINT_TRY(auto buffer, createBuffer(context, pool, bytes.size() + kInputAlignment,
                                         VK_BUFFER_USAGE_MICROMAP_BUILD_INPUT_READ_ONLY_BIT_EXT |
                                             VK_BUFFER_USAGE_TRANSFER_DST_BIT));
-    const VkDeviceAddress aligned =
-        (buffer.address + kInputAlignment - 1) / kInputAlignment * kInputAlignment;
+    const VkDeviceAddress aligned = alignUp(buffer.address, kInputAlignment);
     GLINT_TRY_DO(uploader.copyToBuffer(bytes, buffer, aligned - buffer.address));
     return InputBuffer{std::move(buffer), aligned};
 }
@@ -110,7 +206,7 @@ public:
         GLINT_TRY(pending.data, uploadInput(context_, upload_.pool, uploader, array.data));
         GLINT_TRY(pending.records,
                   uploadInput(context_, upload_.pool, uploader, bytesOf(std::span(array.records))));
-        pending.usages = vulkanUsages(array.usages);
+        pending.usages = array.usages;
         GLINT_TRY_DO(create(pending, made));
         upload_.keep(std::move(pending.data.buffer));
         upload_.keep(std::move(pending.records.buffer));
@@ -144,7 +240,7 @@ private:
                                VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
                                    VK_BUFFER_USAGE_MICROMAP_BUILD_INPUT_READ_ONLY_BIT_EXT |
                                    VK_BUFFER_USAGE_TRANSFER_DST_BIT));
-        made.usages = vulkanUsages(opacity::usagesOf(array));
+        made.usages = opacity::usagesOf(array);
         made.bytes = bytes.size();
         return uploader.copyToBuffer(bytes, made.indices);
     }
@@ -160,18 +256,16 @@ private:
         info.data.deviceAddress = pending.data.address;
         info.triangleArray.deviceAddress = pending.records.address;
         info.triangleArrayStride = sizeof(opacity::MicromapRecord);
-        VkMicromapBuildSizesInfoEXT sizes{};
-        sizes.sType = VK_STRUCTURE_TYPE_MICROMAP_BUILD_SIZES_INFO_EXT;
+        VkMicromapBuildSizesInfoEXT sizes{.sType = VK_STRUCTURE_TYPE_MICROMAP_BUILD_SIZES_INFO_EXT};
         context_.vk.GetMicromapBuildSizesEXT(context_.handles.device,
                                              VK_ACCELERATION_STRUCTURE_BUILD_TYPE_DEVICE_KHR, &info, &sizes);
         GLINT_TRY(made.buffer, createBuffer(context_, pool_, sizes.micromapSize,
                                             VK_BUFFER_USAGE_MICROMAP_STORAGE_BIT_EXT));
         made.bytes += sizes.micromapSize;
-        VkMicromapCreateInfoEXT creation{};
-        creation.sType = VK_STRUCTURE_TYPE_MICROMAP_CREATE_INFO_EXT;
-        creation.buffer = made.buffer.handle.get();
-        creation.size = sizes.micromapSize;
-        creation.type = VK_MICROMAP_TYPE_OPACITY_MICROMAP_EXT;
+        const VkMicromapCreateInfoEXT creation{.sType = VK_STRUCTURE_TYPE_MICROMAP_CREATE_INFO_EXT,
+                                               .buffer = made.buffer.handle.get(),
+                                               .size = sizes.micromapSize,
+                                               .type = VK_MICROMAP_TYPE_OPACITY_MICROMAP_EXT};
         GLINT_TRY(made.handle, createHandle<UniqueMicromap>(context_, context_.vk.CreateMicromapEXT,
                                                             "vkCreateMicromapEXT", creation));
         info.dstMicromap = made.handle.get();

@@ -163,6 +163,15 @@ Status fillMesh(SceneStore& store, const Package& package, const MeshContent& co
     return makeParts(store, content, mesh);
 }
 
+// Functions for resources that frames may still use, and for those that nothing has used.
+auto retire(SceneStore& store) {
+    return [&store](auto&& resource) { store.retired.add(std::forward<decltype(resource)>(resource)); };
+}
+auto discardNow(SceneStore& store) {
+    return
+        [&store](auto&& resource) { discard(store.scene.pool, std::forward<decltype(resource)>(resource)); };
+}
+
 // Gives every resource of a mesh to `take`.
 template <typename Take>
 void takeMesh(StoredMesh& mesh, const Take& take) {
@@ -197,9 +206,7 @@ Result<MeshHandle> addMesh(SceneStore& store, const Package& package, const Mesh
             store.uploader->forgetAfter(copies);
             store.builds.resize(builds);
             store.reshapedMeshes.erase(store.meshes.next().index);
-            takeMesh(mesh, [&](auto&& resource) {
-                discard(store.scene.pool, std::forward<decltype(resource)>(resource));
-            });
+            takeMesh(mesh, discardNow(store));
         }
         return status.error();
     }
@@ -215,7 +222,7 @@ Result<MeshHandle> addMesh(SceneStore& store, const Package& package, const Mesh
 }
 
 Status changeVertices(SceneStore& store, MeshHandle handle, std::size_t primitive,
-                      const VertexValues& vertices) {
+                      const SceneEditor::VertexValues& vertices) {
     StoredMesh& mesh = store.meshes.at(handle.index);
     StoredPrimitive& changed = mesh.primitives[primitive];
     const Buffer& buffer = changed.device.buffer;
@@ -264,7 +271,7 @@ void retireMesh(SceneStore& store, MeshHandle handle) {
     }
     std::erase_if(store.builds,
                   [&](const BlasBuild& build) { return gone.contains(build.info.dstAccelerationStructure); });
-    takeMesh(mesh, [&](auto&& resource) { store.retired.add(std::forward<decltype(resource)>(resource)); });
+    takeMesh(mesh, retire(store));
 }
 
 void countUse(Slots<StoredMaterial, MaterialHandle>& materials, MaterialHandle material,
@@ -306,7 +313,7 @@ void releaseShape(SceneStore& store, std::uint32_t index, StoredInstance& instan
         return;
     }
     OwnShape& shape = *instance.shape;
-    takeShape(shape, [&](auto&& resource) { store.retired.add(std::forward<decltype(resource)>(resource)); });
+    takeShape(shape, retire(store));
     store.poseRuns.release(shape.pose.first, shape.pose.end - shape.pose.first);
     store.deformRuns.release(shape.records.first, shape.records.end - shape.records.first);
     store.shaped.erase(index);
@@ -373,9 +380,7 @@ Result<std::unique_ptr<OwnShape>> makeShape(SceneStore& store, const Package* pa
     shape->joints = static_cast<std::uint32_t>(pose.joints.size());
     shape->weights = static_cast<std::uint32_t>(pose.morphWeights.size());
     if (Status status = fillShape(store, handle, mesh, *shape); !status) {
-        takeShape(*shape, [&](auto&& resource) {
-            discard(store.scene.pool, std::forward<decltype(resource)>(resource));
-        });
+        takeShape(*shape, discardNow(store));
         return status.error();
     }
     const auto run = [](RunAllocator& runs, std::uint32_t count) {

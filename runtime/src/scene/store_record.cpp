@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <optional>
 #include <utility>
 
@@ -188,15 +187,15 @@ private:
         }
         const std::uint32_t count = store_.topLevel.records().count();
         const std::uint32_t capacity = capacityFor(count, store_.tlasCapacity, store_.firstTlasCapacity);
-        TlasBuild& build = prepared_.build;
-        GLINT_TRY_DO(describeTlas(context_, 0, capacity, store_.topLevel.isUpdatable(), build));
+        GLINT_TRY(prepared_.build, describeTlas(context_, capacity, store_.topLevel.isUpdatable()));
+        const VkAccelerationStructureBuildSizesInfoKHR& sizes = prepared_.build.sizes;
         if (capacity != store_.tlasCapacity) {
             prepared_.tlasCapacity = capacity;
             GLINT_TRY(prepared_.tlas,
-                      createStructure(context_, prepared_.kept, build.sizes.accelerationStructureSize,
+                      createStructure(context_, prepared_.kept, sizes.accelerationStructureSize,
                                       VK_ACCELERATION_STRUCTURE_TYPE_TOP_LEVEL_KHR));
         }
-        const VkDeviceSize bytes = std::max(build.sizes.buildScratchSize, build.sizes.updateScratchSize);
+        const VkDeviceSize bytes = std::max(sizes.buildScratchSize, sizes.updateScratchSize);
         if (bytes > store_.tlasScratchBytes || prepared_.tlas.handle.get() != VK_NULL_HANDLE) {
             GLINT_TRY(prepared_.tlasScratch,
                       createScratch(context_, store_.keeps() ? prepared_.kept : prepared_.brief, bytes));
@@ -314,10 +313,10 @@ private:
             store_.tlasScratch = std::move(prepared_.tlasScratch);
             store_.tlasScratchBytes = tlasScratchBytes_;
         }
-        prepared_.build.geometry.geometry.instances.data.deviceAddress = store_.placedBuffer.address;
-        recordTlasBuild(context_, commands_,
-                        {prepared_.build, store_.tlasScratch.address, store_.topLevel.records().count()},
-                        scene_.tlas.handle.get(), tlasAction_ == BuildAction::Refit);
+        recordTlasBuild(
+            context_, commands_, prepared_.build,
+            {store_.placedBuffer.address, store_.topLevel.records().count(), store_.tlasScratch.address},
+            scene_.tlas.handle.get(), tlasAction_ == BuildAction::Refit);
     }
 
     // Takes over everything that was prepared, and notes that nothing is pending.
@@ -365,10 +364,10 @@ private:
     }
 
     void takeStatistics() {
-        MotionStatistics& statistics = store_.statistics;
+        GpuScene::MotionStatistics& statistics = store_.statistics;
         statistics = {};
         statistics.deformed = static_cast<std::uint32_t>(store_.reshaped.size());
-        statistics.topLevel = static_cast<MotionStatistics::TopLevel>(tlasAction_);
+        statistics.topLevel = static_cast<GpuScene::MotionStatistics::TopLevel>(tlasAction_);
         for (const auto& [index, part, action, surface] : shapes_) {
             OwnShape& shape = *store_.instanceSlots.at(index).shape;
             shape.isBuilt = true;
@@ -406,9 +405,12 @@ private:
     VkDeviceSize tlasScratchBytes_ = 0;
 };
 
-static_assert(static_cast<int>(BuildAction::Keep) == static_cast<int>(MotionStatistics::TopLevel::Kept));
-static_assert(static_cast<int>(BuildAction::Refit) == static_cast<int>(MotionStatistics::TopLevel::Updated));
-static_assert(static_cast<int>(BuildAction::Build) == static_cast<int>(MotionStatistics::TopLevel::Rebuilt));
+static_assert(static_cast<int>(BuildAction::Keep) ==
+              static_cast<int>(GpuScene::MotionStatistics::TopLevel::Kept));
+static_assert(static_cast<int>(BuildAction::Refit) ==
+              static_cast<int>(GpuScene::MotionStatistics::TopLevel::Updated));
+static_assert(static_cast<int>(BuildAction::Build) ==
+              static_cast<int>(GpuScene::MotionStatistics::TopLevel::Rebuilt));
 
 }  // namespace
 

@@ -73,7 +73,7 @@ public:
         }
         for (const LightView& light : view_.lights) {
             store_.firstLights.push_back(addLight(store_, light));
-            store_.posedLights.push_back(static_cast<std::uint32_t>(light.type));
+            store_.posedShape.lights.push_back(light.type);
             store_.lastLights.push_back(makeLightRecord(light));
         }
         scene_.statistics.narrowedTextures = countNarrowed(scene_.context, known_.textures, view_.images);
@@ -290,9 +290,7 @@ private:
             instance.visible = view.visible;
             GLINT_TRY(const auto handle, placeInstance(store_, &package_, std::move(instance), view));
             store_.firstInstances.push_back(handle);
-            store_.posedMeshes.push_back(view.mesh);
-            store_.posedJoints.push_back(view.joints.size());
-            store_.posedWeights.push_back(view.morphWeights.size());
+            store_.posedShape.instances.push_back({view.mesh, view.joints.size(), view.morphWeights.size()});
             store_.lastRows.push_back(view.objectToWorld);
             store_.lastVisible.push_back(view.visible);
             if (store_.geometryRuns.end() > kMostGeometries) {
@@ -356,7 +354,7 @@ private:
                 }
             });
         }
-        store_.ownUploader = Uploader::createDeferred(scene_.context, scene_.pool);
+        store_.ownUploader = std::make_unique<Uploader>(scene_.context, scene_.pool);
         store_.uploader = store_.ownUploader.get();
         store_.upload = nullptr;
     }

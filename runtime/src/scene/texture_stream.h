@@ -31,7 +31,7 @@ struct TextureStream::State {
         : scene(owner),
           firstSize(firstTexels),
           retired(owner.pool),
-          uploader(Uploader::createDeferred(owner.context, owner.pool)) {}
+          uploader(std::make_unique<Uploader>(owner.context, owner.pool)) {}
 
     GpuScene::State& scene;
     std::uint32_t firstSize;                            // texels a side of the finest level that uploads take

@@ -2,9 +2,7 @@
 
 #include "context/parallel.h"
 
-#include <algorithm>
 #include <cstring>
-#include <utility>
 
 namespace glint {
 namespace {

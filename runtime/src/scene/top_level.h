@@ -11,7 +11,6 @@
 #include <vulkan/vulkan_core.h>
 
 #include <cstdint>
-#include <span>
 #include <unordered_map>
 #include <vector>
 

@@ -15,29 +15,16 @@ namespace {
 
 using Texels = std::vector<std::uint8_t>;
 
-template <typename Texel>
-Texels toBytes(const std::vector<Texel>& texels) {
-    const std::span<const std::uint8_t> bytes = bytesOf(std::span<const Texel>(texels));
+// Returns the texels of a level in RGBA, each channel converted by `convert`.
+template <typename Channel, typename Convert>
+Texels toTexels(const RadianceMap& level, Channel alpha, const Convert& convert) {
+    std::vector<std::array<Channel, 4>> texels;
+    texels.reserve(level.texels.size());
+    for (const Radiance& radiance : level.texels) {
+        texels.push_back({convert(radiance[0]), convert(radiance[1]), convert(radiance[2]), alpha});
+    }
+    const std::span<const std::uint8_t> bytes = bytesOf(std::span(std::as_const(texels)));
     return {bytes.begin(), bytes.end()};
-}
-
-Texels toFloats(const RadianceMap& level) {
-    std::vector<std::array<float, 4>> texels;
-    texels.reserve(level.texels.size());
-    for (const Radiance& radiance : level.texels) {
-        texels.push_back({radiance[0], radiance[1], radiance[2], 1.0F});
-    }
-    return toBytes(texels);
-}
-
-Texels toHalves(const RadianceMap& level, float scale) {
-    std::vector<std::array<std::uint16_t, 4>> texels;
-    texels.reserve(level.texels.size());
-    for (const Radiance& radiance : level.texels) {
-        texels.push_back({toHalf(radiance[0] / scale), toHalf(radiance[1] / scale),
-                          toHalf(radiance[2] / scale), toHalf(1.0F)});
-    }
-    return toBytes(texels);
 }
 
 // Returns a power of two, so that scaling loses no digits. It is 1 unless the map is brighter than the
@@ -55,16 +42,16 @@ float halfScale(const RadianceMap& map) {
 }
 
 Status createSampler(Environment::State& state) {
-    VkSamplerCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO;
-    info.magFilter = VK_FILTER_LINEAR;
-    info.minFilter = VK_FILTER_LINEAR;
-    info.mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR;
-    info.maxLod = VK_LOD_CLAMP_NONE;
-    // The map wraps around the horizon without a seam, and the poles are edges.
-    info.addressModeU = VK_SAMPLER_ADDRESS_MODE_REPEAT;
-    info.addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-    info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
+    const VkSamplerCreateInfo info{
+        .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+        .magFilter = VK_FILTER_LINEAR,
+        .minFilter = VK_FILTER_LINEAR,
+        .mipmapMode = VK_SAMPLER_MIPMAP_MODE_LINEAR,
+        // The map wraps around the horizon without a seam, and the poles are edges.
+        .addressModeU = VK_SAMPLER_ADDRESS_MODE_REPEAT,
+        .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+        .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+        .maxLod = VK_LOD_CLAMP_NONE};
     GLINT_TRY(state.sampler, createHandle<UniqueSampler>(state.context, state.context.vk.CreateSampler,
                                                          "vkCreateSampler", info));
     return okStatus();
@@ -82,7 +69,9 @@ Status uploadLevels(Environment::State& state, Uploader& uploader, const std::ve
     std::vector<Texels> mips;
     mips.reserve(levels.size());
     for (const RadianceMap& level : levels) {
-        mips.push_back(half ? toHalves(level, state.scale) : toFloats(level));
+        mips.push_back(
+            half ? toTexels(level, toHalf(1.0F), [&](float value) { return toHalf(value / state.scale); })
+                 : toTexels(level, 1.0F, [](float value) { return value; }));
     }
     const std::vector<std::span<const std::uint8_t>> views(mips.begin(), mips.end());
     return uploader.copyToImage(views, {1, 1, half ? 8U : 16U}, state.map);

@@ -7,11 +7,9 @@
 #include "interop/frame.h"
 #include "package/package.h"
 #include "scene/gpu_scene_state.h"
-#include "scene/record_arrays.h"
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <string>
 #include <utility>
@@ -19,8 +17,10 @@
 namespace glint {
 namespace {
 
-static_assert(static_cast<std::uint32_t>(RecordsBy::CustomIndexTable) == gpu::kRecordsByCustomIndexTable);
-static_assert(static_cast<std::uint32_t>(RecordsBy::InstanceTable) == gpu::kRecordsByInstanceTable);
+static_assert(static_cast<std::uint32_t>(EngineSceneView::RecordsBy::CustomIndexTable) ==
+              gpu::kRecordsByCustomIndexTable);
+static_assert(static_cast<std::uint32_t>(EngineSceneView::RecordsBy::InstanceTable) ==
+              gpu::kRecordsByInstanceTable);
 
 std::string geometryPlace(std::size_t index) {
     return "geometry " + std::to_string(index);
@@ -73,7 +73,7 @@ Result<const package::PrimitiveEntry*> entryOf(const PackageScene& known, std::s
 Result<std::vector<gpu::GeometryRecord>> makeGeometries(const EngineSceneView& scene) {
     std::vector<gpu::GeometryRecord> records;
     for (std::size_t i = 0; i < scene.geometries.size(); ++i) {
-        const EngineGeometryView& view = scene.geometries[i];
+        const EngineSceneView::Geometry& view = scene.geometries[i];
         if (view.instance >= scene.instances.size()) {
             return outOfRange(geometryPlace(i), "instance", view.instance, scene.instances.size());
         }
@@ -86,7 +86,7 @@ Result<std::vector<gpu::GeometryRecord>> makeGeometries(const EngineSceneView& s
 Result<std::vector<gpu::InstanceRecord>> makeInstances(std::span<const Rows> instances) {
     std::vector<gpu::InstanceRecord> records;
     for (std::size_t i = 0; i < instances.size(); ++i) {
-        if (!std::ranges::all_of(instances[i], [](float value) { return std::isfinite(value); })) {
+        if (!isFinite(instances[i])) {
             return makeError("engine-scene", "instance " + std::to_string(i), "its transform is not finite",
                              "give twelve finite numbers");
         }
@@ -112,8 +112,8 @@ Result<std::vector<gpu::LightRecord>> makeLights(std::span<const LightView> ligh
 
 // The package's materials, with the host's numbers of textures and samplers.
 Result<std::vector<std::uint8_t>> makeMaterials(const Context::State& context, const PackageScene& known,
-                                                std::span<const EngineTextureView> textures,
-                                                std::span<const EngineSamplerView> samplers) {
+                                                std::span<const EngineSceneView::Texture> textures,
+                                                std::span<const EngineSceneView::Sampler> samplers) {
     if (textures.size() != known.textures.size() || samplers.size() != known.samplers.size()) {
         return makeError("engine-scene", "",
                          "there are " + std::to_string(textures.size()) + " textures and " +
@@ -124,7 +124,7 @@ Result<std::vector<std::uint8_t>> makeMaterials(const Context::State& context, c
     }
     std::vector<ImageView> images;
     for (std::size_t i = 0; i < known.textures.size(); ++i) {
-        const EngineTextureView& texture = textures[i];
+        const EngineSceneView::Texture& texture = textures[i];
         if (texture.width == 0 || texture.height == 0) {
             return makeError("engine-scene", "texture " + std::to_string(i), "it has no texels",
                              "give the size of its finest level");
@@ -136,11 +136,7 @@ Result<std::vector<std::uint8_t>> makeMaterials(const Context::State& context, c
     std::vector<std::uint8_t> bytes = materialsWithSizes(context, known, images);
     for (std::size_t i = 0; i < known.materials.size(); ++i) {
         for (std::uint32_t slot = 0; slot < known.materials.textureCount; ++slot) {
-            std::uint8_t* const place =
-                &bytes[i * known.materials.recordBytes + known.materials.textureOffset +
-                       slot * sizeof(gpu::TextureRecord)];
-            gpu::TextureRecord record{};
-            std::memcpy(&record, place, sizeof record);
+            gpu::TextureRecord record = textureAt(tableWith(known.materials, bytes), i, slot);
             if (record.textureIndex < textures.size()) {
                 record.textureIndex = textures[record.textureIndex].index;
             }
@@ -148,7 +144,7 @@ Result<std::vector<std::uint8_t>> makeMaterials(const Context::State& context, c
                 record.anisotropy = samplers[record.samplerIndex].maxAnisotropy;
                 record.samplerIndex = samplers[record.samplerIndex].index;
             }
-            std::memcpy(place, &record, sizeof record);
+            std::memcpy(&bytes[placeOfTexture(known.materials, i, slot)], &record, sizeof record);
         }
     }
     return bytes;
@@ -176,7 +172,7 @@ Status appendValues(const PackageScene& known, std::span<const ChangingMaterial>
 // Gives a geometry the values that the host has named for it.
 Status takeMaterial(std::size_t index, std::uint32_t material, std::size_t packageMaterials,
                     std::span<const ChangingMaterial> values, gpu::GeometryRecord& geometry) {
-    if (material == EngineGeometryView::kOfPackage) {
+    if (material == EngineSceneView::Geometry::kOfPackage) {
         return okStatus();
     }
     if (material >= values.size()) {
@@ -337,7 +333,7 @@ Status recordContent(EngineScene::State& state, VkCommandBuffer commands, const 
                      {},
                      recordFields(package, package.scene(scene.packageScene))};
     std::uint32_t leastInstances = 0;
-    for (const EngineGeometryView& view : scene.geometries) {
+    for (const EngineSceneView::Geometry& view : scene.geometries) {
         host.primitives.push_back({view.mesh, view.primitive, view.material});
         leastInstances = std::max(leastInstances, view.instance + 1);
     }

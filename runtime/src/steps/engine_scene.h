@@ -68,7 +68,7 @@ struct EngineScene::State final : DrawnScene {
     Retired retired;
     std::uint64_t lastFrame = 0;
     std::uint32_t lightCount = 0;  // of the last recording
-    RecordsBy recordsBy = RecordsBy::CustomIndex;
+    EngineSceneView::RecordsBy recordsBy = EngineSceneView::RecordsBy::CustomIndex;
     std::vector<std::array<float, 12>> placed;  // the transforms of the instances
     std::uint32_t leastInstances = 0;           // that the geometries name
 
@@ -76,12 +76,12 @@ struct EngineScene::State final : DrawnScene {
     struct Primitive {
         std::uint32_t mesh = 0;
         std::uint32_t primitive = 0;
-        std::uint32_t material = EngineGeometryView::kOfPackage;
+        std::uint32_t material = EngineSceneView::Geometry::kOfPackage;
     };
     struct Host {
         std::vector<Primitive> primitives;  // of each geometry
-        std::vector<EngineTextureView> textures;
-        std::vector<EngineSamplerView> samplers;
+        std::vector<EngineSceneView::Texture> textures;
+        std::vector<EngineSceneView::Sampler> samplers;
         std::vector<std::uint32_t> hitRecords;
         std::vector<ChangingMaterial> materials;  // in records with these fields
         RecordFields fields;

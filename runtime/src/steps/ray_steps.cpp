@@ -154,19 +154,6 @@ RaySteps::~RaySteps() {
 
 namespace {
 
-void fill(const PassState& state, VkCommandBuffer commands, const Buffer& buffer, std::uint32_t value) {
-    if (buffer.bytes > 0) {
-        state.context.vk.CmdFillBuffer(commands, buffer.handle.get(), 0, VK_WHOLE_SIZE, value);
-    }
-}
-
-void clearLists(const PassState& state, VkCommandBuffer commands) {
-    fill(state, commands, state.frame.counters, 0);
-    fill(state, commands, state.frame.bucketCounts, 0);
-    fill(state, commands, state.frame.bucketCursors, 0);
-    fill(state, commands, state.frame.visitedHits, 0);
-}
-
 // Sets the counter of the list's rays, which is the first counter.
 void setRayCount(const PassState& state, VkCommandBuffer commands, const RayBatch& batch) {
     static_assert(gpu::kCounterRays == 0);
@@ -209,6 +196,15 @@ gpu::FrameConstants makeConstants(const RaySteps::State& state, const RayBatch& 
     return constants;
 }
 
+// Records passes under the label of their step.
+template <typename Record>
+void recordStep(RaySteps::State& state, VkCommandBuffer commands, const char* name, const Record& record) {
+    PassRecorder passes(state, commands, state.timing);
+    beginLabel(state.context, commands, name);
+    record(passes);
+    endLabel(state.context, commands);
+}
+
 }  // namespace
 
 Status RaySteps::begin(VkCommandBuffer commands, const RayBatch& batch) try {
@@ -225,20 +221,17 @@ Status RaySteps::begin(VkCommandBuffer commands, const RayBatch& batch) try {
         state_->environment = batch.environment->state();
     }
     state_->timer.recordReset(commands);
-    PassRecorder passes(*state_, commands, batch.timing);
-    beginLabel(state_->context, commands, "begin");
-    passes.barrier(kAllToAll);
-    state_->whole = passes.beginStretch({"rays", Pass::Hits});
-    clearLists(*state_, commands);
-    const gpu::FrameConstants constants = makeConstants(*state_, batch);
-    static_assert(sizeof(constants) <= 65536 && sizeof(constants) % 4 == 0, "limits of the command");
-    state_->context.vk.CmdUpdateBuffer(commands, state_->frame.constants.handle.get(), 0, sizeof(constants),
-                                       &constants);
-    passes.barrier(kTransferToTransfer);
-    setRayCount(*state_, commands, batch);
-    passes.barrier(passes.dependencies().clearToPasses);
-    HitPasses(*state_, passes).dispatchOfList();
-    endLabel(state_->context, commands);
+    recordStep(*state_, commands, "begin", [&](PassRecorder& passes) {
+        passes.barrier(kAllToAll);
+        state_->whole = passes.beginStretch({"rays", Pass::Hits});
+        passes.fill(state_->frame.counters, 0);
+        passes.clearLists();
+        passes.setConstants(makeConstants(*state_, batch));
+        passes.barrier(kTransferToTransfer);
+        setRayCount(*state_, commands, batch);
+        passes.barrier(passes.dependencies().clearToPasses);
+        HitPasses(*state_, passes).dispatchOfList();
+    });
     state_->recorded = true;
     ++state_->recordings;
     return okStatus();
@@ -246,38 +239,26 @@ Status RaySteps::begin(VkCommandBuffer commands, const RayBatch& batch) try {
 GLINT_CATCH
 
 void RaySteps::trace(VkCommandBuffer commands) {
-    PassRecorder passes(*state_, commands, state_->timing);
-    beginLabel(state_->context, commands, "trace");
-    HitPasses(*state_, passes).trace();
-    endLabel(state_->context, commands);
+    recordStep(*state_, commands, "trace", [&](PassRecorder& passes) { HitPasses(*state_, passes).trace(); });
 }
 
 void RaySteps::order(VkCommandBuffer commands) {
-    PassRecorder passes(*state_, commands, state_->timing);
-    beginLabel(state_->context, commands, "order");
-    HitPasses(*state_, passes).order();
-    endLabel(state_->context, commands);
+    recordStep(*state_, commands, "order", [&](PassRecorder& passes) { HitPasses(*state_, passes).order(); });
 }
 
 void RaySteps::shade(VkCommandBuffer commands) {
-    PassRecorder passes(*state_, commands, state_->timing);
-    beginLabel(state_->context, commands, "shade");
-    HitPasses(*state_, passes).shade();
-    passes.endStretch(state_->whole);
-    // The counters go to host memory, and the answers to the host's next commands.
-    passes.barrier(kAllToAll);
-    const auto copy = [&](const Buffer& source, VkDeviceSize bytes, VkDeviceSize to) {
-        const VkBufferCopy region{0, to, bytes};
-        state_->context.vk.CmdCopyBuffer(commands, source.handle.get(), state_->frame.readback.handle.get(),
-                                         1, &region);
-    };
-    copy(state_->frame.counters, counterBytes(state_->size), 0);
-    if (state_->size.ordered) {
-        copy(state_->frame.bucketCounts, sizeof(std::uint32_t) * state_->size.bucketCount,
-             counterBytes(state_->size));
-    }
-    passes.barrier(kCopyToHost);
-    endLabel(state_->context, commands);
+    recordStep(*state_, commands, "shade", [&](PassRecorder& passes) {
+        HitPasses(*state_, passes).shade();
+        passes.endStretch(state_->whole);
+        // The counters go to host memory, and the answers to the host's next commands.
+        passes.barrier(kAllToAll);
+        passes.readBack(state_->frame.counters, counterBytes(state_->size), 0);
+        if (state_->size.ordered) {
+            passes.readBack(state_->frame.bucketCounts, bucketBytes(state_->size),
+                            counterBytes(state_->size));
+        }
+        passes.barrier(kCopyToHost);
+    });
 }
 
 Status RaySteps::record(VkCommandBuffer commands, const RayBatch& batch) try {
@@ -290,9 +271,7 @@ Status RaySteps::record(VkCommandBuffer commands, const RayBatch& batch) try {
 GLINT_CATCH
 
 Result<RaySteps::Counters> RaySteps::counters() try {
-    if (!state_->recorded) {
-        return frameNotRecorded();
-    }
+    GLINT_TRY_DO(checkRecorded(*state_));
     const std::vector<std::uint32_t> values =
         countersAt(*state_, 0, counterBytes(state_->size) / sizeof(std::uint32_t));
     Counters result;
@@ -337,7 +316,7 @@ package::Ordering RaySteps::ordering() const {
 
 std::uint64_t RaySteps::bytes() const {
     std::uint64_t sum = 0;
-    for (const auto& [name, buffer] : state_->frame.buffers()) {
+    for (const auto& [name, buffer] : buffersOf(state_->frame, state_->size)) {
         sum += buffer->bytes;
     }
     return sum;

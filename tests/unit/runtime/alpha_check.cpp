@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <random>
+#include <utility>
 
 namespace glint::test {
 namespace {
@@ -328,7 +330,7 @@ void checkStates(const AlphaCase& given, const opacity::MicromapArray& array, co
                     }
                     const MicroTriangle micro{u, v, inverted};
                     const std::uint32_t place = opacity::curveIndex(micro, level);
-                    const State state = opacity::stateAt(array, i, place, level);
+                    const State state = stateAt(array, i, place, level);
                     ++checked.microTriangles;
                     if (!opacity::isKnown(state)) {
                         checked.needless += !hopeless && check.isUniform(micro, level) ? 1 : 0;
@@ -344,6 +346,74 @@ void checkStates(const AlphaCase& given, const opacity::MicromapArray& array, co
             }
         }
     }
+}
+
+opacity::MicroTriangle microTriangleAt(float u, float v, std::uint32_t level) {
+    const std::uint32_t steps = 1U << level;
+    const float alongU = std::clamp(u, 0.0F, 1.0F) * static_cast<float>(steps);
+    const float alongV = std::clamp(v, 0.0F, 1.0F) * static_cast<float>(steps);
+    auto cellU = static_cast<std::uint32_t>(alongU);
+    auto cellV = static_cast<std::uint32_t>(alongV);
+    const float restU = alongU - static_cast<float>(cellU);
+    const float restV = alongV - static_cast<float>(cellV);
+    cellU = std::min(cellU, steps - 1);
+    cellV = std::min(cellV, steps - 1);
+    const std::uint32_t sum = cellU + cellV;
+    if (sum >= steps) {
+        cellU -= sum - steps + 1;
+    }
+    return {cellU, cellV, restU + restV >= 1.0F && sum < steps - 1};
+}
+
+State stateAt(const opacity::MicromapArray& array, std::size_t triangle, std::uint32_t place,
+              std::uint32_t level) {
+    const std::int32_t index = array.indices[triangle];
+    if (index < 0) {
+        return static_cast<State>(~index);
+    }
+    const opacity::MicromapRecord& record = array.records[static_cast<std::size_t>(index)];
+    const std::uint32_t own = place >> (2 * (level - record.subdivisionLevel));
+    const std::size_t bit = std::size_t{own} * record.format;
+    const std::uint32_t value = array.data[record.dataOffset + bit / 8] >> (bit % 8);
+    return static_cast<State>(value & ((1U << record.format) - 1U));
+}
+
+std::optional<const char*> faultIn(const opacity::MicromapArray& array, std::uint32_t maxLevel) {
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> regions;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> counts;
+    for (const opacity::MicromapRecord& record : array.records) {
+        if (record.format != opacity::kTwoStates && record.format != opacity::kFourStates) {
+            return "a record has a format that is neither 1 nor 2";
+        }
+        if (record.subdivisionLevel > maxLevel) {
+            return "a record has a subdivision level above the limit";
+        }
+        const std::uint64_t first = record.dataOffset;
+        regions.emplace_back(first, first + opacity::bytesOfStates(record.subdivisionLevel, record.format));
+        ++counts[{record.subdivisionLevel, record.format}];
+    }
+    std::ranges::sort(regions);
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+        if (regions[i].second > array.data.size()) {
+            return "the states of a record are outside of the data";
+        }
+        if (i > 0 && regions[i].first < regions[i - 1].second) {
+            return "the states of two records overlap";
+        }
+    }
+    for (const std::int32_t index : array.indices) {
+        if (index < opacity::specialIndex(State::UnknownOpaque) ||
+            (index >= 0 && static_cast<std::size_t>(index) >= array.records.size())) {
+            return "an index is neither that of a record nor a special one";
+        }
+    }
+    for (const opacity::MicromapUsage& usage : array.usages) {
+        counts[{usage.subdivisionLevel, usage.format}] -= usage.count;
+    }
+    if (std::ranges::any_of(counts, [](const auto& entry) { return entry.second != 0; })) {
+        return "the usages do not count the records";
+    }
+    return std::nullopt;
 }
 
 }  // namespace glint::test

@@ -4,9 +4,18 @@
 
 #include "data/alpha_states.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
+
+inline bool operator==(const VkMicromapTriangleEXT& a, const VkMicromapTriangleEXT& b) {
+    return a.dataOffset == b.dataOffset && a.subdivisionLevel == b.subdivisionLevel && a.format == b.format;
+}
+inline bool operator==(const VkMicromapUsageEXT& a, const VkMicromapUsageEXT& b) {
+    return a.count == b.count && a.subdivisionLevel == b.subdivisionLevel && a.format == b.format;
+}
 
 namespace glint::test {
 
@@ -47,5 +56,20 @@ void checkStates(const AlphaCase& given, const opacity::MicromapArray& array,
 // not at all (0) as far as the model allows.
 float alphaAt(const AlphaCase& given, const opacity::AlphaTriangle& triangle, float u, float v, double dx,
               double dy, int lean, const opacity::ErrorModel& model);
+
+// --- Reads micromaps as devices do ---
+
+// Returns the micro-triangle that has the point with these barycentrics (weights of corners 1 and 2).
+opacity::MicroTriangle microTriangleAt(float u, float v, std::uint32_t level);
+
+// Returns a state of a triangle. `place` is that on the curve of `level`, which must not be below the level
+// of the triangle's record; a coarser record's state holds for all micro-triangles within. Requires an array
+// that faultIn() finds no fault in.
+opacity::State stateAt(const opacity::MicromapArray& array, std::size_t triangle, std::uint32_t place,
+                       std::uint32_t level);
+
+// Returns the fault of an array, as a phrase, or no value: records outside of the data, overlapping ones,
+// levels above `maxLevel`, unknown formats, indices without a record, usages that do not count the records.
+std::optional<const char*> faultIn(const opacity::MicromapArray& array, std::uint32_t maxLevel);
 
 }  // namespace glint::test

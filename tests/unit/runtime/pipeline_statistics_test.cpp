@@ -83,7 +83,7 @@ TEST(PipelineExecutables, AreReadWhole) {
         isIncompleteOnce = incomplete;
         const auto read = must(readExecutables(context, VK_NULL_HANDLE));
         ASSERT_EQ(read.size(), 2U);
-        const PipelineExecutable& first = read.front();
+        const PipelineStatistics::Executable& first = read.front();
         EXPECT_EQ(first.name, "main");
         EXPECT_EQ(first.description, "the code");
         EXPECT_EQ(first.stages, VK_SHADER_STAGE_COMPUTE_BIT);

@@ -119,7 +119,7 @@ public:
         if (!format || *format != image::ImageFormat::Exr) {
             return layers;
         }
-        for (const LayerImage& layer : renderer_->layers()) {
+        for (const Renderer::LayerImage& layer : renderer_->layers()) {
             GLINT_TRY(auto values, renderer_->readLayer(layer.name));
             layers.push_back({std::string(layer.name), std::string(layer.info->channels),
                               layer.info->format == package::LayerFormat::Half4, std::move(values)});

@@ -24,11 +24,11 @@ std::string sunText(const RenderReport& report) {
                                         : " (--sun)");
 }
 
-constexpr std::string_view nameOf(MotionStatistics::TopLevel action) {
+constexpr std::string_view nameOf(GpuScene::MotionStatistics::TopLevel action) {
     switch (action) {
-        case MotionStatistics::TopLevel::Updated:
+        case GpuScene::MotionStatistics::TopLevel::Updated:
             return "updated";
-        case MotionStatistics::TopLevel::Rebuilt:
+        case GpuScene::MotionStatistics::TopLevel::Rebuilt:
             return "rebuilt";
         default:
             return "kept";
@@ -57,7 +57,7 @@ std::string tableOf(const std::vector<FrameReport>& frames) {
                "render", "passes"}};
     const auto number = [](double value) { return fmt::format("{:.3f}", value); };
     for (const FrameReport& frame : frames) {
-        const MotionStatistics& motion = frame.motion;
+        const GpuScene::MotionStatistics& motion = frame.motion;
         rows.push_back({std::to_string(frame.frame), number(frame.seconds), std::to_string(motion.refits),
                         std::to_string(motion.rebuilds), std::string(nameOf(motion.topLevel)),
                         number(frame.poseMs), number(motion.deformMs), number(motion.blasMs),
@@ -285,7 +285,7 @@ std::string tableOf(std::span<const PipelineStatistics> pipelines) {
         rows.front().emplace_back(info.column);
     }
     for (const PipelineStatistics& pipeline : pipelines) {
-        for (const PipelineExecutable& executable : pipeline.executables) {
+        for (const PipelineStatistics::Executable& executable : pipeline.executables) {
             const inspect::PipelineFacts facts = inspect::factsOf(executable);
             std::vector<std::string>& row = rows.emplace_back();
             row = {pipeline.name, executable.name,
@@ -352,7 +352,7 @@ static base::Fields fieldsOf(const EnvironmentReport*) {
 
 static base::Fields fieldsOf(const FrameReport*) {
     using T = FrameReport;
-    using Motion = MotionStatistics;
+    using Motion = GpuScene::MotionStatistics;
     return {output<&T::frame>("frame", "Number of the picture."),
             output<&T::seconds>("seconds", "Time of the animation in seconds."),
             output<&T::image>("image", "File of the picture."),

@@ -80,7 +80,7 @@ struct FrameReport {
     double seconds = 0.0;  // of the animation
     std::string image;
     std::uint32_t edits = 0;  // that were made before it
-    MotionStatistics motion;
+    GpuScene::MotionStatistics motion;
     double poseMs = 0.0;  // wall clock: nodes, joints and weights on the CPU
     double updateMs =
         0.0;  // wall clock: the scene on the device; 0 for the first, which is uploaded in its pose
@@ -139,14 +139,14 @@ struct RenderReport {
     bool hasDetails = false;  // the text has all memory, too
     PipelineReport pipelines;
     StartReport start;
-    double renderMs = 0.0;              // wall clock, all samples and the read-back
-    std::vector<PassTiming> passes;     // of the last sample, of the last frame
-    TrafficReport traffic;              // of the last sample
-    FrameCounters counters;             // of the last sample, of the last frame; nonFinite: of all
-    std::vector<FrameReport> frames;    // with --frames
-    std::optional<measure::View> view;  // of the last frame, with --view
-    std::vector<PixelPath> paths;       // of the last sample, row by row; for --coverage only
-    std::vector<std::uint64_t> hits;    // by shader ID, of all samples that were given to addHits()
+    double renderMs = 0.0;                   // wall clock, all samples and the read-back
+    std::vector<PassTiming> passes;          // of the last sample, of the last frame
+    TrafficReport traffic;                   // of the last sample
+    FrameCounters counters;                  // of the last sample, of the last frame; nonFinite: of all
+    std::vector<FrameReport> frames;         // with --frames
+    std::optional<measure::View> view;       // of the last frame, with --view
+    std::vector<Renderer::PixelPath> paths;  // of the last sample, row by row; for --coverage only
+    std::vector<std::uint64_t> hits;         // by shader ID, of all samples that were given to addHits()
 
     void addHits(const FrameCounters& sample);
 };

@@ -372,8 +372,8 @@ image::Color8 colorOfPixel(const package::LayerInfo& info, const float* value, s
 
 Result<View> makeLayerView(std::string_view name, Renderer& renderer, double exposure) {
     GLINT_TRY(auto values, renderer.readLayer(name));
-    const std::vector<LayerImage> images = renderer.layers();
-    const package::LayerInfo& info = *std::ranges::find(images, name, &LayerImage::name)->info;
+    const std::vector<Renderer::LayerImage> images = renderer.layers();
+    const package::LayerInfo& info = *std::ranges::find(images, name, &Renderer::LayerImage::name)->info;
     ViewChoice choice{&infoOfLayer(info), ""};
     if (package::hasSources(info)) {
         choice.source = name.substr(0, name.find('.'));

@@ -48,7 +48,7 @@ public:
     MotionView motion() const;
     // Returns the notes "edit-fallback" since the last call, one for each material and key.
     std::vector<Diagnostic> takeNotes();
-    // Returns the instance in SceneViewData that has the handle (SurfacePlace::handle), if any.
+    // Returns the instance in SceneViewData that has the handle (Renderer::SurfacePlace::handle), if any.
     std::optional<std::size_t> instanceOf(InstanceHandle handle) const;
 
 private:
