@@ -438,7 +438,7 @@ private:
     Status readDeclared() {
         for (const materials::VertexAttribute& declared : document_.options().materialModel->attributes) {
             const int accessor = readableAccessor(declared.gltf);
-            const bool known = std::ranges::find(primitive_.attributes, declared.gltf, &SceneEditor::VertexValues::name) !=
+            const bool known = std::ranges::find(primitive_.attributes, declared.gltf, &VertexValues::name) !=
                                primitive_.attributes.end();
             if (accessor < 0 || known) {
                 continue;

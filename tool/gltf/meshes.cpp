@@ -198,7 +198,7 @@ void repairPrimitive(Document& document, Primitive& primitive) {
     replaceNonFinite(document, primitive, primitive.texCoords0, 0.0F, "TEXCOORD_0");
     replaceNonFinite(document, primitive, primitive.texCoords1, 0.0F, "TEXCOORD_1");
     replaceNonFinite(document, primitive, primitive.colors, 1.0F, "COLOR_0");
-    for (SceneEditor::VertexValues& declared : primitive.attributes) {
+    for (VertexValues& declared : primitive.attributes) {
         replaceNonFinite(document, primitive, declared.values, 0.0F, declared.name);
     }
     for (MorphTarget& target : primitive.targets) {

@@ -119,7 +119,7 @@ std::uint64_t attributesOf(const Scene& scene, const Primitive& primitive) {
         scene.materials[static_cast<std::size_t>(primitive.material)].model().attributes;
     std::uint64_t bits = 0;
     for (std::size_t i = 0; i < known.size(); ++i) {
-        const bool given = std::ranges::find(primitive.attributes, known[i].gltf, &SceneEditor::VertexValues::name) !=
+        const bool given = std::ranges::find(primitive.attributes, known[i].gltf, &VertexValues::name) !=
                            primitive.attributes.end();
         bits |= std::uint64_t{given} << i;
     }

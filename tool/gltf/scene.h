@@ -44,7 +44,7 @@ struct Primitive {
     std::vector<Float2> texCoords1;
     std::vector<Float4> colors;  // linear RGBA in [0, 1]; empty where COLOR_0 is absent
     materials::ColorContent colorContent = materials::ColorContent::None;
-    std::vector<SceneEditor::VertexValues>
+    std::vector<VertexValues>
         attributes;  // those of MaterialModel::attributes that the file gives, each name once
     std::vector<std::uint32_t> indices;  // 3 for each triangle, each < positions.size()
     // The parts of the material's textures that the triangles can see, with ImportOptions::trustTextures.
