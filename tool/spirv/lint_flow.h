@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -49,9 +50,8 @@ struct FlowFunction {
 };
 
 struct FlowModule {
-    std::vector<FlowFunction> functions;                             // only those with ray queries
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> constants;  // IDs and first words of scalar
-                                                                     // constants, sorted
+    std::vector<FlowFunction> functions;                         // only those with ray queries
+    std::unordered_map<std::uint32_t, std::uint32_t> constants;  // IDs and first words of scalar constants
     // Returns null if `id` is no scalar constant. For a specialisation constant it returns the default.
     const std::uint32_t* findConstant(std::uint32_t id) const;
 };

@@ -2,7 +2,7 @@
 // instructions.
 #pragma once
 
-#include "spirv/lint_finding.h"
+#include "spirv/lint.h"
 #include "spirv/reader.h"
 
 #include <glint/result.h>

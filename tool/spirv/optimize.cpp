@@ -3,8 +3,6 @@
 #include "spirv/finish.h"
 #include "spirv/reader.h"
 
-// This defines HasResultAndType().
-#define SPV_ENABLE_UTILITY_CODE
 #include <glslang/SPIRV/spirv.hpp>
 #include <spirv-tools/libspirv.hpp>
 #include <spirv-tools/optimizer.hpp>
@@ -26,11 +24,7 @@ namespace {
 
 // A hidden extraction has the layout of an extraction by one index: type, result, structure, one literal.
 constexpr spv::Op kHidden = spv::OpArrayLength;
-constexpr std::size_t kHiddenWords = 5;
-
-std::uint32_t head(spv::Op opcode, std::size_t length) {
-    return static_cast<std::uint32_t>(opcode) | static_cast<std::uint32_t>(length << spv::WordCountShift);
-}
+constexpr std::uint32_t kHiddenWords = 5;
 
 // The member types of structures and arrays, and the type of each result.
 struct Types {
@@ -51,13 +45,8 @@ Types readTypes(std::span<const std::uint32_t> words) {
             types.members[it.operands[0]].assign(it.operands.begin() + 1, it.operands.end());
         } else if (it.opcode == spv::OpTypeArray) {
             types.members[it.operands[0]] = {it.operands[1]};
-        } else {
-            bool hasResult = false;
-            bool hasType = false;
-            spv::HasResultAndType(static_cast<spv::Op>(it.opcode), &hasResult, &hasType);
-            if (hasResult && hasType) {
-                types.ofResult[it.operands[1]] = it.operands[0];
-            }
+        } else if (it.type != 0) {
+            types.ofResult[it.result] = it.type;
         }
     }
     return types;
@@ -74,14 +63,13 @@ void appendHidden(std::span<const std::uint32_t> extract, const Types& types, st
         type = types.member(type, extract[index]);
         const bool isLast = index + 1 == extract.size();
         const std::uint32_t result = isLast ? extract[2] : bound++;
-        words.insert(words.end(), {head(kHidden, kHiddenWords), type, result, composite, extract[index]});
+        appendInstruction(words, kHidden, {type, result, composite, extract[index]});
         composite = result;
         ++index;
     }
     if (index < extract.size()) {
-        words.insert(words.end(), {head(spv::OpCompositeExtract, kFirstIndex + extract.size() - index),
-                                   extract[1], extract[2], composite});
-        words.insert(words.end(), extract.begin() + static_cast<std::ptrdiff_t>(index), extract.end());
+        appendInstruction(words, spv::OpCompositeExtract, {extract[1], extract[2], composite},
+                          extract.subspan(index));
     }
 }
 
@@ -109,11 +97,10 @@ void hideExtractions(std::vector<std::uint32_t>& words) {
     const Types types = readTypes(words);
     std::vector<std::uint32_t> hidden(words.begin(), words.begin() + kSpirvHeaderWords);
     for (const SpirvInstruction& it : SpirvInstructions(words)) {
-        const std::span<const std::uint32_t> instruction = it.words();
         if (it.opcode == spv::OpCompositeExtract) {
-            appendHidden(instruction, types, hidden[kSpirvBoundWord], hidden);
+            appendHidden(it.words(), types, hidden[kSpirvBoundWord], hidden);
         } else {
-            hidden.insert(hidden.end(), instruction.begin(), instruction.end());
+            appendWords(hidden, it.words());
         }
     }
     words = std::move(hidden);
@@ -122,7 +109,7 @@ void hideExtractions(std::vector<std::uint32_t>& words) {
 void showExtractions(std::vector<std::uint32_t>& words) {
     for (const SpirvInstruction& it : SpirvInstructions(words)) {
         if (it.opcode == kHidden) {
-            words[it.at] = head(spv::OpCompositeExtract, kHiddenWords);
+            words[it.at] = kHiddenWords << spv::WordCountShift | spv::OpCompositeExtract;
         }
     }
 }

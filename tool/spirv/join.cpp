@@ -1,7 +1,6 @@
-#include "spirv/join/join.h"
+#include "spirv/join.h"
 
 #include "base/files.h"
-#include "spirv/join/parsed_module.h"
 #include "spirv/reader.h"
 
 #include <glint/result.h>
@@ -28,7 +27,7 @@ namespace {
 // they stay apart: the first of one module is the first of another.
 class GlobalTable {
 public:
-    using Words = std::vector<std::uint32_t>;
+    using Words = SpirvWords;
     struct HashWords {
         std::size_t operator()(const Words& words) const;
     };
@@ -71,12 +70,12 @@ public:
 private:
     struct Added;
 
-    static Words describePointer(const ParsedModule& module, const Added& added, std::uint32_t id);
-    Words keyOf(const ParsedModule& module, const Added& added, const ParsedInstruction& global) const;
-    Status checkResource(const ParsedModule& module, const ParsedInstruction& global,
+    static Words describePointer(const ParsedModule& module, std::uint32_t id);
+    Words keyOf(const ParsedModule& module, const Added& added, const SpirvInstruction& global) const;
+    Status checkResource(const ParsedModule& module, const SpirvInstruction& global,
                          const std::string& shader);
-    void addForward(const ParsedModule& module, Added& added, const ParsedInstruction& global);
-    void write(const ParsedModule& module, const Added& added, const ParsedInstruction& global);
+    void addForward(const ParsedModule& module, Added& added, const SpirvInstruction& global);
+    void write(const ParsedModule& module, const Added& added, const SpirvInstruction& global);
 
     bool keepNames_;
     std::uint32_t bound_ = 1;
@@ -91,8 +90,6 @@ private:
     Words globals_;
     std::vector<std::uint32_t> variables_;
 };
-
-using TableWords = GlobalTable::Words;
 
 bool isGlobalSetting(std::uint32_t opcode) {
     switch (opcode) {
@@ -111,22 +108,21 @@ bool isGlobalSetting(std::uint32_t opcode) {
     }
 }
 
-bool pointsToPhysicalStorage(const ParsedModule& module, const ParsedInstruction& global) {
-    return global.opcode == spv::OpTypePointer &&
-           module.words[global.at + 2] == spv::StorageClassPhysicalStorageBuffer;
+bool pointsToPhysicalStorage(const ParsedModule& module, const SpirvInstruction& global) {
+    return global.opcode == spv::OpTypePointer && global.words()[2] == spv::StorageClassPhysicalStorageBuffer;
 }
 
 // Appends the annotations of an ID that tell it from others, in an order of their own and without the ID.
-void appendIdentity(const ParsedModule& module, const ParsedInstruction& global, TableWords& key) {
-    const std::span<const ParsedInstruction> decorations = module.decorations.of(global.result);
+void appendIdentity(const ParsedModule& module, const SpirvInstruction& global, SpirvWords& key) {
+    const std::span<const SpirvInstruction> decorations = module.decorations.of(global.result);
     const bool hasNames = global.opcode == spv::OpTypeStruct || global.opcode == spv::OpVariable;
-    const std::span<const ParsedInstruction> names =
-        hasNames ? module.names.of(global.result) : std::span<const ParsedInstruction>();
+    const std::span<const SpirvInstruction> names =
+        hasNames ? module.names.of(global.result) : std::span<const SpirvInstruction>();
     std::vector<std::span<const std::uint32_t>> identity;
     identity.reserve(decorations.size() + names.size());
-    for (const std::span<const ParsedInstruction> annotations : {decorations, names}) {
-        for (const ParsedInstruction& annotation : annotations) {
-            identity.push_back(module.wordsOf(annotation));
+    for (const std::span<const SpirvInstruction> annotations : {decorations, names}) {
+        for (const SpirvInstruction& annotation : annotations) {
+            identity.push_back(annotation.words());
         }
     }
     // The second word is the ID, the same in all of them.
@@ -138,31 +134,17 @@ void appendIdentity(const ParsedModule& module, const ParsedInstruction& global,
     }
 }
 
-// Returns the value of a decoration of the ID.
-std::optional<std::uint32_t> decorationOf(const ParsedModule& module, std::uint32_t id,
-                                          spv::Decoration decoration) {
-    for (const ParsedInstruction& instruction : module.decorations.of(id)) {
-        const auto words = module.wordsOf(instruction);
-        if (instruction.opcode == spv::OpDecorate && words[2] == decoration && words.size() > 3) {
-            return words[3];
-        }
-    }
-    return std::nullopt;
-}
-
 // The state while a module is added.
 struct GlobalTable::Added {
     std::vector<std::uint32_t> ids;
-    std::vector<const ParsedInstruction*> definitions;           // by the module's ID
     std::unordered_map<Words, std::uint32_t, HashWords> counts;  // occurrences of each key so far
 };
 
 // Appends an instruction of the module with its IDs replaced.
-void appendMapped(const ParsedModule& module, const ParsedInstruction& instruction,
-                  const std::vector<std::uint32_t>& ids, std::vector<std::uint32_t>& words) {
-    for (std::size_t i = instruction.at; i < instruction.at + instruction.length; ++i) {
-        words.push_back(module.isId[i] ? ids[module.words[i]] : module.words[i]);
-    }
+void appendMapped(const ParsedModule& module, const SpirvInstruction& instruction,
+                  const std::vector<std::uint32_t>& ids, SpirvWords& words) {
+    module.append(
+        instruction, [&](std::uint32_t id) { return ids[id]; }, words);
 }
 
 std::size_t GlobalTable::HashWords::operator()(const Words& words) const {
@@ -172,19 +154,18 @@ std::size_t GlobalTable::HashWords::operator()(const Words& words) const {
 
 // Describes everything that a pointer leads to. Types that lead back to themselves are named by their order
 // of appearance.
-GlobalTable::Words GlobalTable::describePointer(const ParsedModule& module, const Added& added,
-                                                std::uint32_t id) {
+GlobalTable::Words GlobalTable::describePointer(const ParsedModule& module, std::uint32_t id) {
     std::map<std::uint32_t, std::uint32_t> seen;
     Words description;
     const auto describe = [&](const auto& self, std::uint32_t next) -> void {
         const auto [place, isNew] = seen.emplace(next, static_cast<std::uint32_t>(seen.size()));
         description.push_back(place->second);
-        if (!isNew || added.definitions[next] == nullptr) {
+        if (!isNew || module.definitions[next] == nullptr) {
             return;
         }
         // A description starts with as many words as its first word tells. Its annotations follow.
-        const ParsedInstruction& global = *added.definitions[next];
-        for (std::size_t i = global.at; i < global.at + global.length; ++i) {
+        const SpirvInstruction& global = *module.definitions[next];
+        for (std::size_t i = global.at; i < global.at + global.words().size(); ++i) {
             if (!module.isId[i]) {
                 description.push_back(module.words[i]);
             } else if (module.words[i] != next) {
@@ -201,32 +182,30 @@ GlobalTable::Words GlobalTable::describePointer(const ParsedModule& module, cons
 }
 
 GlobalTable::Words GlobalTable::keyOf(const ParsedModule& module, const Added& added,
-                                      const ParsedInstruction& global) const {
+                                      const SpirvInstruction& global) const {
     Words key;
-    key.reserve(global.length + 1);
-    for (std::size_t i = global.at; i < global.at + global.length; ++i) {
-        const bool isResult = module.isId[i] && module.words[i] == global.result;
-        key.push_back(isResult ? 0 : module.isId[i] ? added.ids[module.words[i]] : module.words[i]);
-    }
+    key.reserve(global.words().size() + 1);
+    module.append(
+        global, [&](std::uint32_t id) { return id == global.result ? 0 : added.ids[id]; }, key);
     appendIdentity(module, global, key);
     return key;
 }
 
-Status GlobalTable::checkResource(const ParsedModule& module, const ParsedInstruction& global,
+Status GlobalTable::checkResource(const ParsedModule& module, const SpirvInstruction& global,
                                   const std::string& shader) {
     if (global.opcode != spv::OpVariable) {
         return okStatus();
     }
-    const std::uint32_t storage = module.words[global.at + 3];
+    const std::uint32_t storage = global.words()[3];
     std::string resource;
-    const auto builtIn = decorationOf(module, global.result, spv::DecorationBuiltIn);
-    const auto binding = decorationOf(module, global.result, spv::DecorationBinding);
+    const auto builtIn = module.decorationOf(global.result, spv::DecorationBuiltIn);
+    const auto binding = module.decorationOf(global.result, spv::DecorationBinding);
     if (storage == spv::StorageClassPushConstant) {
         resource = "push constants";
     } else if (builtIn) {
         resource = fmt::format("built-in variable {}", *builtIn);
     } else if (binding) {
-        const auto set = decorationOf(module, global.result, spv::DecorationDescriptorSet).value_or(0);
+        const auto set = module.decorationOf(global.result, spv::DecorationDescriptorSet).value_or(0);
         resource = fmt::format("{} at set {}, binding {}", module.nameOf(global.result), set, *binding);
     } else {
         return okStatus();
@@ -239,18 +218,18 @@ Status GlobalTable::checkResource(const ParsedModule& module, const ParsedInstru
     return okStatus();
 }
 
-void GlobalTable::write(const ParsedModule& module, const Added& added, const ParsedInstruction& global) {
+void GlobalTable::write(const ParsedModule& module, const Added& added, const SpirvInstruction& global) {
     const std::uint32_t id = added.ids[global.result];
     if (written_.size() <= id) {
         written_.resize(id + 1);
     }
     written_[id] = true;
     appendMapped(module, global, added.ids, global.opcode == spv::OpExtInstImport ? imports_ : globals_);
-    for (const ParsedInstruction& decoration : module.decorations.of(global.result)) {
+    for (const SpirvInstruction& decoration : module.decorations.of(global.result)) {
         appendMapped(module, decoration, added.ids, decorations_);
     }
     if (keepNames_) {
-        for (const ParsedInstruction& name : module.names.of(global.result)) {
+        for (const SpirvInstruction& name : module.names.of(global.result)) {
             appendMapped(module, name, added.ids, names_);
         }
     }
@@ -260,9 +239,9 @@ void GlobalTable::write(const ParsedModule& module, const Added& added, const Pa
 }
 
 // A pointer that a structure has before its own type is known.
-void GlobalTable::addForward(const ParsedModule& module, Added& added, const ParsedInstruction& global) {
-    const std::uint32_t pointer = module.words[global.at + 1];
-    const auto [known, isNew] = pointers_.emplace(describePointer(module, added, pointer), bound_);
+void GlobalTable::addForward(const ParsedModule& module, Added& added, const SpirvInstruction& global) {
+    const std::uint32_t pointer = global.words()[1];
+    const auto [known, isNew] = pointers_.emplace(describePointer(module, pointer), bound_);
     bound_ += isNew ? 1 : 0;
     added.ids[pointer] = known->second;
     if (isNew) {
@@ -273,13 +252,7 @@ void GlobalTable::addForward(const ParsedModule& module, Added& added, const Par
 Result<std::vector<std::uint32_t>> GlobalTable::add(const ParsedModule& module, const std::string& shader) {
     Added added;
     added.ids.resize(module.bound());
-    added.definitions.resize(module.bound());
-    for (const ParsedInstruction& global : module.globals) {
-        if (global.result != 0) {
-            added.definitions[global.result] = &global;
-        }
-    }
-    for (const ParsedInstruction& global : module.globals) {
+    for (const SpirvInstruction& global : module.globals) {
         if (isGlobalSetting(global.opcode)) {
             continue;
         }
@@ -290,8 +263,7 @@ Result<std::vector<std::uint32_t>> GlobalTable::add(const ParsedModule& module, 
         std::uint32_t& id = added.ids[global.result];
         if (pointsToPhysicalStorage(module, global)) {
             if (id == 0) {
-                const auto [known, isNew] =
-                    pointers_.emplace(describePointer(module, added, global.result), bound_);
+                const auto [known, isNew] = pointers_.emplace(describePointer(module, global.result), bound_);
                 bound_ += isNew ? 1 : 0;
                 id = known->second;
             }
@@ -313,22 +285,15 @@ Result<std::vector<std::uint32_t>> GlobalTable::add(const ParsedModule& module, 
     return std::move(added.ids);
 }
 
-using JoinedWords = std::vector<std::uint32_t>;
-
 // In a key, marks the number of an ID that only its function has.
 constexpr std::uint32_t kOwnId = 0x8000'0000U;
 constexpr std::size_t kVersionWord = 1;  // words of a module's header
-constexpr std::size_t kJoinedBound = 3;
-
-void append(JoinedWords& to, std::span<const std::uint32_t> from) {
-    to.insert(to.end(), from.begin(), from.end());
-}
 
 // A function in which its own IDs are numbers with kOwnId, 0 for itself, in the order of their appearance.
 struct NumberedFunction {
-    JoinedWords words;
+    SpirvWords words;
     std::vector<std::uint32_t> ids;       // by number
-    JoinedWords annotations;              // decorations of those IDs
+    SpirvWords annotations;               // decorations of those IDs
     std::vector<std::size_t> ownWords;    // indices of `words` with kOwnId
     std::vector<std::size_t> ownTargets;  // indices of such `annotations`
 };
@@ -338,7 +303,7 @@ public:
     Joiner(std::string shader, bool keepNames)
         : shader_(std::move(shader)), keepNames_(keepNames), table_(keepNames) {}
 
-    Result<JoinedWords> join(std::span<const std::span<const std::uint32_t>> modules);
+    Result<SpirvWords> join(std::span<const std::span<const std::uint32_t>> modules);
 
 private:
     // A module and the IDs of the joined module for its own: globals, then functions.
@@ -353,26 +318,26 @@ private:
                          "this is a defect of Glint; please report it with the scene");
     }
     Status addSettings(const ParsedModule& module, bool isFirst);
-    Status addFunctions(Member& member, JoinedWords& functions);
+    Status addFunctions(Member& member, SpirvWords& functions);
     Status addFunction(Member& member, const ParsedFunction& function, std::set<std::uint32_t>& open,
-                       JoinedWords& functions);
+                       SpirvWords& functions);
     Status import(Member& member, const ParsedFunction& function);
     NumberedFunction number(Member& member, const ParsedFunction& function) const;
     void write(Member& member, const ParsedFunction& function, const NumberedFunction& numbered,
-               JoinedWords& functions);
+               SpirvWords& functions);
     void writeNames(const Member& member, std::uint32_t id, std::uint32_t joined);
-    JoinedWords assemble(const Member& first, const JoinedWords& own, const JoinedWords& imported) const;
+    SpirvWords assemble(const Member& first, const SpirvWords& own, const SpirvWords& imported) const;
 
     std::string shader_;
     bool keepNames_;
     GlobalTable table_;
-    JoinedWords capabilities_;
-    JoinedWords extensions_;
-    JoinedWords memoryModel_;
-    std::set<JoinedWords> settings_;  // capabilities and extensions that were added
-    JoinedWords decorations_;         // of the functions' definitions
-    JoinedWords names_;
-    std::unordered_map<JoinedWords, std::uint32_t, GlobalTable::HashWords> functions_;
+    SpirvWords capabilities_;
+    SpirvWords extensions_;
+    SpirvWords memoryModel_;
+    std::set<SpirvWords> settings_;  // capabilities and extensions that were added
+    SpirvWords decorations_;         // of the functions' definitions
+    SpirvWords names_;
+    std::unordered_map<SpirvWords, std::uint32_t, GlobalTable::HashWords> functions_;
     struct Export {
         std::uint32_t id = 0;
         std::uint32_t type = 0;
@@ -381,12 +346,12 @@ private:
 };
 
 Status Joiner::addSettings(const ParsedModule& module, bool isFirst) {
-    for (const ParsedInstruction& global : module.globals) {
-        const auto words = module.wordsOf(global);
+    for (const SpirvInstruction& global : module.globals) {
+        const auto words = global.words();
         if (global.opcode == spv::OpCapability || global.opcode == spv::OpExtension) {
             const bool links = global.opcode == spv::OpCapability && words[1] == spv::CapabilityLinkage;
             if (!links && settings_.emplace(words.begin(), words.end()).second) {
-                append(global.opcode == spv::OpCapability ? capabilities_ : extensions_, words);
+                appendWords(global.opcode == spv::OpCapability ? capabilities_ : extensions_, words);
             }
         } else if (global.opcode == spv::OpMemoryModel) {
             if (!isFirst && !std::ranges::equal(words, memoryModel_)) {
@@ -412,9 +377,8 @@ NumberedFunction Joiner::number(Member& member, const ParsedFunction& function) 
         return number;
     };
     numberOf(function.id);
-    const auto add = [&](const ParsedInstruction& instruction, JoinedWords& to,
-                         std::vector<std::size_t>& own) {
-        for (std::size_t i = instruction.at; i < instruction.at + instruction.length; ++i) {
+    const auto add = [&](const SpirvInstruction& instruction, SpirvWords& to, std::vector<std::size_t>& own) {
+        for (std::size_t i = instruction.at; i < instruction.at + instruction.words().size(); ++i) {
             const std::uint32_t word = module.words[i];
             if (module.isId[i] && member.ids[word] == 0) {
                 own.push_back(to.size());
@@ -424,12 +388,12 @@ NumberedFunction Joiner::number(Member& member, const ParsedFunction& function) 
             }
         }
     };
-    for (const ParsedInstruction& instruction : function.body) {
+    for (const SpirvInstruction& instruction : function.body) {
         add(instruction, numbered.words, numbered.ownWords);
     }
     const std::size_t count = numbered.ids.size();
     for (std::size_t i = 0; i < count; ++i) {
-        for (const ParsedInstruction& decoration : module.decorations.of(numbered.ids[i])) {
+        for (const SpirvInstruction& decoration : module.decorations.of(numbered.ids[i])) {
             add(decoration, numbered.annotations, numbered.ownTargets);
         }
     }
@@ -443,19 +407,19 @@ void Joiner::writeNames(const Member& member, std::uint32_t id, std::uint32_t jo
     if (!keepNames_) {
         return;
     }
-    for (const ParsedInstruction& name : member.module.names.of(id)) {
+    for (const SpirvInstruction& name : member.module.names.of(id)) {
         const std::size_t target = names_.size() + 1;
-        append(names_, member.module.wordsOf(name));
+        appendWords(names_, name.words());
         names_[target] = joined;
     }
 }
 
 void Joiner::write(Member& member, const ParsedFunction& function, const NumberedFunction& numbered,
-                   JoinedWords& functions) {
+                   SpirvWords& functions) {
     const std::uint32_t first = table_.takeIds(static_cast<std::uint32_t>(numbered.ids.size()));
-    const auto place = [&](const JoinedWords& words, const std::vector<std::size_t>& own, JoinedWords& to) {
+    const auto place = [&](const SpirvWords& words, const std::vector<std::size_t>& own, SpirvWords& to) {
         const std::size_t begin = to.size();
-        append(to, words);
+        appendWords(to, words);
         for (const std::size_t word : own) {
             to[begin + word] = first + (words[word] & ~kOwnId);
         }
@@ -474,7 +438,7 @@ Status Joiner::import(Member& member, const ParsedFunction& function) {
     if (found == exports_.end()) {
         return refuse(fmt::format("no part has the function {}", name));
     }
-    const std::uint32_t type = member.ids[member.module.words[function.body.front().at + 4]];
+    const std::uint32_t type = member.ids[function.body.front().words()[4]];
     if (type != found->second.type) {
         return refuse(fmt::format("the part with the function {} takes or returns something else", name));
     }
@@ -484,7 +448,7 @@ Status Joiner::import(Member& member, const ParsedFunction& function) {
 
 // Adds the function after those that it calls. `open` has those that wait for this one.
 Status Joiner::addFunction(Member& member, const ParsedFunction& function, std::set<std::uint32_t>& open,
-                           JoinedWords& functions) {
+                           SpirvWords& functions) {
     if (member.ids[function.id] != 0) {
         return okStatus();
     }
@@ -494,10 +458,10 @@ Status Joiner::addFunction(Member& member, const ParsedFunction& function, std::
     if (!open.insert(function.id).second) {
         return refuse("a part has a function that calls itself");
     }
-    for (const ParsedInstruction& instruction : function.body) {
+    for (const SpirvInstruction& instruction : function.body) {
         if (instruction.opcode == spv::OpFunctionCall) {
-            const auto called = std::ranges::find(
-                member.module.functions, member.module.words[instruction.at + 3], &ParsedFunction::id);
+            const auto called =
+                std::ranges::find(member.module.functions, instruction.words()[3], &ParsedFunction::id);
             if (called == member.module.functions.end()) {
                 return refuse("a part calls a function that it does not have");
             }
@@ -505,8 +469,8 @@ Status Joiner::addFunction(Member& member, const ParsedFunction& function, std::
         }
     }
     const NumberedFunction numbered = number(member, function);
-    JoinedWords key = numbered.words;
-    append(key, numbered.annotations);
+    SpirvWords key = numbered.words;
+    appendWords(key, numbered.annotations);
     if (keepNames_) {
         // Functions of different names stay apart, so that each keeps its name.
         const std::string name = member.module.nameOf(function.id);
@@ -520,7 +484,7 @@ Status Joiner::addFunction(Member& member, const ParsedFunction& function, std::
     }
     if (const auto exported = member.module.exports.find(function.id);
         exported != member.module.exports.end()) {
-        const std::uint32_t type = member.ids[member.module.words[function.body.front().at + 4]];
+        const std::uint32_t type = member.ids[function.body.front().words()[4]];
         if (!exports_.emplace(exported->second, Export{member.ids[function.id], type}).second) {
             return refuse(fmt::format("two parts have a function {}", exported->second));
         }
@@ -528,7 +492,7 @@ Status Joiner::addFunction(Member& member, const ParsedFunction& function, std::
     return okStatus();
 }
 
-Status Joiner::addFunctions(Member& member, JoinedWords& functions) {
+Status Joiner::addFunctions(Member& member, SpirvWords& functions) {
     for (const ParsedFunction& function : member.module.functions) {
         std::set<std::uint32_t> open;
         GLINT_TRY_DO(addFunction(member, function, open, functions));
@@ -537,23 +501,19 @@ Status Joiner::addFunctions(Member& member, JoinedWords& functions) {
 }
 
 // Writes the sections in the order of the specification (2.4). `own` has the functions of the first module.
-JoinedWords Joiner::assemble(const Member& first, const JoinedWords& own, const JoinedWords& imported) const {
+SpirvWords Joiner::assemble(const Member& first, const SpirvWords& own, const SpirvWords& imported) const {
     const ParsedModule& module = first.module;
-    JoinedWords entry;
-    JoinedWords modes;
-    JoinedWords source;
-    for (const ParsedInstruction& global : module.globals) {
+    SpirvWords entry;
+    SpirvWords modes;
+    SpirvWords source;
+    for (const SpirvInstruction& global : module.globals) {
         if (global.opcode == spv::OpEntryPoint) {
             const std::size_t begin = entry.size();
             appendMapped(module, global, first.ids, entry);
             // Since SPIR-V 1.4 an entry point names every variable that it, or a function that it calls,
             // uses.
             std::set<std::uint32_t> named;
-            for (std::size_t i = 0; i < global.length; ++i) {
-                if (module.isId[global.at + i]) {
-                    named.insert(entry[begin + i]);
-                }
-            }
+            module.forIds(global, [&](std::uint32_t id) { named.insert(first.ids[id]); });
             for (const std::uint32_t variable : table_.variables()) {
                 if (!named.contains(variable)) {
                     entry.push_back(variable);
@@ -565,22 +525,21 @@ JoinedWords Joiner::assemble(const Member& first, const JoinedWords& own, const 
             appendMapped(module, global, first.ids, modes);
         } else if (keepNames_ && global.opcode == spv::OpSource) {
             // The file is left out, because it would need an OpString.
-            append(source, JoinedWords{3U << spv::WordCountShift | spv::OpSource, module.words[global.at + 1],
-                                       module.words[global.at + 2]});
+            appendInstruction(source, spv::OpSource, {global.words()[1], global.words()[2]});
         }
     }
-    JoinedWords words(module.words.begin(), module.words.begin() + kSpirvHeaderWords);
-    words[kJoinedBound] = table_.bound();
-    for (const JoinedWords* const section :
+    SpirvWords words(module.words.begin(), module.words.begin() + kSpirvHeaderWords);
+    words[kSpirvBoundWord] = table_.bound();
+    for (const SpirvWords* const section :
          {&capabilities_, &extensions_, &table_.imports(), &memoryModel_, &std::as_const(entry),
           &std::as_const(modes), &std::as_const(source), &table_.names(), &names_, &table_.decorations(),
           &decorations_, &table_.globals(), &own, &imported}) {
-        append(words, *section);
+        appendWords(words, *section);
     }
     return words;
 }
 
-Result<JoinedWords> Joiner::join(std::span<const std::span<const std::uint32_t>> modules) {
+Result<SpirvWords> Joiner::join(std::span<const std::span<const std::uint32_t>> modules) {
     std::vector<Member> members;
     for (const std::span<const std::uint32_t> words : modules) {
         GLINT_TRY(auto parsed, parseModule(words, shader_));
@@ -592,8 +551,8 @@ Result<JoinedWords> Joiner::join(std::span<const std::span<const std::uint32_t>>
         const std::uint32_t bound = parsed.bound();
         members.push_back({std::move(parsed), std::move(ids), std::vector<std::uint32_t>(bound)});
     }
-    JoinedWords own;
-    JoinedWords imported;
+    SpirvWords own;
+    SpirvWords imported;
     for (std::size_t i = 1; i < members.size(); ++i) {
         GLINT_TRY_DO(addFunctions(members[i], imported));
     }

@@ -1,5 +1,4 @@
-#include "spirv/join/join.h"
-#include "spirv/join/parsed_module.h"
+#include "spirv/join.h"
 #include "spirv/reader.h"
 
 #include <glslang/SPIRV/spirv.hpp>
@@ -17,17 +16,14 @@ namespace glint::compiler {
 
 namespace {
 
-// The definition of each ID of a module, or nullptr.
-using Definitions = std::vector<const ParsedInstruction*>;
-
 // Finds the members that SPIRV-Tools' pass EliminateDeadMembers keeps (version 2023.1): those that an
 // instruction names, and all of structures that are written, returned or passed as a whole.
 class LiveMembers {
 public:
     static constexpr std::uint32_t kRemoved = 0xFFFF'FFFF;
 
-    // Both must outlive this.
-    LiveMembers(const ParsedModule& module, const Definitions& definitions);
+    // The module must outlive this.
+    explicit LiveMembers(const ParsedModule& module);
 
     // Returns false if the module has an instruction that this can't follow.
     bool isKnown() const {
@@ -46,27 +42,23 @@ public:
     // structure, the place of the operand in the module's words, and the member. Returns false if it can't
     // follow them.
     using Visit = std::function<void(std::uint32_t structure, std::size_t word, std::uint32_t member)>;
-    bool visitMembers(const ParsedInstruction& instruction, const Visit& visit) const;
+    bool visitMembers(const SpirvInstruction& instruction, const Visit& visit) const;
 
 private:
-    std::uint32_t typeOf(std::uint32_t id) const {
-        return definitions_[id] == nullptr ? 0 : definitions_[id]->type;
-    }
     std::uint32_t wordOf(std::uint32_t id, std::size_t word) const {
-        return module_.words[definitions_[id]->at + word];
+        return module_.definitions[id]->words()[word];
     }
     bool is(std::uint32_t id, std::uint32_t opcode) const {
-        return definitions_[id] != nullptr && definitions_[id]->opcode == opcode;
+        return module_.definitions[id] != nullptr && module_.definitions[id]->opcode == opcode;
     }
-    void readGlobal(const ParsedInstruction& global);
-    void read(const ParsedInstruction& instruction);
+    void readGlobal(const SpirvInstruction& global);
+    void read(const SpirvInstruction& instruction);
     void readWhole(std::uint32_t type);
     void readPointee(std::uint32_t pointer);
-    void readOperands(const ParsedInstruction& instruction);
+    void readOperands(const SpirvInstruction& instruction);
     void placeAll();
 
     const ParsedModule& module_;
-    const Definitions& definitions_;
     std::vector<std::vector<bool>> read_;             // by structure and member
     std::vector<std::vector<std::uint32_t>> places_;  // the same
     std::vector<bool> whole_;                         // types that were read as a whole
@@ -106,37 +98,34 @@ constexpr std::size_t kPointee = 3;      // word of OpTypePointer
 constexpr std::size_t kElement = 2;      // word of arrays, vectors and matrices
 constexpr std::size_t kValue = 3;        // word of OpConstant
 
-LiveMembers::LiveMembers(const ParsedModule& module, const Definitions& definitions)
+LiveMembers::LiveMembers(const ParsedModule& module)
     : module_(module),
-      definitions_(definitions),
       read_(module.bound()),
       places_(module.bound()),
       whole_(module.bound()),
       loses_(module.bound()) {
-    for (const ParsedInstruction& global : module.globals) {
+    for (const SpirvInstruction& global : module.globals) {
         if (global.opcode == spv::OpTypeStruct) {
-            read_[global.result].resize(global.length - kFirstMember);
+            read_[global.result].resize(global.words().size() - kFirstMember);
         }
     }
-    for (const ParsedInstruction& global : module.globals) {
+    for (const SpirvInstruction& global : module.globals) {
         readGlobal(global);
     }
-    for (const ParsedFunction& function : module.functions) {
-        for (const ParsedInstruction& instruction : function.body) {
-            read(instruction);
-        }
+    for (const SpirvInstruction& instruction : module.code) {
+        read(instruction);
     }
     placeAll();
 }
 
-void LiveMembers::readGlobal(const ParsedInstruction& global) {
-    const auto word = [&](std::size_t i) { return module_.words[global.at + i]; };
+void LiveMembers::readGlobal(const SpirvInstruction& global) {
+    const auto word = [&](std::size_t i) { return global.words()[i]; };
     if (global.opcode == spv::OpSpecConstantOp) {
         known_ = false;
     } else if (global.opcode == spv::OpVariable) {
         const std::uint32_t storage = word(3);
-        const auto isOldBlock = [&](const ParsedInstruction& decoration) {
-            return module_.words[decoration.at + 2] == spv::DecorationBufferBlock;
+        const auto isOldBlock = [&](const SpirvInstruction& decoration) {
+            return decoration.words()[2] == spv::DecorationBufferBlock;
         };
         const bool isBuffer =
             storage == spv::StorageClassStorageBuffer ||
@@ -148,21 +137,21 @@ void LiveMembers::readGlobal(const ParsedInstruction& global) {
     }
 }
 
-void LiveMembers::read(const ParsedInstruction& instruction) {
-    const auto word = [&](std::size_t i) { return module_.words[instruction.at + i]; };
+void LiveMembers::read(const SpirvInstruction& instruction) {
+    const auto word = [&](std::size_t i) { return instruction.words()[i]; };
     switch (instruction.opcode) {
         case spv::OpStore:
-            readWhole(typeOf(word(2)));
+            readWhole(module_.typeOf(word(2)));
             break;
         case spv::OpCopyMemory:
         case spv::OpCopyMemorySized:
-            readPointee(typeOf(word(1)));
+            readPointee(module_.typeOf(word(1)));
             break;
         case spv::OpReturnValue:
-            readWhole(typeOf(word(1)));
+            readWhole(module_.typeOf(word(1)));
             break;
         case spv::OpArrayLength:
-            read_[wordOf(typeOf(word(3)), kPointee)][word(4)] = true;
+            read_[wordOf(module_.typeOf(word(3)), kPointee)][word(4)] = true;
             break;
         case spv::OpCompositeExtract:
         case spv::OpAccessChain:
@@ -186,17 +175,13 @@ void LiveMembers::read(const ParsedInstruction& instruction) {
 }
 
 // An instruction that takes or gives structures as a whole.
-void LiveMembers::readOperands(const ParsedInstruction& instruction) {
+void LiveMembers::readOperands(const SpirvInstruction& instruction) {
     readWhole(instruction.type);
-    for (std::size_t i = instruction.at; i < instruction.at + instruction.length; ++i) {
-        if (module_.isId[i]) {
-            readWhole(typeOf(module_.words[i]));
-        }
-    }
+    module_.forIds(instruction, [this](std::uint32_t id) { readWhole(module_.typeOf(id)); });
 }
 
 void LiveMembers::readWhole(std::uint32_t type) {
-    if (type == 0 || whole_[type] || definitions_[type] == nullptr) {
+    if (type == 0 || whole_[type] || module_.definitions[type] == nullptr) {
         return;
     }
     whole_[type] = true;
@@ -215,16 +200,16 @@ void LiveMembers::readPointee(std::uint32_t pointer) {
     readWhole(wordOf(pointer, kPointee));
 }
 
-bool LiveMembers::visitMembers(const ParsedInstruction& instruction, const Visit& visit) const {
+bool LiveMembers::visitMembers(const SpirvInstruction& instruction, const Visit& visit) const {
     const MemberWords words = memberWordsOf(instruction.opcode);
     if (words.first == 0) {
         return true;
     }
-    std::uint32_t type = typeOf(module_.words[instruction.at + words.object]);
+    std::uint32_t type = module_.typeOf(instruction.words()[words.object]);
     if (isChain(instruction.opcode)) {
         type = wordOf(type, kPointee);
     }
-    for (std::size_t i = words.first; i < instruction.length; ++i) {
+    for (std::size_t i = words.first; i < instruction.words().size(); ++i) {
         const std::size_t place = instruction.at + i;
         if (is(type, spv::OpTypeStruct)) {
             std::uint32_t member = module_.words[place];
@@ -256,8 +241,6 @@ void LiveMembers::placeAll() {
     }
 }
 
-using ClearedWords = std::vector<std::uint32_t>;
-
 constexpr std::size_t kEntryInterface = 3;    // word of OpEntryPoint from which variables can follow
 constexpr std::size_t kCompositeMembers = 3;  // first word of a composite's members
 
@@ -271,21 +254,19 @@ public:
     Clearing(const ParsedModule& module, bool keepMembers)
         : module_(module),
           words_(module.words.begin(), module.words.end()),
-          definitions_(module.bound()),
           live_(module.bound()),
           bodies_(module.functions.empty() ? module.words.size() : module.functions.front().body.front().at),
           keepMembers_(keepMembers) {}
 
-    std::optional<ClearedWords> clear() {
+    std::optional<SpirvWords> clear() {
         if (!module_.names.all().empty() || !hasKnownDecorations()) {
             return std::nullopt;
         }
-        define();
         if (!callsAllFunctions()) {
             return std::nullopt;
         }
         if (!keepMembers_) {
-            members_.emplace(module_, definitions_);
+            members_.emplace(module_);
             if (!members_->isKnown() || !renameMembers()) {
                 return std::nullopt;
             }
@@ -297,47 +278,35 @@ public:
 private:
     bool hasKnownDecorations() const {
         return std::ranges::none_of(module_.decorations.all(), [&](const auto& entry) {
-            const auto words = module_.wordsOf(entry.second);
+            const auto words = entry.second.words();
             return entry.second.opcode == spv::OpDecorateId ||
                    (entry.second.opcode == spv::OpDecorate && words[2] == spv::DecorationBuiltIn &&
                     words[3] == spv::BuiltInWorkgroupSize);
         });
     }
 
-    void define() {
-        for (const ParsedInstruction& global : module_.globals) {
-            definitions_[global.result] = &global;
-        }
-        for (const ParsedFunction& function : module_.functions) {
-            for (const ParsedInstruction& instruction : function.body) {
-                definitions_[instruction.result] = &instruction;
-            }
-        }
-        definitions_[0] = nullptr;
-    }
-
     bool callsAllFunctions() const;
     bool renameMembers();
     std::optional<std::uint32_t> constantOf(std::uint32_t value);
     void findLive();
-    void addLive(const ParsedInstruction& instruction);
+    void addLive(const SpirvInstruction& instruction);
     void addLive(std::uint32_t id) {
         if (!live_[id]) {
             live_[id] = true;
             found_.push_back(id);
         }
     }
-    bool isLive(const ParsedInstruction& global) const;
+    bool isLive(const SpirvInstruction& global) const;
     bool isGlobal(std::uint32_t id) const {
-        return definitions_[id] != nullptr && definitions_[id]->at < bodies_;
+        return module_.definitions[id] != nullptr && module_.definitions[id]->at < bodies_;
     }
     // The structure whose members the instruction names one after the other from word `first` on, if some of
     // them are removed; otherwise 0.
-    std::uint32_t structureOf(const ParsedInstruction& instruction, std::size_t& first) const;
-    ClearedWords write();
-    void write(const ParsedInstruction& instruction, ClearedWords& to);
-    void writeDecoration(std::uint32_t target, const ParsedInstruction& decoration, ClearedWords& to);
-    void writeMapped(std::size_t at, ClearedWords& to) {
+    std::uint32_t structureOf(const SpirvInstruction& instruction, std::size_t& first) const;
+    SpirvWords write();
+    void write(const SpirvInstruction& instruction, SpirvWords& to);
+    void writeDecoration(std::uint32_t target, const SpirvInstruction& decoration, SpirvWords& to);
+    void writeMapped(std::size_t at, SpirvWords& to) {
         to.push_back(module_.isId[at] ? number(words_[at]) : words_[at]);
     }
     std::uint32_t number(std::uint32_t id) {
@@ -348,8 +317,7 @@ private:
     }
 
     const ParsedModule& module_;
-    ClearedWords words_;  // of the module, with members renamed
-    Definitions definitions_;
+    SpirvWords words_;                  // of the module, with members renamed
     std::vector<bool> live_;            // by ID
     std::vector<std::uint32_t> found_;  // live IDs that were not looked at
     std::size_t bodies_;                // where the functions begin
@@ -363,38 +331,18 @@ private:
 };
 
 bool Clearing::callsAllFunctions() const {
-    std::vector<const ParsedFunction*> functions(module_.bound());
-    for (const ParsedFunction& function : module_.functions) {
-        functions[function.id] = &function;
-    }
-    std::vector<std::uint32_t> called;
-    for (const ParsedInstruction& global : module_.globals) {
-        if (global.opcode == spv::OpEntryPoint) {
-            called.push_back(module_.words[global.at + 2]);
-        }
-    }
-    std::size_t count = 0;
-    while (!called.empty()) {
-        const ParsedFunction* const function = std::exchange(functions[called.back()], nullptr);
-        called.pop_back();
-        if (function == nullptr) {
-            continue;
-        }
-        ++count;
-        for (const ParsedInstruction& instruction : function->body) {
-            if (instruction.opcode == spv::OpFunctionCall) {
-                called.push_back(module_.words[instruction.at + 3]);
-            }
-        }
-    }
-    return count == module_.functions.size();
+    const std::vector<SpirvFunction> functions = findFunctions(module_.words);
+    const auto entry =
+        std::ranges::find(module_.globals, std::uint32_t{spv::OpEntryPoint}, &SpirvInstruction::opcode);
+    return entry != module_.globals.end() &&
+           reachableFrom(entry->operands[1], functions).size() == functions.size();
 }
 
 // Returns a constant of type uint.
 std::optional<std::uint32_t> Clearing::constantOf(std::uint32_t value) {
     if (uintType_ == 0) {
-        for (const ParsedInstruction& global : module_.globals) {
-            const auto words = module_.wordsOf(global);
+        for (const SpirvInstruction& global : module_.globals) {
+            const auto words = global.words();
             if (global.opcode == spv::OpTypeInt && words[2] == 32 && words[3] == 0) {
                 uintType_ = global.result;
             } else if (global.opcode == spv::OpConstant && global.type == uintType_) {
@@ -415,42 +363,40 @@ std::optional<std::uint32_t> Clearing::constantOf(std::uint32_t value) {
 
 // Returns false where code would be dead afterwards.
 bool Clearing::renameMembers() {
-    for (const ParsedFunction& function : module_.functions) {
-        for (const ParsedInstruction& instruction : function.body) {
-            if (isComposite(instruction.opcode) && members_->loses(instruction.type)) {
-                return false;
-            }
-            if (instruction.opcode == spv::OpArrayLength) {
-                // The member belongs to a buffer, which keeps all members.
-                continue;
-            }
-            bool done = true;
-            const bool known = members_->visitMembers(
-                instruction, [&](std::uint32_t structure, std::size_t word, std::uint32_t member) {
-                    const std::uint32_t place = members_->placeOf(structure, member);
-                    if (place == LiveMembers::kRemoved) {
-                        done = false;
-                    } else if (place != member && module_.isId[word]) {
-                        const std::optional<std::uint32_t> constant = constantOf(place);
-                        done = done && constant.has_value();
-                        words_[word] = constant.value_or(0);
-                    } else {
-                        words_[word] = module_.isId[word] ? words_[word] : place;
-                    }
-                });
-            if (!known || !done) {
-                return false;
-            }
+    for (const SpirvInstruction& instruction : module_.code) {
+        if (isComposite(instruction.opcode) && members_->loses(instruction.type)) {
+            return false;
+        }
+        if (instruction.opcode == spv::OpArrayLength) {
+            // The member belongs to a buffer, which keeps all members.
+            continue;
+        }
+        bool done = true;
+        const bool known = members_->visitMembers(
+            instruction, [&](std::uint32_t structure, std::size_t word, std::uint32_t member) {
+                const std::uint32_t place = members_->placeOf(structure, member);
+                if (place == LiveMembers::kRemoved) {
+                    done = false;
+                } else if (place != member && module_.isId[word]) {
+                    const std::optional<std::uint32_t> constant = constantOf(place);
+                    done = done && constant.has_value();
+                    words_[word] = constant.value_or(0);
+                } else {
+                    words_[word] = module_.isId[word] ? words_[word] : place;
+                }
+            });
+        if (!known || !done) {
+            return false;
         }
     }
     live_.resize(module_.bound() + added_.size());
     return true;
 }
 
-void Clearing::addLive(const ParsedInstruction& instruction) {
+void Clearing::addLive(const SpirvInstruction& instruction) {
     std::size_t first = 0;
     const std::uint32_t structure = structureOf(instruction, first);
-    for (std::size_t i = 0; i < instruction.length; ++i) {
+    for (std::size_t i = 0; i < instruction.words().size(); ++i) {
         if (module_.isId[instruction.at + i] &&
             (structure == 0 || i < first ||
              members_->placeOf(structure, static_cast<std::uint32_t>(i - first)) != LiveMembers::kRemoved)) {
@@ -460,19 +406,17 @@ void Clearing::addLive(const ParsedInstruction& instruction) {
 }
 
 void Clearing::findLive() {
-    for (const ParsedInstruction& global : module_.globals) {
+    for (const SpirvInstruction& global : module_.globals) {
         const bool isMode = global.opcode == spv::OpExecutionMode || global.opcode == spv::OpExecutionModeId;
         const bool crossesStages =
-            global.opcode == spv::OpVariable && (module_.words[global.at + 3] == spv::StorageClassInput ||
-                                                 module_.words[global.at + 3] == spv::StorageClassOutput);
+            global.opcode == spv::OpVariable &&
+            (global.words()[3] == spv::StorageClassInput || global.words()[3] == spv::StorageClassOutput);
         if (isMode || crossesStages) {
             addLive(global);
         }
     }
-    for (const ParsedFunction& function : module_.functions) {
-        for (const ParsedInstruction& instruction : function.body) {
-            addLive(instruction);
-        }
+    for (const SpirvInstruction& instruction : module_.code) {
+        addLive(instruction);
     }
     while (!found_.empty()) {
         const std::uint32_t id = found_.back();
@@ -480,19 +424,19 @@ void Clearing::findLive() {
         if (id >= module_.bound()) {
             addLive(uintType_);
         } else if (isGlobal(id)) {
-            addLive(*definitions_[id]);
+            addLive(*module_.definitions[id]);
         }
     }
 }
 
-bool Clearing::isLive(const ParsedInstruction& global) const {
+bool Clearing::isLive(const SpirvInstruction& global) const {
     if (isSpirvPreamble(global.opcode)) {
         return true;
     }
-    return live_[global.opcode == spv::OpTypeForwardPointer ? module_.words[global.at + 1] : global.result];
+    return live_[global.opcode == spv::OpTypeForwardPointer ? global.words()[1] : global.result];
 }
 
-std::uint32_t Clearing::structureOf(const ParsedInstruction& instruction, std::size_t& first) const {
+std::uint32_t Clearing::structureOf(const SpirvInstruction& instruction, std::size_t& first) const {
     const bool isType = instruction.opcode == spv::OpTypeStruct;
     if (!members_ || !(isType || isComposite(instruction.opcode))) {
         return 0;
@@ -502,12 +446,12 @@ std::uint32_t Clearing::structureOf(const ParsedInstruction& instruction, std::s
     return members_->loses(structure) ? structure : 0;
 }
 
-void Clearing::write(const ParsedInstruction& instruction, ClearedWords& to) {
+void Clearing::write(const SpirvInstruction& instruction, SpirvWords& to) {
     const std::size_t begin = to.size();
     std::size_t first = 0;
     const std::uint32_t structure = structureOf(instruction, first);
     const bool isEntry = instruction.opcode == spv::OpEntryPoint;
-    for (std::size_t i = 0; i < instruction.length; ++i) {
+    for (std::size_t i = 0; i < instruction.words().size(); ++i) {
         const std::size_t at = instruction.at + i;
         const bool isRemovedMember =
             structure != 0 && i >= first &&
@@ -521,12 +465,12 @@ void Clearing::write(const ParsedInstruction& instruction, ClearedWords& to) {
     to[begin] = static_cast<std::uint32_t>((to.size() - begin) << spv::WordCountShift) | instruction.opcode;
 }
 
-void Clearing::writeDecoration(std::uint32_t target, const ParsedInstruction& decoration, ClearedWords& to) {
+void Clearing::writeDecoration(std::uint32_t target, const SpirvInstruction& decoration, SpirvWords& to) {
     if (isGlobal(target) && !live_[target]) {
         return;
     }
     const std::size_t begin = to.size();
-    for (std::size_t at = decoration.at; at < decoration.at + decoration.length; ++at) {
+    for (std::size_t at = decoration.at; at < decoration.at + decoration.words().size(); ++at) {
         writeMapped(at, to);
     }
     const bool isOfMember =
@@ -541,12 +485,12 @@ void Clearing::writeDecoration(std::uint32_t target, const ParsedInstruction& de
     }
 }
 
-ClearedWords Clearing::write() {
+SpirvWords Clearing::write() {
     numbers_.resize(module_.bound() + added_.size());
-    ClearedWords to(words_.begin(), words_.begin() + kSpirvHeaderWords);
+    SpirvWords to(words_.begin(), words_.begin() + kSpirvHeaderWords);
     to.reserve(words_.size());
     const auto writeGlobals = [&](bool beforeDecorations) {
-        for (const ParsedInstruction& global : module_.globals) {
+        for (const SpirvInstruction& global : module_.globals) {
             if (isSpirvPreamble(global.opcode) == beforeDecorations && isLive(global)) {
                 write(global, to);
             }
@@ -558,15 +502,11 @@ ClearedWords Clearing::write() {
     }
     writeGlobals(false);
     for (std::uint32_t i = 0; i < added_.size(); ++i) {
-        to.push_back(4U << spv::WordCountShift | spv::OpConstant);
-        to.push_back(number(uintType_));
-        to.push_back(number(module_.bound() + i));
-        to.push_back(added_[i]);
+        const std::uint32_t type = number(uintType_);
+        appendInstruction(to, spv::OpConstant, {type, number(module_.bound() + i), added_[i]});
     }
-    for (const ParsedFunction& function : module_.functions) {
-        for (const ParsedInstruction& instruction : function.body) {
-            write(instruction, to);
-        }
+    for (const SpirvInstruction& instruction : module_.code) {
+        write(instruction, to);
     }
     to[kSpirvBoundWord] = next_;
     return to;
