@@ -108,7 +108,7 @@ bool isGlobalSetting(std::uint32_t opcode) {
     }
 }
 
-bool pointsToPhysicalStorage(const ParsedModule& module, const SpirvInstruction& global) {
+bool pointsToPhysicalStorage(const SpirvInstruction& global) {
     return global.opcode == spv::OpTypePointer && global.words()[2] == spv::StorageClassPhysicalStorageBuffer;
 }
 
@@ -261,7 +261,7 @@ Result<std::vector<std::uint32_t>> GlobalTable::add(const ParsedModule& module, 
             continue;
         }
         std::uint32_t& id = added.ids[global.result];
-        if (pointsToPhysicalStorage(module, global)) {
+        if (pointsToPhysicalStorage(global)) {
             if (id == 0) {
                 const auto [known, isNew] = pointers_.emplace(describePointer(module, global.result), bound_);
                 bound_ += isNew ? 1 : 0;
