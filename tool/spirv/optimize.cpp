@@ -27,7 +27,7 @@ constexpr spv::Op kHidden = spv::OpArrayLength;
 constexpr std::uint32_t kHiddenWords = 5;
 
 // The member types of structures and arrays, and the type of each result.
-struct Types {
+struct MemberTypes {
     std::map<std::uint32_t, std::vector<std::uint32_t>> members;  // an array has one
     std::map<std::uint32_t, std::uint32_t> ofResult;
 
@@ -38,8 +38,8 @@ struct Types {
     }
 };
 
-Types readTypes(std::span<const std::uint32_t> words) {
-    Types types;
+MemberTypes readTypes(std::span<const std::uint32_t> words) {
+    MemberTypes types;
     for (const SpirvInstruction& it : SpirvInstructions(words)) {
         if (it.opcode == spv::OpTypeStruct) {
             types.members[it.operands[0]].assign(it.operands.begin() + 1, it.operands.end());
@@ -53,7 +53,7 @@ Types readTypes(std::span<const std::uint32_t> words) {
 }
 
 // Appends the extraction step by step. Each step that extracts from a structure or an array is hidden.
-void appendHidden(std::span<const std::uint32_t> extract, const Types& types, std::uint32_t& bound,
+void appendHidden(std::span<const std::uint32_t> extract, const MemberTypes& types, std::uint32_t& bound,
                   std::vector<std::uint32_t>& words) {
     constexpr std::size_t kFirstIndex = 4;
     std::uint32_t composite = extract[3];
@@ -94,7 +94,7 @@ bool relaxesPrecision(const std::vector<std::uint32_t>& words) {
 // ignores, and showExtractions() brings them back. No other pass may run in between, because the hidden
 // instructions mean nothing.
 void hideExtractions(std::vector<std::uint32_t>& words) {
-    const Types types = readTypes(words);
+    const MemberTypes types = readTypes(words);
     std::vector<std::uint32_t> hidden(words.begin(), words.begin() + kSpirvHeaderWords);
     for (const SpirvInstruction& it : SpirvInstructions(words)) {
         if (it.opcode == spv::OpCompositeExtract) {
