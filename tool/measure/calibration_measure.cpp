@@ -5,7 +5,7 @@
 #include "image/tone.h"
 #include "measure/measurer.h"
 #include "resolve/resolve.h"
-#include "synthetic/coherence.h"
+#include "synthetic/cases_scene.h"
 
 #include <glint/measure/bed.h>
 #include <glint/measure/machine.h>

@@ -46,11 +46,7 @@ Window::Window(const Request& request) : request_(request), scene_(request.scene
 
 Window::~Window() {
     builder_.reset();
-    for (const std::unique_ptr<Side>& one : sides_) {
-        if (one) {
-            one->picture.cancelLoad();
-        }
-    }
+    forSides([](Side& one) { one.picture.cancelLoad(); });
     if (context_) {
         vkDeviceWaitIdle(context_->handles().device);
         request_.closing(*context_);

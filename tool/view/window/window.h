@@ -76,10 +76,20 @@ private:
     Side& side() {
         return *sides_[edited_];
     }
+    // Visits the sides that are there.
+    template <typename Visit>
+    void forSides(const Visit& visit) {
+        for (const std::unique_ptr<Side>& one : sides_) {
+            if (one) {
+                visit(*one);
+            }
+        }
+    }
 
     // --- results.cpp: builds ---
     // `rereads`: files have changed.
     void order(std::size_t side, bool rereads = false);
+    void orderAll(bool rereads = false);
     void pollFiles();
     Status takeBuilds();
     Status install(std::size_t side, Build build);
@@ -108,6 +118,7 @@ private:
     void handleInput(double seconds);
     void handleKey(const KeyPress& press);
     void handleMouse();
+    void restartPictures();
     void fly(double seconds);
     void addFile(const std::string& file);
     void openFile(const std::string& file);
