@@ -1,7 +1,6 @@
 #include "spirv/lint.h"
 
 #include "spirv/lint_flow.h"
-#include "spirv/lint_prepare.h"
 #include "spirv/reader.h"
 
 #include <fmt/format.h>

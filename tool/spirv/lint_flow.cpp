@@ -1,6 +1,5 @@
 #include "spirv/lint_flow.h"
 
-#include "spirv/lint_prepare.h"
 #include "spirv/reader.h"
 
 #include <glslang/SPIRV/spirv.hpp>

@@ -1,6 +1,4 @@
-#include "spirv/lint_prepare.h"
-
-#include "spirv/reader.h"
+#include "spirv/lint_flow.h"
 
 #include <fmt/format.h>
 #include <glslang/SPIRV/spirv.hpp>

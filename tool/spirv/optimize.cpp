@@ -1,6 +1,5 @@
 #include "spirv/optimize.h"
 
-#include "spirv/finish.h"
 #include "spirv/reader.h"
 
 #include <glslang/SPIRV/spirv.hpp>
@@ -161,11 +160,7 @@ void registerInlining(spvtools::Optimizer& optimizer, bool keepNames) {
     optimizer.RegisterPerformancePasses();
 }
 
-void registerClearing(spvtools::Optimizer& optimizer, bool keepMembers) {
-    // Features are decided through two masks, so the performance passes uncover more to fold. It is folded
-    // once more.
-    registerFolding(optimizer);
-    optimizer.RegisterPass(spvtools::CreateVectorDCEPass());
+void registerDeadDeclarations(spvtools::Optimizer& optimizer, bool keepMembers) {
     if (!keepMembers) {
         // Every module declares the whole scene. Only the members that the module reads are kept, at their
         // offsets.
@@ -174,6 +169,14 @@ void registerClearing(spvtools::Optimizer& optimizer, bool keepMembers) {
     optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass())
         .RegisterPass(spvtools::CreateEliminateDeadConstantPass())
         .RegisterPass(spvtools::CreateCompactIdsPass());
+}
+
+void registerClearing(spvtools::Optimizer& optimizer, bool keepMembers) {
+    // Features are decided through two masks, so the performance passes uncover more to fold. It is folded
+    // once more.
+    registerFolding(optimizer);
+    optimizer.RegisterPass(spvtools::CreateVectorDCEPass());
+    registerDeadDeclarations(optimizer, keepMembers);
 }
 
 // Runs the passes that `registerInto` registers over `words`.
@@ -335,12 +338,7 @@ Status clearJoined(std::vector<std::uint32_t>& words, const std::string& name, b
     const bool keepMembers = keepNames || tracesByPipeline(words);
     return runPasses(words, name, [&](spvtools::Optimizer& optimizer) {
         optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
-        if (!keepMembers) {
-            optimizer.RegisterPass(spvtools::CreateEliminateDeadMembersPass());
-        }
-        optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass())
-            .RegisterPass(spvtools::CreateEliminateDeadConstantPass())
-            .RegisterPass(spvtools::CreateCompactIdsPass());
+        registerDeadDeclarations(optimizer, keepMembers);
     });
 }
 

@@ -1,4 +1,4 @@
-#include "spirv/finish.h"
+#include "spirv/optimize.h"
 #include "spirv/reader.h"
 
 #include <glslang/SPIRV/spirv.hpp>
