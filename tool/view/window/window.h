@@ -17,6 +17,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -172,7 +173,7 @@ private:
     std::unique_ptr<Display> display_;
     std::array<std::unique_ptr<Side>, kPictures> sides_;
     std::unique_ptr<Builder> builder_;
-    std::unique_ptr<Script> script_;
+    std::function<Result<bool>()> script_;  // readScript(); empty: none
 
     std::string scene_;
     // The scene and settings that are shown while another scene is being opened.
