@@ -35,8 +35,8 @@ public:
     explicit Types(const ParsedModule& module) : module_(module), bound_(module.bound()) {
         for (const SpirvInstruction& global : module.globals) {
             const std::span<const std::uint32_t> words = global.words();
-            if (global.opcode == spv::OpTypeInt || global.opcode == spv::OpTypeFloat) {
-                scalars_.insert({{words[0] & spv::OpCodeMask, words[2]}, words[1]});
+            if (global.opcode == spv::OpTypeInt && words[2] == 32 && words[3] == kUnsigned) {
+                unsignedInteger_ = global.result;
             } else if (global.opcode == spv::OpTypeVector) {
                 vectors_[{words[2], words[3]}] = words[1];
             } else if (global.opcode == spv::OpTypePointer && words[2] == kStorage) {
@@ -47,8 +47,6 @@ public:
             }
         }
     }
-
-    static constexpr std::uint32_t kStorage = spv::StorageClassPhysicalStorageBuffer;
 
     // Types that were added have no words here.
     std::span<const std::uint32_t> operator[](std::uint32_t type) const {
@@ -82,16 +80,11 @@ public:
         return isAddress(type) ? unsignedInteger() : opcode == spv::OpTypeVector ? (*this)[type][2] : type;
     }
     std::uint32_t unsignedInteger() {
-        constexpr std::uint32_t kUnsigned = 0;
-        for (auto [it, end] = scalars_.equal_range({spv::OpTypeInt, 32}); it != end; ++it) {
-            if ((*this)[it->second].empty() || (*this)[it->second][3] == kUnsigned) {
-                return it->second;
-            }
+        if (unsignedInteger_ == 0) {
+            unsignedInteger_ = bound_++;
+            appendInstruction(added_, spv::OpTypeInt, {unsignedInteger_, 32, kUnsigned});
         }
-        const std::uint32_t id = bound_++;
-        appendInstruction(added_, spv::OpTypeInt, {id, 32, kUnsigned});
-        scalars_.insert({{spv::OpTypeInt, 32}, id});
-        return id;
+        return unsignedInteger_;
     }
     std::uint32_t vectorOf(std::uint32_t scalar, std::uint32_t count) {
         if (count == 1) {
@@ -149,17 +142,20 @@ public:
     }
 
 private:
+    static constexpr std::uint32_t kStorage = spv::StorageClassPhysicalStorageBuffer;
+    static constexpr std::uint32_t kUnsigned = 0;  // of OpTypeInt
+
     const SpirvInstruction* definitionOf(std::uint32_t id) const {
         return id < module_.bound() ? module_.definitions[id] : nullptr;
     }
 
     const ParsedModule& module_;
     std::uint32_t bound_;
-    std::multimap<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> scalars_;  // by opcode and bits
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> vectors_;       // by scalar and count
-    std::map<std::uint32_t, std::uint32_t> pointers_;                                // by pointee
-    std::map<std::uint32_t, std::uint32_t> indices_;                                 // constants by value
-    std::map<std::uint32_t, std::uint32_t> readOnly_;                                // structures by member
+    std::uint32_t unsignedInteger_ = 0;                                         // 0: none yet
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> vectors_;  // by scalar and count
+    std::map<std::uint32_t, std::uint32_t> pointers_;                           // by pointee
+    std::map<std::uint32_t, std::uint32_t> indices_;                            // constants by value
+    std::map<std::uint32_t, std::uint32_t> readOnly_;                           // structures by member
     SpirvWords added_;
     SpirvWords decorations_;
 };
