@@ -246,6 +246,11 @@ struct FilteredRow {
     Row smooth, edge, point;                 // Y in [0, 1] after the filters of features
 };
 
+// NaN has no order, so it is handled separately.
+double clampToDisplay(float value) {
+    return std::isnan(value) ? 0.0 : std::clamp(static_cast<double>(value), 0.0, 1.0);
+}
+
 // Reads one picture row by row from the top. It keeps the filtered rows that the filters need for one row of
 // the map.
 class FilteredPicture {
@@ -351,11 +356,6 @@ private:
     std::array<Row, 4> padded_;      // Y, Cx, Cz, and Y in [0, 1]
     std::array<Row, 4> down_;
 };
-
-// NaN has no order, so it is handled separately.
-double clampToDisplay(float value) {
-    return std::isnan(value) ? 0.0 : std::clamp(static_cast<double>(value), 0.0, 1.0);
-}
 
 // The colours and features of one row of a picture.
 struct Seen {
