@@ -1,7 +1,7 @@
 // Fuzzes the pictures that compare and --environment read. The first bytes of an input decide its format.
 #include "fuzz/fuzz_target.h"
 #include "image/exr.h"
-#include "image/hdr.h"
+#include "image/image_file.h"
 #include "image/png.h"
 
 #include <span>

@@ -102,8 +102,6 @@ Status writeFile(const fs::path& path, std::string_view text) {
     return writeFile(path, asBytes(text));
 }
 
-namespace fs = std::filesystem;
-
 namespace {
 
 // Temporary files are called "scene.lock.glint-tmp-1234", with the number of the process.
@@ -136,6 +134,10 @@ int writeNew(const fs::path& path, std::span<const std::uint8_t> bytes) {
     return std::fclose(file.release()) != 0 ? errno : 0;
 }
 
+fs::path folderOf(const fs::path& path) {
+    return path.has_parent_path() ? path.parent_path() : ".";
+}
+
 fs::path temporaryOf(const fs::path& path) {
     return path.string() + std::string(kTag) + std::to_string(getpid());
 }
@@ -144,9 +146,8 @@ fs::path temporaryOf(const fs::path& path) {
 // killed. Where the file system has none, it is the temporary file of `path`. Returns 0, or errno.
 int tryToWrite(const fs::path& path) {
 #ifdef O_TMPFILE
-    const fs::path folder = path.has_parent_path() ? path.parent_path() : ".";
     constexpr mode_t kOwner = 0600;
-    if (const int file = open(folder.c_str(), O_TMPFILE | O_WRONLY, kOwner); file >= 0) {
+    if (const int file = open(folderOf(path).c_str(), O_TMPFILE | O_WRONLY, kOwner); file >= 0) {
         close(file);
         return 0;
     }
@@ -218,7 +219,7 @@ Status writeStaged(const fs::path& path, std::span<const std::uint8_t> bytes) {
 
 Status checkOutputFile(const fs::path& path) {
     std::error_code error;
-    const fs::path parent = path.has_parent_path() ? path.parent_path() : ".";
+    const fs::path parent = folderOf(path);
     if (!fs::is_directory(parent, error)) {
         return makeError("output-folder", path.string(),
                          "can't be written, because its folder does not exist",
@@ -246,10 +247,10 @@ Status checkOutputFolder(const fs::path& folder) {
 
 void removeAbandoned(const fs::path& path) {
     const std::string prefix = path.filename().string() + std::string(kTag);
-    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     std::vector<fs::path> found;
     std::error_code error;
-    for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    for (fs::directory_iterator entry(folderOf(path), error), end; !error && entry != end;
+         entry.increment(error)) {
         const std::string name = entry->path().filename().string();
         if (name.starts_with(prefix) && isOfDeadProcess(std::string_view(name).substr(prefix.size()))) {
             found.push_back(entry->path());

@@ -75,8 +75,6 @@ std::string programIdentity() {
     return text;
 }
 
-namespace fs = std::filesystem;
-
 namespace {
 
 bool isCurrent(const FileState& file) {

@@ -17,9 +17,6 @@ namespace glint::compiler {
 // consists of their build IDs; for a file without one, of its path, size and time stamp.
 std::string programIdentity();
 
-// A record of the files that a run read and wrote and of its output, so that the next run can tell that it
-// would do the same.
-
 // The state of a file at the time of the run.
 struct FileState {
     std::string path;

@@ -17,6 +17,8 @@
 
 namespace glint::compiler {
 
+namespace fs = std::filesystem;
+
 Packer& Packer::add(std::uint64_t number) {
     char bytes[sizeof number];
     std::memcpy(bytes, &number, sizeof number);
@@ -56,8 +58,6 @@ std::optional<std::string_view> Unpacker::text() {
     rest_.remove_prefix(*size);
     return text;
 }
-
-namespace fs = std::filesystem;
 
 namespace {
 

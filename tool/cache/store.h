@@ -49,9 +49,6 @@ private:
     std::string_view rest_;
 };
 
-// A folder of results by key. Its size is bounded, processes share it, and its contents are checked before
-// use.
-
 struct StoreOptions {
     std::filesystem::path folder;
     std::uint64_t maxBytes = 512ULL << 20;

@@ -91,16 +91,6 @@ constexpr std::array kFixedTypes{
     FixedType{"v2f", 8},         FixedType{"v2d", 16},     FixedType{"v3i", 12},
     FixedType{"v3f", 12},        FixedType{"v3d", 24},     FixedType{"deepImageState", 1}};
 
-bool isChannelList(std::string_view value) {
-    constexpr std::size_t kChannelBytes = 16;
-    ExrReader reader(value, 0);
-    std::optional<std::string_view> name = reader.text();
-    while (name && !name->empty() && reader.skip(kChannelBytes)) {
-        name = reader.text();
-    }
-    return name && name->empty() && reader.atEnd();
-}
-
 bool isStringVector(std::string_view value) {
     ExrReader reader(value, 0);
     while (!reader.atEnd()) {
@@ -126,17 +116,21 @@ std::int32_t wordAt(std::string_view value, std::size_t index) {
     return word;
 }
 
-// Returns the bytes of a pixel in all channels. isChannelList() must have accepted `value`.
-double bytesPerPixel(std::string_view value) {
+// Returns the bytes of a pixel in all channels of a list, or nothing if `value` is no list of channels.
+std::optional<double> bytesPerPixel(std::string_view value) {
     constexpr std::int32_t kHalf = 1;
-    constexpr std::size_t kChannelWords = 4;  // the first word is the type
+    constexpr std::size_t kChannelBytes = 16;  // the first four are the type
     double bytes = 0.0;
     ExrReader reader(value, 0);
-    for (std::optional<std::string_view> name = reader.text(); name && !name->empty(); name = reader.text()) {
-        bytes += wordAt(reader.rest(), 0) == kHalf ? 2.0 : 4.0;
-        reader.skip(kChannelWords * sizeof(std::uint32_t));
+    std::optional<std::string_view> name = reader.text();
+    for (; name && !name->empty(); name = reader.text()) {
+        const std::string_view channel = reader.rest();
+        if (!reader.skip(kChannelBytes)) {
+            return std::nullopt;
+        }
+        bytes += wordAt(channel, 0) == kHalf ? 2.0 : 4.0;
     }
-    return bytes;
+    return name && reader.atEnd() ? std::optional(bytes) : std::nullopt;
 }
 
 double linesOfBlock(std::string_view value) {
@@ -155,7 +149,7 @@ public:
         if (name == "dataWindow" && type == "box2i") {
             raise(width_, double{1} + wordAt(value, 2) - wordAt(value, 0));
         } else if (name == "channels" && type == "chlist") {
-            raise(pixelBytes_, bytesPerPixel(value));
+            raise(pixelBytes_, bytesPerPixel(value).value_or(0.0));
         } else if (name == "compression" && type == "compression") {
             raise(lines_, linesOfBlock(value));
         } else if (name == "tiles" && type == "tiledesc") {
@@ -187,7 +181,7 @@ bool fits(std::string_view type, std::string_view value) {
         return value.size() == fixed->size;
     }
     // An ID manifest is compressed, and only deep pictures have one.
-    return type == "chlist"         ? isChannelList(value)
+    return type == "chlist"         ? bytesPerPixel(value).has_value()
            : type == "stringvector" ? isStringVector(value)
            : type == "preview"      ? isPreview(value)
                                     : type != "idmanifest";

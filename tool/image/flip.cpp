@@ -8,52 +8,11 @@
 #include <numbers>
 #include <vector>
 
-namespace glint::image::flip {
-
-using Color = std::array<double, 3>;
-
-// Converts linear Rec. 709 in [0, 1] to YCxCz and back. This is the linear opponent space in which the eye's
-// contrast sensitivity was measured: Y in [-16, 100], Cx from green to red, Cz from blue to yellow.
-Color toOpponent(const Color& rgb);
-Color fromOpponent(const Color& opponent);
-
-// Returns CIE L*a*b* of linear Rec. 709, with a* and b* times L*/100 (Hunt: colours look paler in the dark).
-Color toHuntLab(const Color& rgb);
-
-// Returns the perceived difference of two colours of toHuntLab(), from 0 to 1.
-double colorDifference(const Color& a, const Color& b);
-
-// The weights from -radius to radius.
-using Kernel = std::vector<double>;
-
-// The contrast sensitivity of the eye: a sum of Gaussians for each channel of YCxCz. The blue-yellow channel
-// has two terms, with these shares of the sum.
-struct SensitivityFilters {
-    Kernel achromatic;
-    Kernel redGreen;
-    Kernel blueYellowWide;
-    Kernel blueYellowNarrow;
-    double wideShare = 1.0;
-    double narrowShare = 0.0;
-};
-// Returns filters that have one radius and sum to 1 each.
-SensitivityFilters sensitivityFilters(double pixelsPerDegree);
-
-// The filters of edges and points: derivatives of a Gaussian in one direction, and the Gaussian in the other.
-struct FeatureFilters {
-    Kernel smooth;  // sums to 1
-    Kernel edge;    // first derivative: weights above 0 sum to 1, those below to -1
-    Kernel point;   // second derivative, normalised like the edge filter
-};
-// Returns filters that have one radius.
-FeatureFilters featureFilters(double pixelsPerDegree);
-
-inline std::size_t radiusOf(const Kernel& kernel) {
-    return kernel.size() / 2;
-}
+namespace glint::image {
 
 namespace {
 
+using Color = std::array<double, 3>;
 using Matrix = std::array<Color, 3>;
 
 // Matrices from linear RGB to CIE XYZ and back, derived from the chromaticities of ITU-R BT.709's primaries
@@ -93,8 +52,8 @@ double hyab(const Color& a, const Color& b) {
     return std::abs(a[0] - b[0]) + std::hypot(a[1] - b[1], a[2] - b[2]);
 }
 
-}  // namespace
-
+// Convert linear Rec. 709 in [0, 1] to YCxCz and back. This is the linear opponent space in which the eye's
+// contrast sensitivity was measured: Y in [-16, 100], Cx from green to red, Cz from blue to yellow.
 // Source: Flohr, Kolpatzik, Balasubramanian, Carrara, Bouman and Allebach 1993, "Model-based color image
 // quantization".
 Color toOpponent(const Color& rgb) {
@@ -112,6 +71,7 @@ Color fromOpponent(const Color& opponent) {
     return multiply(kFromXyz, {x * kWhite[0], y * kWhite[1], z * kWhite[2]});
 }
 
+// Returns CIE L*a*b* of linear Rec. 709, with a* and b* times L*/100 (Hunt: colours look paler in the dark).
 // Sources: CIE 1976 L*a*b* (CIE 15:2004), and Hunt 1952, "Light and Dark Adaptation and the Perception of
 // Color", in the form of the paper.
 Color toHuntLab(const Color& rgb) {
@@ -123,6 +83,7 @@ Color toHuntLab(const Color& rgb) {
     return {lightness, 0.01 * lightness * 500.0 * (x - y), 0.01 * lightness * 200.0 * (y - z)};
 }
 
+// Returns the perceived difference of two colours of toHuntLab(), from 0 to 1.
 double colorDifference(const Color& a, const Color& b) {
     // The largest difference within Rec. 709 is that between green and blue.
     static const double kLargest =
@@ -134,8 +95,6 @@ double colorDifference(const Color& a, const Color& b) {
     }
     return std::min(1.0, kBendTo + (difference - bend) / (kLargest - bend) * (1.0 - kBendTo));
 }
-
-namespace {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -155,6 +114,13 @@ constexpr double kReach = 3.0;
 // The distance from the highest to the lowest weight of the edge filter, in degrees: w of the paper's feature
 // detection.
 constexpr double kEdgeWidth = 0.082;
+
+// The weights from -radius to radius.
+using Kernel = std::vector<double>;
+
+std::size_t radiusOf(const Kernel& kernel) {
+    return kernel.size() / 2;
+}
 
 template <typename Function>
 Kernel sample(std::size_t radius, Function function) {
@@ -194,8 +160,18 @@ Kernel gaussian(const Term& term, double pixelsPerDegree) {
     });
 }
 
-}  // namespace
+// The contrast sensitivity of the eye: a sum of Gaussians for each channel of YCxCz. The blue-yellow channel
+// has two terms, with these shares of the sum.
+struct SensitivityFilters {
+    Kernel achromatic;
+    Kernel redGreen;
+    Kernel blueYellowWide;
+    Kernel blueYellowNarrow;
+    double wideShare = 1.0;
+    double narrowShare = 0.0;
+};
 
+// Returns filters that have one radius and sum to 1 each.
 SensitivityFilters sensitivityFilters(double pixelsPerDegree) {
     SensitivityFilters filters{gaussian(kAchromatic, pixelsPerDegree), gaussian(kRedGreen, pixelsPerDegree),
                                gaussian(kBlueYellowWide, pixelsPerDegree),
@@ -214,6 +190,14 @@ SensitivityFilters sensitivityFilters(double pixelsPerDegree) {
     return filters;
 }
 
+// The filters of edges and points: derivatives of a Gaussian in one direction, and the Gaussian in the other.
+struct FeatureFilters {
+    Kernel smooth;  // sums to 1
+    Kernel edge;    // first derivative: weights above 0 sum to 1, those below to -1
+    Kernel point;   // second derivative, normalised like the edge filter
+};
+
+// Returns filters that have one radius.
 FeatureFilters featureFilters(double pixelsPerDegree) {
     // The extremes of a Gaussian's first derivative are one standard deviation from its middle.
     const double deviation = 0.5 * kEdgeWidth * pixelsPerDegree;
@@ -228,26 +212,17 @@ FeatureFilters featureFilters(double pixelsPerDegree) {
     return filters;
 }
 
-}  // namespace glint::image::flip
-
-namespace glint::image {
-
-namespace {
-
-using flip::Color;
-using flip::Kernel;
 using Row = std::vector<double>;
 
 struct Filters {
-    flip::SensitivityFilters sensitivity;
-    flip::FeatureFilters feature;
+    SensitivityFilters sensitivity;
+    FeatureFilters feature;
     std::size_t radius;  // the largest radius of the filters
 };
 
 Filters makeFilters(double pixelsPerDegree) {
-    Filters filters{flip::sensitivityFilters(pixelsPerDegree), flip::featureFilters(pixelsPerDegree), 0};
-    filters.radius =
-        std::max(flip::radiusOf(filters.sensitivity.achromatic), flip::radiusOf(filters.feature.smooth));
+    Filters filters{sensitivityFilters(pixelsPerDegree), featureFilters(pixelsPerDegree), 0};
+    filters.radius = std::max(radiusOf(filters.sensitivity.achromatic), radiusOf(filters.feature.smooth));
     return filters;
 }
 
@@ -255,7 +230,7 @@ Filters makeFilters(double pixelsPerDegree) {
 // the row.
 void filterAlong(const Row& padded, std::size_t margin, const Kernel& kernel, Row& out) {
     std::fill(out.begin(), out.end(), 0.0);
-    const std::size_t first = margin - flip::radiusOf(kernel);
+    const std::size_t first = margin - radiusOf(kernel);
     for (std::size_t k = 0; k < kernel.size(); ++k) {
         const double weight = kernel[k];
         const double* values = padded.data() + first + k;
@@ -271,21 +246,108 @@ struct FilteredRow {
     Row smooth, edge, point;                 // Y in [0, 1] after the filters of features
 };
 
+// NaN has no order, so it is handled separately.
+double clampToDisplay(float value) {
+    return std::isnan(value) ? 0.0 : std::clamp(static_cast<double>(value), 0.0, 1.0);
+}
+
 // Reads one picture row by row from the top. It keeps the filtered rows that the filters need for one row of
 // the map.
 class FilteredPicture {
 public:
-    FilteredPicture(const LinearImage& image, const Filters& filters);
+    FilteredPicture(const LinearImage& image, const Filters& filters)
+        : image_(image), filters_(filters), ring_(2 * filters.radius + 1) {
+        for (FilteredRow& row : ring_) {
+            for (const Plane plane :
+                 {&FilteredRow::achromatic, &FilteredRow::redGreen, &FilteredRow::wide, &FilteredRow::narrow,
+                  &FilteredRow::smooth, &FilteredRow::edge, &FilteredRow::point}) {
+                (row.*plane).resize(image.width);
+            }
+        }
+        for (Row& row : padded_) {
+            row.resize(image.width + 2 * filters.radius);
+        }
+        for (Row& row : down_) {
+            row.resize(image.width);
+        }
+    }
 
     // Returns the colours of row y after contrast sensitivity, as from toHuntLab(), and the strength of edges
     // and points. y must not decrease.
-    void readRow(std::uint32_t y, std::vector<Color>& colors, Row& edges, Row& points);
+    void readRow(std::uint32_t y, std::vector<Color>& colors, Row& edges, Row& points) {
+        const std::size_t last = std::min<std::size_t>(y + filters_.radius, image_.height - 1);
+        for (; filtered_ <= last; ++filtered_) {
+            filterRow(filtered_);
+        }
+        const SensitivityFilters& eye = filters_.sensitivity;
+        filterDown(y, &FilteredRow::achromatic, eye.achromatic, down_[0]);
+        filterDown(y, &FilteredRow::redGreen, eye.redGreen, down_[1]);
+        filterDown(y, &FilteredRow::wide, eye.blueYellowWide, down_[2]);
+        filterDown(y, &FilteredRow::narrow, eye.blueYellowNarrow, down_[3]);
+        for (std::size_t x = 0; x < colors.size(); ++x) {
+            Color rgb = fromOpponent(
+                {down_[0][x], down_[1][x], eye.wideShare * down_[2][x] + eye.narrowShare * down_[3][x]});
+            for (double& channel : rgb) {
+                channel = std::clamp(channel, 0.0, 1.0);
+            }
+            colors[x] = toHuntLab(rgb);
+        }
+
+        const auto strength = [&](Plane derivative, const Kernel& kernel, Row& out) {
+            filterDown(y, derivative, filters_.feature.smooth, down_[0]);
+            filterDown(y, &FilteredRow::smooth, kernel, down_[1]);
+            for (std::size_t x = 0; x < out.size(); ++x) {
+                out[x] = std::sqrt(down_[0][x] * down_[0][x] + down_[1][x] * down_[1][x]);
+            }
+        };
+        strength(&FilteredRow::edge, filters_.feature.edge, edges);
+        strength(&FilteredRow::point, filters_.feature.point, points);
+    }
 
 private:
     using Plane = Row FilteredRow::*;
 
-    void filterRow(std::uint32_t y);
-    void filterDown(std::uint32_t y, Plane plane, const Kernel& kernel, Row& out) const;
+    void filterRow(std::uint32_t y) {
+        const std::size_t margin = filters_.radius;
+        const std::array<float, 4>* pixels =
+            image_.pixels.data() + static_cast<std::size_t>(y) * image_.width;
+        for (std::size_t x = 0; x < image_.width; ++x) {
+            const std::array<float, 4>& pixel = pixels[x];
+            const Color opponent =
+                toOpponent({clampToDisplay(pixel[0]), clampToDisplay(pixel[1]), clampToDisplay(pixel[2])});
+            for (std::size_t i = 0; i < 3; ++i) {
+                padded_[i][margin + x] = opponent[i];
+            }
+            padded_[3][margin + x] = (opponent[0] + 16.0) / 116.0;
+        }
+        for (Row& row : padded_) {
+            std::fill_n(row.begin(), margin, row[margin]);
+            std::fill_n(row.end() - static_cast<std::ptrdiff_t>(margin), margin,
+                        row[row.size() - margin - 1]);
+        }
+        FilteredRow& row = ring_[y % ring_.size()];
+        filterAlong(padded_[0], margin, filters_.sensitivity.achromatic, row.achromatic);
+        filterAlong(padded_[1], margin, filters_.sensitivity.redGreen, row.redGreen);
+        filterAlong(padded_[2], margin, filters_.sensitivity.blueYellowWide, row.wide);
+        filterAlong(padded_[2], margin, filters_.sensitivity.blueYellowNarrow, row.narrow);
+        filterAlong(padded_[3], margin, filters_.feature.smooth, row.smooth);
+        filterAlong(padded_[3], margin, filters_.feature.edge, row.edge);
+        filterAlong(padded_[3], margin, filters_.feature.point, row.point);
+    }
+
+    void filterDown(std::uint32_t y, Plane plane, const Kernel& kernel, Row& out) const {
+        std::fill(out.begin(), out.end(), 0.0);
+        const auto radius = static_cast<std::int64_t>(radiusOf(kernel));
+        for (std::int64_t k = -radius; k <= radius; ++k) {
+            const std::int64_t from = std::clamp<std::int64_t>(static_cast<std::int64_t>(y) + k, 0,
+                                                               static_cast<std::int64_t>(image_.height) - 1);
+            const Row& values = ring_[static_cast<std::size_t>(from) % ring_.size()].*plane;
+            const double weight = kernel[static_cast<std::size_t>(k + radius)];
+            for (std::size_t x = 0; x < out.size(); ++x) {
+                out[x] += weight * values[x];
+            }
+        }
+    }
 
     const LinearImage& image_;
     const Filters& filters_;
@@ -294,98 +356,6 @@ private:
     std::array<Row, 4> padded_;      // Y, Cx, Cz, and Y in [0, 1]
     std::array<Row, 4> down_;
 };
-
-FilteredPicture::FilteredPicture(const LinearImage& image, const Filters& filters)
-    : image_(image), filters_(filters), ring_(2 * filters.radius + 1) {
-    for (FilteredRow& row : ring_) {
-        for (const Plane plane :
-             {&FilteredRow::achromatic, &FilteredRow::redGreen, &FilteredRow::wide, &FilteredRow::narrow,
-              &FilteredRow::smooth, &FilteredRow::edge, &FilteredRow::point}) {
-            (row.*plane).resize(image.width);
-        }
-    }
-    for (Row& row : padded_) {
-        row.resize(image.width + 2 * filters.radius);
-    }
-    for (Row& row : down_) {
-        row.resize(image.width);
-    }
-}
-
-// NaN has no order, so it is handled separately.
-double clampToDisplay(float value) {
-    return std::isnan(value) ? 0.0 : std::clamp(static_cast<double>(value), 0.0, 1.0);
-}
-
-void FilteredPicture::filterRow(std::uint32_t y) {
-    const std::size_t margin = filters_.radius;
-    const std::array<float, 4>* pixels = image_.pixels.data() + static_cast<std::size_t>(y) * image_.width;
-    for (std::size_t x = 0; x < image_.width; ++x) {
-        const std::array<float, 4>& pixel = pixels[x];
-        const Color opponent =
-            flip::toOpponent({clampToDisplay(pixel[0]), clampToDisplay(pixel[1]), clampToDisplay(pixel[2])});
-        for (std::size_t i = 0; i < 3; ++i) {
-            padded_[i][margin + x] = opponent[i];
-        }
-        padded_[3][margin + x] = (opponent[0] + 16.0) / 116.0;
-    }
-    for (Row& row : padded_) {
-        std::fill_n(row.begin(), margin, row[margin]);
-        std::fill_n(row.end() - static_cast<std::ptrdiff_t>(margin), margin, row[row.size() - margin - 1]);
-    }
-    FilteredRow& row = ring_[y % ring_.size()];
-    filterAlong(padded_[0], margin, filters_.sensitivity.achromatic, row.achromatic);
-    filterAlong(padded_[1], margin, filters_.sensitivity.redGreen, row.redGreen);
-    filterAlong(padded_[2], margin, filters_.sensitivity.blueYellowWide, row.wide);
-    filterAlong(padded_[2], margin, filters_.sensitivity.blueYellowNarrow, row.narrow);
-    filterAlong(padded_[3], margin, filters_.feature.smooth, row.smooth);
-    filterAlong(padded_[3], margin, filters_.feature.edge, row.edge);
-    filterAlong(padded_[3], margin, filters_.feature.point, row.point);
-}
-
-void FilteredPicture::filterDown(std::uint32_t y, Plane plane, const Kernel& kernel, Row& out) const {
-    std::fill(out.begin(), out.end(), 0.0);
-    const auto radius = static_cast<std::int64_t>(flip::radiusOf(kernel));
-    for (std::int64_t k = -radius; k <= radius; ++k) {
-        const std::int64_t from = std::clamp<std::int64_t>(static_cast<std::int64_t>(y) + k, 0,
-                                                           static_cast<std::int64_t>(image_.height) - 1);
-        const Row& values = ring_[static_cast<std::size_t>(from) % ring_.size()].*plane;
-        const double weight = kernel[static_cast<std::size_t>(k + radius)];
-        for (std::size_t x = 0; x < out.size(); ++x) {
-            out[x] += weight * values[x];
-        }
-    }
-}
-
-void FilteredPicture::readRow(std::uint32_t y, std::vector<Color>& colors, Row& edges, Row& points) {
-    const std::size_t last = std::min<std::size_t>(y + filters_.radius, image_.height - 1);
-    for (; filtered_ <= last; ++filtered_) {
-        filterRow(filtered_);
-    }
-    const flip::SensitivityFilters& eye = filters_.sensitivity;
-    filterDown(y, &FilteredRow::achromatic, eye.achromatic, down_[0]);
-    filterDown(y, &FilteredRow::redGreen, eye.redGreen, down_[1]);
-    filterDown(y, &FilteredRow::wide, eye.blueYellowWide, down_[2]);
-    filterDown(y, &FilteredRow::narrow, eye.blueYellowNarrow, down_[3]);
-    for (std::size_t x = 0; x < colors.size(); ++x) {
-        Color rgb = flip::fromOpponent(
-            {down_[0][x], down_[1][x], eye.wideShare * down_[2][x] + eye.narrowShare * down_[3][x]});
-        for (double& channel : rgb) {
-            channel = std::clamp(channel, 0.0, 1.0);
-        }
-        colors[x] = flip::toHuntLab(rgb);
-    }
-
-    const auto strength = [&](Plane derivative, const Kernel& kernel, Row& out) {
-        filterDown(y, derivative, filters_.feature.smooth, down_[0]);
-        filterDown(y, &FilteredRow::smooth, kernel, down_[1]);
-        for (std::size_t x = 0; x < out.size(); ++x) {
-            out[x] = std::sqrt(down_[0][x] * down_[0][x] + down_[1][x] * down_[1][x]);
-        }
-    };
-    strength(&FilteredRow::edge, filters_.feature.edge, edges);
-    strength(&FilteredRow::point, filters_.feature.point, points);
-}
 
 // The colours and features of one row of a picture.
 struct Seen {
@@ -400,7 +370,7 @@ struct Seen {
 double pixelDifference(const Seen& a, const Seen& b, std::size_t x) {
     const double feature = std::max(std::abs(a.edges[x] - b.edges[x]), std::abs(a.points[x] - b.points[x]));
     const double featureDifference = std::min(1.0, std::sqrt(feature / std::numbers::sqrt2));
-    return std::pow(flip::colorDifference(a.colors[x], b.colors[x]), 1.0 - featureDifference);
+    return std::pow(colorDifference(a.colors[x], b.colors[x]), 1.0 - featureDifference);
 }
 
 }  // namespace

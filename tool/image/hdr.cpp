@@ -1,6 +1,5 @@
-#include "image/hdr.h"
-
 #include "base/image_limits.h"
+#include "image/image_file.h"
 
 #include <algorithm>
 #include <cstring>

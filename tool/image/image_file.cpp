@@ -1,12 +1,11 @@
 #include "image/image_file.h"
 
 #include "base/files.h"
-#include "base/image_limits.h"
-#include "image/exr.h"
-#include "image/hdr.h"
 #include "image/tone.h"
 
+#include <array>
 #include <cctype>
+#include <utility>
 
 namespace glint::image {
 
@@ -19,11 +18,20 @@ std::string lowerCase(std::string text) {
     return text;
 }
 
-Diagnostic extensionError(const std::filesystem::path& path, const std::string& extension, std::string hint) {
+// Returns the format whose extension, ".png", the path has in upper or lower case.
+template <typename Format>
+Result<Format> formatOf(const std::filesystem::path& path,
+                        const std::array<std::pair<const char*, Format>, 2>& formats) {
+    const std::string extension = lowerCase(path.extension().string());
+    for (const auto& [known, format] : formats) {
+        if (extension == known) {
+            return format;
+        }
+    }
     return makeError("image-extension", path.string(),
                      extension.empty() ? "has no file name extension"
                                        : "has the unknown file name extension \"" + extension + "\"",
-                     std::move(hint));
+                     std::string("use ") + formats[0].first + " or " + formats[1].first);
 }
 
 DisplayImage toDisplayImage(const LinearImage& image, double exposure) {
@@ -45,25 +53,11 @@ Status writeEncoded(const std::filesystem::path& path, const Result<base::Bytes>
 }  // namespace
 
 Result<ImageFormat> imageFormat(const std::filesystem::path& path) {
-    const std::string extension = lowerCase(path.extension().string());
-    if (extension == ".png") {
-        return ImageFormat::Png;
-    }
-    if (extension == ".exr") {
-        return ImageFormat::Exr;
-    }
-    return extensionError(path, extension, "use .png or .exr");
+    return formatOf<ImageFormat>(path, {{{".png", ImageFormat::Png}, {".exr", ImageFormat::Exr}}});
 }
 
 Result<RadianceFormat> radianceFormat(const std::filesystem::path& path) {
-    const std::string extension = lowerCase(path.extension().string());
-    if (extension == ".hdr") {
-        return RadianceFormat::Hdr;
-    }
-    if (extension == ".exr") {
-        return RadianceFormat::Exr;
-    }
-    return extensionError(path, extension, "use .hdr or .exr");
+    return formatOf<RadianceFormat>(path, {{{".hdr", RadianceFormat::Hdr}, {".exr", RadianceFormat::Exr}}});
 }
 
 Result<LinearImage> readImage(const std::filesystem::path& path) {

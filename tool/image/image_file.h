@@ -40,4 +40,10 @@ Status writeImage(const std::filesystem::path& path, const LinearImage& image, d
 // Writes PNG only. Errors "image-extension" for other extensions, "png-encode", "file-write".
 Status writeImage(const std::filesystem::path& path, const DisplayImage& image);
 
+// --- Decodes Radiance RGBE pictures (.hdr) in memory ---
+
+// Returns linear RGB with alpha 1, first row on top. Files may be run-length encoded or flat, in the format
+// 32-bit_rle_rgbe with the orientation -Y +X. EXPOSURE is not applied. Errors "image-format", "image-size".
+Result<LinearImage> decodeHdr(std::span<const std::uint8_t> bytes, const std::string& where);
+
 }  // namespace glint::image

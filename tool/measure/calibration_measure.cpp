@@ -5,7 +5,7 @@
 #include "image/image_file.h"
 #include "image/tone.h"
 #include "resolve/resolve.h"
-#include "synthetic/coherence.h"
+#include "synthetic/cases_scene.h"
 
 #include <glint/measure/bed.h>
 #include <glint/measure/machine.h>

@@ -1,7 +1,6 @@
 #include "spirv/compiler.h"
 
-#include "spirv/join/join.h"
-#include "spirv/join/parsed_module.h"
+#include "spirv/join.h"
 #include "spirv/optimize.h"
 #include "spirv/reader.h"
 #include "spirv_source_hash.h"
@@ -28,17 +27,15 @@ namespace glint::compiler {
 
 namespace {
 
-using Words = std::vector<std::uint32_t>;
-
 // The parts of a module, in the order of the specification (2.4).
 struct Parts {
-    Words capabilities;
-    Words settings;  // extensions, imports of instructions, memory model, entry points
-    Words names;
-    Words decorations;
-    Words globals;
-    Words declarations;
-    Words definitions;
+    SpirvWords capabilities;
+    SpirvWords settings;  // extensions, imports of instructions, memory model, entry points
+    SpirvWords names;
+    SpirvWords decorations;
+    SpirvWords globals;
+    SpirvWords declarations;
+    SpirvWords definitions;
 };
 
 // The treatment of a function.
@@ -75,7 +72,7 @@ std::set<std::uint32_t> removedResults(std::span<const std::uint32_t> words,
             fate = fates.at(it.operands[1]);
         }
         if (!stays(fate, it.opcode)) {
-            removed.insert(resultAt(words, it.at));
+            removed.insert(it.result);
         }
         if (it.opcode == spv::OpFunctionEnd) {
             fate = Fate::Defined;
@@ -85,20 +82,14 @@ std::set<std::uint32_t> removedResults(std::span<const std::uint32_t> words,
     return removed;
 }
 
-void appendWords(Words& to, std::span<const std::uint32_t> from) {
-    to.insert(to.end(), from.begin(), from.end());
-}
-
-void addLinkage(Words& decorations, std::uint32_t function, const std::string& name, spv::LinkageType type) {
-    Words text(name.size() / 4 + 1);
+void addLinkage(SpirvWords& decorations, std::uint32_t function, const std::string& name,
+                spv::LinkageType type) {
+    SpirvWords text(name.size() / 4 + 1);
     for (std::size_t i = 0; i < name.size(); ++i) {
         text[i / 4] |= std::uint32_t{static_cast<std::uint8_t>(name[i])} << (8 * (i % 4));
     }
-    const auto length = static_cast<std::uint32_t>(4 + text.size());
-    appendWords(decorations, std::vector<std::uint32_t>{length << spv::WordCountShift | spv::OpDecorate,
-                                                        function, spv::DecorationLinkageAttributes});
-    appendWords(decorations, text);
-    decorations.push_back(static_cast<std::uint32_t>(type));
+    text.push_back(static_cast<std::uint32_t>(type));
+    appendInstruction(decorations, spv::OpDecorate, {function, spv::DecorationLinkageAttributes}, text);
 }
 
 bool isSetting(std::uint32_t opcode) {
@@ -160,8 +151,7 @@ Result<std::vector<std::uint32_t>> makeLinkable(std::span<const std::uint32_t> w
         }
     }
     Parts parts = splitModule(words, fatesOf(words, functions, names), names.keepsEntryPoint, keepNames);
-    appendWords(parts.capabilities, std::vector<std::uint32_t>{2U << spv::WordCountShift | spv::OpCapability,
-                                                               spv::CapabilityLinkage});
+    appendInstruction(parts.capabilities, spv::OpCapability, {spv::CapabilityLinkage});
     for (const SpirvFunction& function : functions) {
         if (std::ranges::find(names.exported, function.name) != names.exported.end()) {
             addLinkage(parts.decorations, function.id, function.name, spv::LinkageTypeExport);
@@ -169,9 +159,10 @@ Result<std::vector<std::uint32_t>> makeLinkable(std::span<const std::uint32_t> w
             addLinkage(parts.decorations, function.id, function.name, spv::LinkageTypeImport);
         }
     }
-    Words module(words.begin(), words.begin() + kSpirvHeaderWords);
-    for (const Words* const part : {&parts.capabilities, &parts.settings, &parts.names, &parts.decorations,
-                                    &parts.globals, &parts.declarations, &parts.definitions}) {
+    SpirvWords module(words.begin(), words.begin() + kSpirvHeaderWords);
+    for (const SpirvWords* const part :
+         {&parts.capabilities, &parts.settings, &parts.names, &parts.decorations, &parts.globals,
+          &parts.declarations, &parts.definitions}) {
         appendWords(module, *part);
     }
     return module;

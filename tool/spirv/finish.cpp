@@ -1,6 +1,4 @@
-#include "spirv/finish.h"
-
-#include "spirv/join/parsed_module.h"
+#include "spirv/optimize.h"
 #include "spirv/reader.h"
 
 #include <glslang/SPIRV/spirv.hpp>
@@ -15,8 +13,6 @@ namespace glint::compiler {
 
 namespace {
 
-using Words = std::vector<std::uint32_t>;
-
 constexpr std::size_t kStructureOperand = 2;  // word of OpRayQueryInitializeKHR
 constexpr std::size_t kStorageOperand = 2;    // word of OpTypePointer
 constexpr std::size_t kPointeeOperand = 3;
@@ -26,58 +22,38 @@ constexpr std::size_t kPointeeOperand = 3;
 class FreshLoads {
 public:
     explicit FreshLoads(const ParsedModule& module)
-        : module_(module),
-          definitions_(module.bound()),
-          storage_(module.bound(), kNoPointer),
-          types_(module.bound()),
-          uses_(module.bound()) {
-        for (const ParsedInstruction& global : module.globals) {
-            if (global.opcode == spv::OpTypePointer) {
-                storage_[global.result] = module.words[global.at + kStorageOperand];
-            }
-            types_[global.result] = global.type;
-        }
-        for (const ParsedFunction& function : module.functions) {
-            for (const ParsedInstruction& instruction : function.body) {
-                read(instruction);
+        : module_(module), uses_(module.bound()), bound_(module.bound()) {
+        for (const SpirvInstruction& instruction : module.code) {
+            // Also counts the result itself.
+            module.forIds(instruction, [this](std::uint32_t id) { ++uses_[id]; });
+            if (instruction.opcode == spv::OpRayQueryInitializeKHR) {
+                queries_.push_back({instruction, {}});
             }
         }
     }
 
-    Words make() {
+    SpirvWords make() {
         for (Query& query : queries_) {
-            const std::uint32_t structure = module_.words[query.instruction.at + kStructureOperand];
+            const std::uint32_t structure = query.instruction.words()[kStructureOperand];
             addPath(structure, query.path);
             dropUse(structure);
         }
-        return write();
+        for (const Query& query : queries_) {
+            edits_[query.instruction.at] = {repeated(query), true};
+        }
+        return edited(module_, edits_, {}, bound_);
     }
 
 private:
-    static constexpr std::uint32_t kNoPointer = 0xFFFFFFFF;
-
     struct Query {
-        ParsedInstruction instruction;
+        SpirvInstruction instruction;
         std::vector<std::uint32_t> path;  // the instructions repeated before it, in that order
     };
 
-    void read(const ParsedInstruction& instruction) {
-        definitions_[instruction.result] = &instruction;
-        types_[instruction.result] = instruction.type;
-        for (std::size_t at = instruction.at + 1; at < instruction.at + instruction.length; ++at) {
-            if (module_.isId[at]) {
-                ++uses_[module_.words[at]];  // also of the result itself
-            }
-        }
-        if (instruction.opcode == spv::OpRayQueryInitializeKHR) {
-            queries_.push_back({instruction, {}});
-        }
-    }
-
     // Returns whether an instruction may be repeated at a later place with the same result.
     bool isRepeatable(std::uint32_t id) const {
-        const ParsedInstruction* const definition = definitions_[id];
-        if (id == 0 || definition == nullptr) {
+        const SpirvInstruction* const definition = module_.definitions[id];
+        if (definition == nullptr) {
             return false;
         }
         switch (definition->opcode) {
@@ -88,7 +64,8 @@ private:
                 return true;
             case spv::OpLoad: {
                 // Other memory is the shader's own, and it may have written to it since.
-                const std::uint32_t storage = storage_[types_[module_.words[definition->at + 3]]];
+                const std::uint32_t pointer = module_.typeOf(definition->operands[2]);
+                const std::uint32_t storage = module_.definitions[pointer]->words()[kStorageOperand];
                 return storage == spv::StorageClassUniformConstant ||
                        storage == spv::StorageClassPushConstant ||
                        storage == spv::StorageClassPhysicalStorageBuffer;
@@ -109,19 +86,15 @@ private:
 
     template <typename Visit>
     void forOperands(std::uint32_t id, const Visit& visit) const {
-        const ParsedInstruction& definition = *definitions_[id];
-        // The type and the result come first.
-        for (std::size_t at = definition.at + 3; at < definition.at + definition.length; ++at) {
-            if (module_.isId[at]) {
-                visit(module_.words[at]);
-            }
-        }
+        constexpr std::size_t kAfterResult = 3;
+        module_.forIds(*module_.definitions[id], visit, kAfterResult);
     }
 
     void dropUse(std::uint32_t id) {
         constexpr std::uint32_t kOfItself = 1;
         if (--uses_[id] == kOfItself && isRepeatable(id)) {
             unused_.insert(id);
+            edits_[module_.definitions[id]->at].removes = true;
             forOperands(id, [&](std::uint32_t operand) { dropUse(operand); });
         }
     }
@@ -131,62 +104,28 @@ private:
         return unused_.contains(id) && taken_.insert(id).second ? id : bound_++;
     }
 
-    void repeat(const Query& query, Words& to) {
+    SpirvWords repeated(const Query& query) {
+        SpirvWords to;
         std::map<std::uint32_t, std::uint32_t> ids;
-        const auto copy = [&](std::size_t at) {
-            const auto found = module_.isId[at] ? ids.find(module_.words[at]) : ids.end();
-            to.push_back(found == ids.end() ? module_.words[at] : found->second);
+        const auto mapped = [&](std::uint32_t id) {
+            const auto found = ids.find(id);
+            return found == ids.end() ? id : found->second;
         };
         for (const std::uint32_t id : query.path) {
             ids[id] = idFor(id);
-            const ParsedInstruction& definition = *definitions_[id];
-            for (std::size_t at = definition.at; at < definition.at + definition.length; ++at) {
-                copy(at);
-            }
+            module_.append(*module_.definitions[id], mapped, to);
         }
-        for (std::size_t at = query.instruction.at; at < query.instruction.at + query.instruction.length;
-             ++at) {
-            copy(at);
-        }
-    }
-
-    Words write() {
-        bound_ = module_.bound();
-        Words to;
-        to.reserve(module_.words.size());
-        std::size_t from = 0;
-        const auto keepUntil = [&](std::size_t end) {
-            to.insert(to.end(), module_.words.begin() + static_cast<std::ptrdiff_t>(from),
-                      module_.words.begin() + static_cast<std::ptrdiff_t>(end));
-            from = end;
-        };
-        auto query = queries_.begin();
-        for (const ParsedFunction& function : module_.functions) {
-            for (const ParsedInstruction& instruction : function.body) {
-                const bool starts = query != queries_.end() && query->instruction.at == instruction.at;
-                if (starts || unused_.contains(instruction.result)) {
-                    keepUntil(instruction.at);
-                    from += instruction.length;
-                }
-                if (starts) {
-                    repeat(*query++, to);
-                }
-            }
-        }
-        keepUntil(module_.words.size());
-        to[kSpirvBoundWord] = bound_;
+        module_.append(query.instruction, mapped, to);
         return to;
     }
 
     const ParsedModule& module_;
-    std::vector<const ParsedInstruction*> definitions_;  // by ID; of functions
-    std::vector<std::uint32_t> storage_;                 // by ID; kNoPointer unless it is a pointer type
-    std::vector<std::uint32_t> types_;                   // by ID
-    std::vector<std::uint32_t> uses_;                    // by ID; in functions
+    std::vector<std::uint32_t> uses_;  // by ID; in functions
     std::vector<Query> queries_;
     std::set<std::uint32_t> unused_;  // definitions that queries alone needed
     std::set<std::uint32_t> taken_;
-    std::uint32_t bound_ = 0;
+    SpirvEdits edits_;
+    std::uint32_t bound_;
 };
 
 // --- Capabilities ---------------------------------------------------------------------------------
@@ -204,15 +143,10 @@ struct Contents {
 
 Contents readContents(const ParsedModule& module) {
     Contents contents;
-    std::map<std::uint32_t, const ParsedInstruction*> globals;
     std::set<std::uint32_t> arrays;  // variables
-    const auto pointee = [&](const ParsedInstruction& variable) {
-        return globals.at(module.words[globals.at(variable.type)->at + kPointeeOperand]);
-    };
-    for (const ParsedInstruction& global : module.globals) {
-        globals[global.result] = &global;
+    for (const SpirvInstruction& global : module.globals) {
         contents.opcodes.insert(global.opcode);
-        const std::span<const std::uint32_t> words = module.wordsOf(global);
+        const std::span<const std::uint32_t> words = global.words();
         if (global.opcode == spv::OpTypeImage) {
             contents.imageFormats.insert(words[8]);
         } else if (global.opcode == spv::OpTypeInt) {
@@ -220,7 +154,8 @@ Contents readContents(const ParsedModule& module) {
         } else if (global.opcode == spv::OpTypeFloat) {
             contents.floatBits.insert(words[2]);
         } else if (global.opcode == spv::OpVariable && words[3] == spv::StorageClassUniformConstant) {
-            const std::uint32_t type = pointee(global)->opcode;
+            const std::uint32_t pointee = module.definitions[global.type]->words()[kPointeeOperand];
+            const std::uint32_t type = module.definitions[pointee]->opcode;
             contents.descriptorArrays = contents.descriptorArrays || type == spv::OpTypeRuntimeArray;
             if (type == spv::OpTypeRuntimeArray || type == spv::OpTypeArray) {
                 arrays.insert(global.result);
@@ -228,18 +163,13 @@ Contents readContents(const ParsedModule& module) {
         }
     }
     for (const auto& [target, decoration] : module.decorations.all()) {
-        contents.nonUniform =
-            contents.nonUniform || (decoration.opcode == spv::OpDecorate &&
-                                    module.words[decoration.at + 2] == spv::DecorationNonUniform);
+        contents.nonUniform = contents.nonUniform || (decoration.opcode == spv::OpDecorate &&
+                                                      decoration.words()[2] == spv::DecorationNonUniform);
     }
-    for (const ParsedFunction& function : module.functions) {
-        for (const ParsedInstruction& it : function.body) {
-            contents.opcodes.insert(it.opcode);
-            contents.indexesDescriptors =
-                contents.indexesDescriptors ||
-                ((it.opcode == spv::OpAccessChain || it.opcode == spv::OpInBoundsAccessChain) &&
-                 arrays.contains(module.words[it.at + 3]));
-        }
+    for (const SpirvInstruction& it : module.code) {
+        contents.opcodes.insert(it.opcode);
+        contents.indexesDescriptors =
+            contents.indexesDescriptors || (isAccessChain(it.opcode) && arrays.contains(it.operands[2]));
     }
     return contents;
 }
@@ -332,13 +262,13 @@ bool isNeeded(const std::string& extension, const std::set<std::uint32_t>& capab
     return true;
 }
 
-Words trim(const ParsedModule& module) {
+SpirvWords trim(const ParsedModule& module) {
     const Contents contents = readContents(module);
     std::set<std::uint32_t> kept;
-    Words to(module.words.begin(), module.words.begin() + kSpirvHeaderWords);
+    SpirvWords to(module.words.begin(), module.words.begin() + kSpirvHeaderWords);
     std::size_t at = kSpirvHeaderWords;
-    for (const ParsedInstruction& global : module.globals) {
-        const std::span<const std::uint32_t> words = module.wordsOf(global);
+    for (const SpirvInstruction& global : module.globals) {
+        const std::span<const std::uint32_t> words = global.words();
         bool needed = false;
         if (global.opcode == spv::OpCapability) {
             needed = isNeeded(words[1], contents);
@@ -351,18 +281,18 @@ Words trim(const ParsedModule& module) {
             break;
         }
         if (needed) {
-            to.insert(to.end(), words.begin(), words.end());
+            appendWords(to, words);
         }
-        at = global.at + global.length;
+        at = global.at + words.size();
     }
-    to.insert(to.end(), module.words.begin() + static_cast<std::ptrdiff_t>(at), module.words.end());
+    appendWords(to, module.words.subspan(at));
     return to;
 }
 
 // Says of loads of addresses that these are aligned to 8 bytes, as they are in every layout of Vulkan.
 // glslang says the alignment of what the address points to, which
 // VUID-StandaloneSpirv-PhysicalStorageBuffer64-06314 forbids.
-void alignAddresses(Words& words) {
+void alignAddresses(SpirvWords& words) {
     constexpr std::uint32_t kAddressBytes = 8;
     constexpr std::size_t kAlignment = 5;  // word of OpLoad
     std::set<std::uint32_t> addresses;     // types
@@ -384,12 +314,9 @@ Status finishSpirv(std::vector<std::uint32_t>& words, const std::string& name) {
     GLINT_TRY_DO(widenLoads(words, name));
     alignAddresses(words);
     GLINT_TRY(ParsedModule module, parseModule(words, name));
-    if (std::ranges::any_of(module.functions, [](const ParsedFunction& function) {
-            return std::ranges::any_of(function.body, [](const ParsedInstruction& it) {
-                return it.opcode == spv::OpRayQueryInitializeKHR;
-            });
-        })) {
-        Words fresh = FreshLoads(module).make();
+    if (std::ranges::find(module.code, std::uint32_t{spv::OpRayQueryInitializeKHR},
+                          &SpirvInstruction::opcode) != module.code.end()) {
+        SpirvWords fresh = FreshLoads(module).make();
         words = std::move(fresh);
         GLINT_TRY(module, parseModule(words, name));
     }

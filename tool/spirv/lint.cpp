@@ -1,8 +1,6 @@
 #include "spirv/lint.h"
 
-#include "spirv/lint_finding.h"
 #include "spirv/lint_flow.h"
-#include "spirv/lint_prepare.h"
 #include "spirv/reader.h"
 
 #include <fmt/format.h>
@@ -21,12 +19,6 @@
 #include <vector>
 
 namespace glint::compiler {
-
-// Both append the findings about a valid module. `places` comes from findPlaces() for the same module.
-void lintQueries(std::span<const std::uint32_t> words, const std::map<std::size_t, SpirvPlace>& places,
-                 std::vector<LintFinding>& findings);
-void lintPipelines(std::span<const std::uint32_t> words, const std::map<std::size_t, SpirvPlace>& places,
-                   std::vector<LintFinding>& findings);
 
 namespace {
 
@@ -277,8 +269,6 @@ private:
     std::set<std::uint32_t> loads_;  // of acceleration structures
 };
 
-}  // namespace
-
 void lintQueries(std::span<const std::uint32_t> words, const std::map<std::size_t, SpirvPlace>& places,
                  std::vector<LintFinding>& findings) {
     const std::vector<std::uint32_t> prepared = prepareForLint(words);
@@ -288,8 +278,6 @@ void lintQueries(std::span<const std::uint32_t> words, const std::map<std::size_
         rules.judge(function);
     }
 }
-
-namespace {
 
 // Names the stages that a trace starts: a trace in one of them is nested in another trace.
 const char* nameHitStage(std::uint32_t model) {
@@ -303,24 +291,6 @@ const char* nameHitStage(std::uint32_t model) {
         default:
             return nullptr;
     }
-}
-
-std::set<std::uint32_t> reachableFrom(std::uint32_t root, const std::vector<SpirvFunction>& functions) {
-    std::set<std::uint32_t> reached{root};
-    std::vector<std::uint32_t> pending{root};
-    while (!pending.empty()) {
-        const auto function = std::ranges::find(functions, pending.back(), &SpirvFunction::id);
-        pending.pop_back();
-        if (function == functions.end()) {
-            continue;
-        }
-        for (const std::uint32_t callee : function->calls) {
-            if (reached.insert(callee).second) {
-                pending.push_back(callee);
-            }
-        }
-    }
-    return reached;
 }
 
 // Returns the offsets of traces, by function.
@@ -446,16 +416,6 @@ void judgePayloads(std::span<const std::uint32_t> words, std::vector<LintFinding
     }
 }
 
-}  // namespace
-
-void lintPipelines(std::span<const std::uint32_t> words, const std::map<std::size_t, SpirvPlace>& places,
-                   std::vector<LintFinding>& findings) {
-    judgeTraces(words, places, findings);
-    judgePayloads(words, findings);
-}
-
-namespace {
-
 std::string nameModel(std::uint32_t model) {
     switch (model) {
         case spv::ExecutionModelVertex:
@@ -498,7 +458,8 @@ Result<SpirvLint> lintSpirv(std::span<const std::uint32_t> words) {
     if (statistics.rayQueries > 0) {
         lintQueries(words, places, lint.findings);
     }
-    lintPipelines(words, places, lint.findings);
+    judgeTraces(words, places, lint.findings);
+    judgePayloads(words, lint.findings);
     std::ranges::stable_sort(lint.findings, {},
                              [](const LintFinding& finding) { return finding.place.offset; });
     return lint;

@@ -1,6 +1,5 @@
 #include "spirv/lint_flow.h"
 
-#include "spirv/lint_prepare.h"
 #include "spirv/reader.h"
 
 #include <glslang/SPIRV/spirv.hpp>
@@ -18,10 +17,11 @@ namespace {
 
 enum class Step { On, Stop };
 
-// Visits all events after `start`, along all paths that `visit` does not stop. If a loop leads back, the
-// events behind `start` in its block are visited a second time. Returns whether a path reached the end of the
-// function.
+// Visits all events of the object of `start` after it, along all paths that `visit` does not stop. If a loop
+// leads back, the events behind `start` in its block are visited a second time. Returns whether a path
+// reached the end of the function.
 bool walk(const FlowFunction& function, EventPlace start, const std::function<Step(EventPlace)>& visit) {
+    const std::size_t object = at(function, start).object;
     std::vector<bool> entered(function.blocks.size(), false);
     std::vector<EventPlace> pending{{start.block, start.event + 1}};
     bool reachedEnd = false;
@@ -31,7 +31,7 @@ bool walk(const FlowFunction& function, EventPlace start, const std::function<St
         const FlowBlock& block = function.blocks[place.block];
         bool stopped = false;
         for (; place.event < block.events.size() && !stopped; ++place.event) {
-            stopped = visit(place) == Step::Stop;
+            stopped = block.events[place.event].object == object && visit(place) == Step::Stop;
         }
         if (stopped) {
             continue;
@@ -47,23 +47,11 @@ bool walk(const FlowFunction& function, EventPlace start, const std::function<St
     return reachedEnd;
 }
 
-// Calls `visit` for events of the object of `start`, up to where it is initialised again.
-bool walkObject(const FlowFunction& function, EventPlace start,
-                const std::function<Step(EventPlace)>& visit) {
-    const std::size_t object = at(function, start).object;
-    return walk(function, start, [&](EventPlace place) {
-        if (at(function, place).object != object) {
-            return Step::On;
-        }
-        return visit(place);
-    });
-}
-
 }  // namespace
 
 std::vector<EventPlace> eventsAfter(const FlowFunction& function, EventPlace start) {
     std::vector<EventPlace> events;
-    walkObject(function, start, [&](EventPlace place) {
+    walk(function, start, [&](EventPlace place) {
         if (at(function, place).act == QueryAct::Initialize) {
             return Step::Stop;
         }
@@ -78,7 +66,7 @@ std::vector<EventPlace> eventsAfter(const FlowFunction& function, EventPlace sta
 
 bool canAvoid(const FlowFunction& function, EventPlace start, EventPlace via) {
     bool again = false;
-    const bool reachedEnd = walkObject(function, start, [&](EventPlace place) {
+    const bool reachedEnd = walk(function, start, [&](EventPlace place) {
         again = again || (place != via && at(function, place).act == QueryAct::Initialize);
         return place == via || at(function, place).act == QueryAct::Initialize ? Step::Stop : Step::On;
     });
@@ -87,7 +75,7 @@ bool canAvoid(const FlowFunction& function, EventPlace start, EventPlace via) {
 
 bool repeats(const FlowFunction& function, EventPlace event) {
     bool repeated = false;
-    walkObject(function, event, [&](EventPlace place) {
+    walk(function, event, [&](EventPlace place) {
         repeated = repeated || place == event;
         return repeated || at(function, place).act == QueryAct::Initialize ? Step::Stop : Step::On;
     });
@@ -151,7 +139,6 @@ public:
         for (const SpirvInstruction& instruction : SpirvInstructions(words)) {
             visit(instruction);
         }
-        std::ranges::sort(module_.constants);
     }
     FlowModule take() {
         return std::move(module_);
@@ -162,12 +149,10 @@ private:
         switch (it.opcode) {
             case spv::OpConstant:
             case spv::OpSpecConstant:
-                module_.constants.emplace_back(it.operands[1], it.operands[2]);
-                constants_[it.operands[1]] = it.operands[2];
+                module_.constants[it.operands[1]] = it.operands[2];
                 break;
             case spv::OpConstantNull:
-                module_.constants.emplace_back(it.operands[1], 0);
-                constants_[it.operands[1]] = 0;
+                module_.constants[it.operands[1]] = 0;
                 break;
             case spv::OpSpecConstantOp:
                 fixed_.insert(it.operands[1]);
@@ -216,7 +201,7 @@ private:
     // Returns whether an access chain has an index that is no constant.
     bool isIndexed(Operands chain) const {
         return std::ranges::any_of(chain.subspan(3), [this](std::uint32_t index) {
-            return !constants_.contains(index) && !fixed_.contains(index);
+            return !module_.constants.contains(index) && !fixed_.contains(index);
         });
     }
 
@@ -292,8 +277,8 @@ private:
         if (it.operands.size() < 4) {
             return QueryAct::Other;  // It asks about the ray, not about a hit.
         }
-        const auto which = constants_.find(it.operands[3]);
-        const bool candidate = which != constants_.end() &&
+        const auto which = module_.constants.find(it.operands[3]);
+        const bool candidate = which != module_.constants.end() &&
                                which->second == spv::RayQueryIntersectionRayQueryCandidateIntersectionKHR;
         if (candidate) {
             return QueryAct::Other;
@@ -308,9 +293,9 @@ private:
              chain = chains_.find(pointer)) {
             pointer = chain->second[2];
             for (const std::uint32_t index : chain->second.subspan(3)) {
-                const auto constant = constants_.find(index);
-                object.dynamic = object.dynamic || constant == constants_.end();
-                object.indices.push_back(constant == constants_.end() ? 0 : constant->second);
+                const auto constant = module_.constants.find(index);
+                object.dynamic = object.dynamic || constant == module_.constants.end();
+                object.indices.push_back(constant == module_.constants.end() ? 0 : constant->second);
             }
         }
         object.variable = pointer;
@@ -341,7 +326,6 @@ private:
 
     FlowModule module_;
     FlowFunction function_;
-    std::unordered_map<std::uint32_t, std::uint32_t> constants_;
     std::unordered_set<std::uint32_t> queryTypes_;        // ray queries, arrays of ray queries, and pointers
                                                           // to either
     std::unordered_map<std::uint32_t, Operands> chains_;  // pointers to ray queries; a variable has no
@@ -360,8 +344,8 @@ private:
 }  // namespace
 
 const std::uint32_t* FlowModule::findConstant(std::uint32_t id) const {
-    const auto found = std::ranges::lower_bound(constants, std::pair(id, std::uint32_t{0}));
-    return found != constants.end() && found->first == id ? &found->second : nullptr;
+    const auto found = constants.find(id);
+    return found == constants.end() ? nullptr : &found->second;
 }
 
 FlowModule readFlow(std::span<const std::uint32_t> words) {

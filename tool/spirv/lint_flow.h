@@ -1,9 +1,17 @@
 // The control flow of a function, reduced to its events on ray query objects.
 #pragma once
 
+#include "spirv/lint_finding.h"
+#include "spirv/reader.h"
+
+#include <glint/result.h>
+
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
+#include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -49,9 +57,8 @@ struct FlowFunction {
 };
 
 struct FlowModule {
-    std::vector<FlowFunction> functions;                             // only those with ray queries
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> constants;  // IDs and first words of scalar
-                                                                     // constants, sorted
+    std::vector<FlowFunction> functions;                         // only those with ray queries
+    std::unordered_map<std::uint32_t, std::uint32_t> constants;  // IDs and first words of scalar constants
     // Returns null if `id` is no scalar constant. For a specialisation constant it returns the default.
     const std::uint32_t* findConstant(std::uint32_t id) const;
 };
@@ -82,5 +89,31 @@ std::vector<EventPlace> eventsAfter(const FlowFunction& function, EventPlace sta
 bool canAvoid(const FlowFunction& function, EventPlace start, EventPlace via);
 // Returns whether `event` can happen again before its object is initialised again.
 bool repeats(const FlowFunction& function, EventPlace event);
+
+// --- Prepares a module: checks, inlines and folds it, and finds the place of its instructions ---
+
+// Returns the error "spirv-invalid" with the validator's first message. It accepts any version of SPIR-V that
+// the validator knows.
+Status checkSpirv(std::span<const std::uint32_t> words);
+
+// Returns a copy in which everything that a driver inlines and folds is inlined and folded: functions with
+// ray queries, and small ones. Before each ray query instruction stands an OpLine whose line is the offset of
+// the original instruction in `words`. Requires a valid module.
+std::vector<std::uint32_t> prepareForLint(std::span<const std::uint32_t> words);
+
+bool isRayQueryInstruction(std::uint32_t opcode);
+bool isTraceInstruction(std::uint32_t opcode);
+
+struct SpirvEntryPoint {
+    std::uint32_t model = 0;
+    std::uint32_t function = 0;
+    std::string name;
+};
+
+// Requires a valid module.
+std::vector<SpirvEntryPoint> findEntryPoints(std::span<const std::uint32_t> words);
+
+// Returns the places of all ray queries and traces, by offset. Requires a valid module.
+std::map<std::size_t, SpirvPlace> findPlaces(std::span<const std::uint32_t> words);
 
 }  // namespace glint::compiler

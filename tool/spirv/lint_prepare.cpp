@@ -1,6 +1,4 @@
-#include "spirv/lint_prepare.h"
-
-#include "spirv/reader.h"
+#include "spirv/lint_flow.h"
 
 #include <fmt/format.h>
 #include <glslang/SPIRV/spirv.hpp>
@@ -14,20 +12,13 @@ namespace glint::compiler {
 
 namespace {
 
-using Words = std::vector<std::uint32_t>;
-
 // This accepts everything that any Vulkan version accepts, because lint is about speed, not about
 // environments.
 constexpr spv_target_env kEnvironment = SPV_ENV_UNIVERSAL_1_6;
 
-void append(Words& words, std::uint32_t opcode, std::initializer_list<std::uint32_t> operands) {
-    words.push_back(static_cast<std::uint32_t>(operands.size() + 1) << spv::WordCountShift | opcode);
-    words.insert(words.end(), operands);
-}
-
 // Replaces the line numbers of the module by the offsets of its ray query instructions.
-Words markOffsets(std::span<const std::uint32_t> words) {
-    Words marked(words.begin(), words.begin() + kSpirvHeaderWords);
+SpirvWords markOffsets(std::span<const std::uint32_t> words) {
+    SpirvWords marked(words.begin(), words.begin() + kSpirvHeaderWords);
     const std::uint32_t file = marked[kSpirvBoundWord]++;
     bool named = false;
     for (const SpirvInstruction& instruction : SpirvInstructions(words)) {
@@ -36,14 +27,13 @@ Words markOffsets(std::span<const std::uint32_t> words) {
             continue;
         }
         if (!named && !isSpirvPreamble(opcode)) {
-            append(marked, spv::OpString, {file, 0});
+            appendInstruction(marked, spv::OpString, {file, 0});
             named = true;
         }
         if (isRayQueryInstruction(opcode)) {
-            append(marked, spv::OpLine, {file, static_cast<std::uint32_t>(instruction.at), 0});
+            appendInstruction(marked, spv::OpLine, {file, static_cast<std::uint32_t>(instruction.at), 0});
         }
-        const auto source = instruction.words();
-        marked.insert(marked.end(), source.begin(), source.end());
+        appendWords(marked, instruction.words());
     }
     return marked;
 }
@@ -163,7 +153,7 @@ Status checkSpirv(std::span<const std::uint32_t> words) {
 }
 
 std::vector<std::uint32_t> prepareForLint(std::span<const std::uint32_t> words) {
-    Words marked = markOffsets(words);
+    SpirvWords marked = markOffsets(words);
     const std::vector<SpirvFunction> functions = findFunctions(marked);
     if (outgrows(marked, functions)) {
         return marked;
@@ -174,7 +164,7 @@ std::vector<std::uint32_t> prepareForLint(std::span<const std::uint32_t> words) 
     registerPasses(optimizer);
     spvtools::OptimizerOptions options;
     options.set_run_validator(false);  // checkSpirv() has already validated it.
-    Words prepared;
+    SpirvWords prepared;
     // If SPIRV-Tools can't inline a module, it is judged function by function, as are modules that would
     // outgrow memory.
     return optimizer.Run(marked.data(), marked.size(), &prepared, options) ? prepared : marked;
@@ -236,18 +226,6 @@ private:
     std::string source_;
 };
 
-bool hasResult(std::uint32_t opcode) {
-    switch (opcode) {
-        case spv::OpRayQueryInitializeKHR:
-        case spv::OpRayQueryTerminateKHR:
-        case spv::OpRayQueryGenerateIntersectionKHR:
-        case spv::OpRayQueryConfirmIntersectionKHR:
-            return false;
-        default:
-            return isRayQueryInstruction(opcode);
-    }
-}
-
 }  // namespace
 
 bool isRayQueryInstruction(std::uint32_t opcode) {
@@ -293,8 +271,9 @@ std::map<std::size_t, SpirvPlace> findPlaces(std::span<const std::uint32_t> word
             function = names[instruction.operands[1]];
         }
         if (isRayQueryInstruction(opcode) || isTraceInstruction(opcode)) {
+            const bool isNew = opcode == kOpTrianglePositions;
             places[instruction.at] = {function, lines.source(),
-                                      hasResult(opcode) ? instruction.operands[1] : 0, instruction.at};
+                                      isNew ? instruction.operands[1] : instruction.result, instruction.at};
         }
         lines.leave(opcode);
     }

@@ -1,10 +1,7 @@
 #include "spirv/optimize.h"
 
-#include "spirv/finish.h"
 #include "spirv/reader.h"
 
-// This defines HasResultAndType().
-#define SPV_ENABLE_UTILITY_CODE
 #include <glslang/SPIRV/spirv.hpp>
 #include <spirv-tools/libspirv.hpp>
 #include <spirv-tools/optimizer.hpp>
@@ -26,14 +23,10 @@ namespace {
 
 // A hidden extraction has the layout of an extraction by one index: type, result, structure, one literal.
 constexpr spv::Op kHidden = spv::OpArrayLength;
-constexpr std::size_t kHiddenWords = 5;
-
-std::uint32_t head(spv::Op opcode, std::size_t length) {
-    return static_cast<std::uint32_t>(opcode) | static_cast<std::uint32_t>(length << spv::WordCountShift);
-}
+constexpr std::uint32_t kHiddenWords = 5;
 
 // The member types of structures and arrays, and the type of each result.
-struct Types {
+struct MemberTypes {
     std::map<std::uint32_t, std::vector<std::uint32_t>> members;  // an array has one
     std::map<std::uint32_t, std::uint32_t> ofResult;
 
@@ -44,27 +37,22 @@ struct Types {
     }
 };
 
-Types readTypes(std::span<const std::uint32_t> words) {
-    Types types;
+MemberTypes readTypes(std::span<const std::uint32_t> words) {
+    MemberTypes types;
     for (const SpirvInstruction& it : SpirvInstructions(words)) {
         if (it.opcode == spv::OpTypeStruct) {
             types.members[it.operands[0]].assign(it.operands.begin() + 1, it.operands.end());
         } else if (it.opcode == spv::OpTypeArray) {
             types.members[it.operands[0]] = {it.operands[1]};
-        } else {
-            bool hasResult = false;
-            bool hasType = false;
-            spv::HasResultAndType(static_cast<spv::Op>(it.opcode), &hasResult, &hasType);
-            if (hasResult && hasType) {
-                types.ofResult[it.operands[1]] = it.operands[0];
-            }
+        } else if (it.type != 0) {
+            types.ofResult[it.result] = it.type;
         }
     }
     return types;
 }
 
 // Appends the extraction step by step. Each step that extracts from a structure or an array is hidden.
-void appendHidden(std::span<const std::uint32_t> extract, const Types& types, std::uint32_t& bound,
+void appendHidden(std::span<const std::uint32_t> extract, const MemberTypes& types, std::uint32_t& bound,
                   std::vector<std::uint32_t>& words) {
     constexpr std::size_t kFirstIndex = 4;
     std::uint32_t composite = extract[3];
@@ -74,14 +62,13 @@ void appendHidden(std::span<const std::uint32_t> extract, const Types& types, st
         type = types.member(type, extract[index]);
         const bool isLast = index + 1 == extract.size();
         const std::uint32_t result = isLast ? extract[2] : bound++;
-        words.insert(words.end(), {head(kHidden, kHiddenWords), type, result, composite, extract[index]});
+        appendInstruction(words, kHidden, {type, result, composite, extract[index]});
         composite = result;
         ++index;
     }
     if (index < extract.size()) {
-        words.insert(words.end(), {head(spv::OpCompositeExtract, kFirstIndex + extract.size() - index),
-                                   extract[1], extract[2], composite});
-        words.insert(words.end(), extract.begin() + static_cast<std::ptrdiff_t>(index), extract.end());
+        appendInstruction(words, spv::OpCompositeExtract, {extract[1], extract[2], composite},
+                          extract.subspan(index));
     }
 }
 
@@ -106,14 +93,13 @@ bool relaxesPrecision(const std::vector<std::uint32_t>& words) {
 // ignores, and showExtractions() brings them back. No other pass may run in between, because the hidden
 // instructions mean nothing.
 void hideExtractions(std::vector<std::uint32_t>& words) {
-    const Types types = readTypes(words);
+    const MemberTypes types = readTypes(words);
     std::vector<std::uint32_t> hidden(words.begin(), words.begin() + kSpirvHeaderWords);
     for (const SpirvInstruction& it : SpirvInstructions(words)) {
-        const std::span<const std::uint32_t> instruction = it.words();
         if (it.opcode == spv::OpCompositeExtract) {
-            appendHidden(instruction, types, hidden[kSpirvBoundWord], hidden);
+            appendHidden(it.words(), types, hidden[kSpirvBoundWord], hidden);
         } else {
-            hidden.insert(hidden.end(), instruction.begin(), instruction.end());
+            appendWords(hidden, it.words());
         }
     }
     words = std::move(hidden);
@@ -122,7 +108,7 @@ void hideExtractions(std::vector<std::uint32_t>& words) {
 void showExtractions(std::vector<std::uint32_t>& words) {
     for (const SpirvInstruction& it : SpirvInstructions(words)) {
         if (it.opcode == kHidden) {
-            words[it.at] = head(spv::OpCompositeExtract, kHiddenWords);
+            words[it.at] = kHiddenWords << spv::WordCountShift | spv::OpCompositeExtract;
         }
     }
 }
@@ -174,11 +160,7 @@ void registerInlining(spvtools::Optimizer& optimizer, bool keepNames) {
     optimizer.RegisterPerformancePasses();
 }
 
-void registerClearing(spvtools::Optimizer& optimizer, bool keepMembers) {
-    // Features are decided through two masks, so the performance passes uncover more to fold. It is folded
-    // once more.
-    registerFolding(optimizer);
-    optimizer.RegisterPass(spvtools::CreateVectorDCEPass());
+void registerDeadDeclarations(spvtools::Optimizer& optimizer, bool keepMembers) {
     if (!keepMembers) {
         // Every module declares the whole scene. Only the members that the module reads are kept, at their
         // offsets.
@@ -187,6 +169,14 @@ void registerClearing(spvtools::Optimizer& optimizer, bool keepMembers) {
     optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass())
         .RegisterPass(spvtools::CreateEliminateDeadConstantPass())
         .RegisterPass(spvtools::CreateCompactIdsPass());
+}
+
+void registerClearing(spvtools::Optimizer& optimizer, bool keepMembers) {
+    // Features are decided through two masks, so the performance passes uncover more to fold. It is folded
+    // once more.
+    registerFolding(optimizer);
+    optimizer.RegisterPass(spvtools::CreateVectorDCEPass());
+    registerDeadDeclarations(optimizer, keepMembers);
 }
 
 // Runs the passes that `registerInto` registers over `words`.
@@ -348,12 +338,7 @@ Status clearJoined(std::vector<std::uint32_t>& words, const std::string& name, b
     const bool keepMembers = keepNames || tracesByPipeline(words);
     return runPasses(words, name, [&](spvtools::Optimizer& optimizer) {
         optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
-        if (!keepMembers) {
-            optimizer.RegisterPass(spvtools::CreateEliminateDeadMembersPass());
-        }
-        optimizer.RegisterPass(spvtools::CreateAggressiveDCEPass())
-            .RegisterPass(spvtools::CreateEliminateDeadConstantPass())
-            .RegisterPass(spvtools::CreateCompactIdsPass());
+        registerDeadDeclarations(optimizer, keepMembers);
     });
 }
 

@@ -1,12 +1,13 @@
-#include "spirv/finish.h"
-#include "spirv/join/parsed_module.h"
+#include "spirv/optimize.h"
 #include "spirv/reader.h"
 
 #include <glslang/SPIRV/spirv.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -17,8 +18,6 @@ namespace glint::compiler {
 
 namespace {
 
-using Words = std::vector<std::uint32_t>;
-
 constexpr std::uint32_t kWordBytes = 4;
 constexpr std::uint32_t kMostWords = 4;  // of a vector
 // A load may include as many words between those that are needed.
@@ -28,26 +27,16 @@ constexpr std::size_t kMostDistance = 64;
 constexpr std::size_t kPointerOperand = 3;  // word of OpLoad and of OpAccessChain
 constexpr std::size_t kAccessOperand = 4;   // word of OpLoad
 
-void append(Words& words, spv::Op opcode, std::initializer_list<std::uint32_t> operands) {
-    words.push_back(static_cast<std::uint32_t>(operands.size() + 1) << spv::WordCountShift | opcode);
-    words.insert(words.end(), operands);
-}
-
-bool isAccessChain(std::uint32_t opcode) {
-    return opcode == spv::OpAccessChain || opcode == spv::OpInBoundsAccessChain;
-}
-
 // --- Types ----------------------------------------------------------------------------------------
 
 // The types and constants of a module. Types that it lacks are added.
 class Types {
 public:
     explicit Types(const ParsedModule& module) : module_(module), bound_(module.bound()) {
-        for (const ParsedInstruction& global : module.globals) {
-            globals_[global.result] = &global;
-            const std::span<const std::uint32_t> words = module.wordsOf(global);
-            if (global.opcode == spv::OpTypeInt || global.opcode == spv::OpTypeFloat) {
-                scalars_.insert({{words[0] & spv::OpCodeMask, words[2]}, words[1]});
+        for (const SpirvInstruction& global : module.globals) {
+            const std::span<const std::uint32_t> words = global.words();
+            if (global.opcode == spv::OpTypeInt && words[2] == 32 && words[3] == kUnsigned) {
+                unsignedInteger_ = global.result;
             } else if (global.opcode == spv::OpTypeVector) {
                 vectors_[{words[2], words[3]}] = words[1];
             } else if (global.opcode == spv::OpTypePointer && words[2] == kStorage) {
@@ -59,15 +48,14 @@ public:
         }
     }
 
-    static constexpr std::uint32_t kStorage = spv::StorageClassPhysicalStorageBuffer;
-
+    // Types that were added have no words here.
     std::span<const std::uint32_t> operator[](std::uint32_t type) const {
-        const auto found = globals_.find(type);
-        return found == globals_.end() ? std::span<const std::uint32_t>() : module_.wordsOf(*found->second);
+        const SpirvInstruction* const definition = definitionOf(type);
+        return definition == nullptr ? std::span<const std::uint32_t>() : definition->words();
     }
     std::uint32_t opcodeOf(std::uint32_t type) const {
-        const auto found = globals_.find(type);
-        return found == globals_.end() ? std::uint32_t{spv::OpNop} : found->second->opcode;
+        const SpirvInstruction* const definition = definitionOf(type);
+        return definition == nullptr ? std::uint32_t{spv::OpNop} : definition->opcode;
     }
     bool isAddress(std::uint32_t type) const {
         return opcodeOf(type) == spv::OpTypePointer && (*this)[type][2] == kStorage;
@@ -75,19 +63,6 @@ public:
     std::optional<std::uint32_t> constant(std::uint32_t id) const {
         return opcodeOf(id) == spv::OpConstant ? std::optional((*this)[id][3]) : std::nullopt;
     }
-    // Returns the literal of a decoration, of a member if there is one.
-    std::optional<std::uint32_t> decoration(std::uint32_t id, spv::Decoration decoration,
-                                            std::optional<std::uint32_t> member = std::nullopt) const {
-        for (const ParsedInstruction& it : module_.decorations.of(id)) {
-            const std::span<const std::uint32_t> words = module_.wordsOf(it);
-            if (member ? it.opcode == spv::OpMemberDecorate && words[2] == *member && words[3] == decoration
-                       : it.opcode == spv::OpDecorate && words[2] == decoration) {
-                return words.back();
-            }
-        }
-        return std::nullopt;
-    }
-
     // Returns the number of words of a value that loads may be joined to, or 0.
     std::uint32_t wordsOf(std::uint32_t type) const {
         if (isAddress(type)) {
@@ -105,16 +80,11 @@ public:
         return isAddress(type) ? unsignedInteger() : opcode == spv::OpTypeVector ? (*this)[type][2] : type;
     }
     std::uint32_t unsignedInteger() {
-        constexpr std::uint32_t kUnsigned = 0;
-        for (auto [it, end] = scalars_.equal_range({spv::OpTypeInt, 32}); it != end; ++it) {
-            if ((*this)[it->second].empty() || (*this)[it->second][3] == kUnsigned) {
-                return it->second;
-            }
+        if (unsignedInteger_ == 0) {
+            unsignedInteger_ = bound_++;
+            appendInstruction(added_, spv::OpTypeInt, {unsignedInteger_, 32, kUnsigned});
         }
-        const std::uint32_t id = bound_++;
-        append(added_, spv::OpTypeInt, {id, 32, kUnsigned});
-        scalars_.insert({{spv::OpTypeInt, 32}, id});
-        return id;
+        return unsignedInteger_;
     }
     std::uint32_t vectorOf(std::uint32_t scalar, std::uint32_t count) {
         if (count == 1) {
@@ -123,7 +93,7 @@ public:
         std::uint32_t& id = vectors_[{scalar, count}];
         if (id == 0) {
             id = bound_++;
-            append(added_, spv::OpTypeVector, {id, scalar, count});
+            appendInstruction(added_, spv::OpTypeVector, {id, scalar, count});
         }
         return id;
     }
@@ -133,9 +103,9 @@ public:
         std::uint32_t& id = readOnly_[type];
         if (id == 0) {
             id = bound_++;
-            append(decorations_, spv::OpMemberDecorate, {id, 0, spv::DecorationNonWritable});
-            append(decorations_, spv::OpMemberDecorate, {id, 0, spv::DecorationOffset, 0});
-            append(added_, spv::OpTypeStruct, {id, type});
+            appendInstruction(decorations_, spv::OpMemberDecorate, {id, 0, spv::DecorationNonWritable});
+            appendInstruction(decorations_, spv::OpMemberDecorate, {id, 0, spv::DecorationOffset, 0});
+            appendInstruction(added_, spv::OpTypeStruct, {id, type});
         }
         return id;
     }
@@ -143,7 +113,7 @@ public:
         std::uint32_t& id = pointers_[type];
         if (id == 0) {
             id = bound_++;
-            append(added_, spv::OpTypePointer, {id, kStorage, type});
+            appendInstruction(added_, spv::OpTypePointer, {id, kStorage, type});
         }
         return id;
     }
@@ -153,7 +123,7 @@ public:
         std::uint32_t& id = indices_[number];
         if (id == 0) {
             id = bound_++;
-            append(added_, spv::OpConstant, {unsignedInteger(), id, number});
+            appendInstruction(added_, spv::OpConstant, {unsignedInteger(), id, number});
         }
         return id;
     }
@@ -164,24 +134,30 @@ public:
     std::uint32_t bound() const {
         return bound_;
     }
-    const Words& added() const {
+    const SpirvWords& added() const {
         return added_;
     }
-    const Words& decorations() const {
+    const SpirvWords& decorations() const {
         return decorations_;
     }
 
 private:
+    static constexpr std::uint32_t kStorage = spv::StorageClassPhysicalStorageBuffer;
+    static constexpr std::uint32_t kUnsigned = 0;  // of OpTypeInt
+
+    const SpirvInstruction* definitionOf(std::uint32_t id) const {
+        return id < module_.bound() ? module_.definitions[id] : nullptr;
+    }
+
     const ParsedModule& module_;
     std::uint32_t bound_;
-    std::map<std::uint32_t, const ParsedInstruction*> globals_;
-    std::multimap<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> scalars_;  // by opcode and bits
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> vectors_;       // by scalar and count
-    std::map<std::uint32_t, std::uint32_t> pointers_;                                // by pointee
-    std::map<std::uint32_t, std::uint32_t> indices_;                                 // constants by value
-    std::map<std::uint32_t, std::uint32_t> readOnly_;                                // structures by member
-    Words added_;
-    Words decorations_;
+    std::uint32_t unsignedInteger_ = 0;                                         // 0: none yet
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> vectors_;  // by scalar and count
+    std::map<std::uint32_t, std::uint32_t> pointers_;                           // by pointee
+    std::map<std::uint32_t, std::uint32_t> indices_;                            // constants by value
+    std::map<std::uint32_t, std::uint32_t> readOnly_;                           // structures by member
+    SpirvWords added_;
+    SpirvWords decorations_;
 };
 
 // --- Addresses ------------------------------------------------------------------------------------
@@ -200,8 +176,8 @@ struct Place {
 
 // A value that is read from memory: a load, or what is extracted from the load of a structure.
 struct Load {
-    ParsedInstruction load;
-    ParsedInstruction value;          // the same, or the extraction
+    SpirvInstruction load;
+    SpirvInstruction value;           // the same, or the extraction
     std::vector<std::uint32_t> path;  // of the extraction
     Place place;
     std::uint32_t words = 0;
@@ -214,22 +190,18 @@ using Window = std::vector<const Load*>;
 
 class WideLoads {
 public:
-    explicit WideLoads(const ParsedModule& module)
-        : module_(module), types_(module), definitions_(module.bound()), uses_(module.bound()) {
-        for (const ParsedFunction& function : module.functions) {
-            for (const ParsedInstruction& instruction : function.body) {
-                definitions_[instruction.result] = &instruction;
-                for (std::size_t at = instruction.at + 1; at < instruction.at + instruction.length; ++at) {
-                    if (module.isId[at]) {
-                        ++uses_[module.words[at]];  // also of the result itself
-                        noteUser(module.words[at], instruction);
-                    }
+    explicit WideLoads(const ParsedModule& module) : module_(module), types_(module), uses_(module.bound()) {
+        for (const SpirvInstruction& instruction : module.code) {
+            module.forIds(instruction, [&](std::uint32_t id) {
+                ++uses_[id];  // also of the result itself
+                if (instruction.result != id && isComposite(module.typeOf(id))) {
+                    users_[id].push_back(&instruction);
                 }
-            }
+            });
         }
     }
 
-    Words make() {
+    SpirvWords make() {
         for (const ParsedFunction& function : module_.functions) {
             read(function);
         }
@@ -237,25 +209,9 @@ public:
     }
 
 private:
-    struct Edit {
-        Words before;
-        bool removes = false;
-    };
-
-    void noteUser(std::uint32_t id, const ParsedInstruction& user) {
-        if (user.result != id && isComposite(typeOf(id))) {
-            users_[id].push_back(&user);
-        }
-    }
-
     bool isComposite(std::uint32_t type) const {
         const std::uint32_t opcode = types_.opcodeOf(type);
         return opcode == spv::OpTypeStruct || opcode == spv::OpTypeArray;
-    }
-
-    std::uint32_t typeOf(std::uint32_t id) const {
-        const ParsedInstruction* const definition = definitions_[id];
-        return definition != nullptr ? definition->type : 0;
     }
 
     // Returns the ID that stands for an ID.
@@ -264,41 +220,34 @@ private:
         return found == renamed_.end() ? id : found->second;
     }
 
-    // Appends an instruction with the IDs that stand for its own.
-    void copy(const ParsedInstruction& instruction, Words& to) const {
-        for (std::size_t at = instruction.at; at < instruction.at + instruction.length; ++at) {
-            to.push_back(module_.isId[at] ? renamed(module_.words[at]) : module_.words[at]);
-        }
-    }
-
     // Removes an address that nothing else uses.
     void dropUse(std::uint32_t id) {
         constexpr std::uint32_t kOfItself = 1;
-        const ParsedInstruction* const definition = definitions_[id];
+        const SpirvInstruction* const definition = module_.definitions[id];
         if (definition != nullptr && --uses_[id] == kOfItself && isAccessChain(definition->opcode) &&
             !moved_.contains(id) && isNameless(id)) {
             edits_[definition->at].removes = true;
-            dropUse(renamed(module_.words[definition->at + kPointerOperand]));
+            dropUse(renamed(definition->words()[kPointerOperand]));
         }
     }
 
     // Adds an index of an array. What is added to an index is a distance, because no index of memory
     // overflows.
     void addIndex(std::uint32_t index, std::uint32_t stride, Place& place) const {
-        const ParsedInstruction* definition = definitions_[index];
+        const SpirvInstruction* definition = module_.definitions[index];
         while (definition != nullptr && definition->opcode == spv::OpIAdd) {
-            std::uint32_t rest = module_.words[definition->at + 3];
-            std::optional<std::uint32_t> added = types_.constant(module_.words[definition->at + 4]);
+            std::uint32_t rest = definition->words()[3];
+            std::optional<std::uint32_t> added = types_.constant(definition->words()[4]);
             if (!added) {
                 added = types_.constant(rest);
-                rest = module_.words[definition->at + 4];
+                rest = definition->words()[4];
             }
             if (!added) {
                 break;
             }
             place.offset += *added * stride;
             index = rest;
-            definition = definitions_[index];
+            definition = module_.definitions[index];
         }
         if (const std::optional<std::uint32_t> number = types_.constant(index)) {
             place.offset += *number * stride;
@@ -308,25 +257,25 @@ private:
     }
 
     std::uint32_t offsetOf(std::uint32_t structure, std::uint32_t member) const {
-        return types_.decoration(structure, spv::DecorationOffset, member).value_or(0);
+        return module_.decorationOf(structure, spv::DecorationOffset, member).value_or(0);
     }
 
     // Returns the distance of the elements of an array or a vector.
     std::optional<std::uint32_t> strideOf(std::uint32_t type) const {
         return types_.opcodeOf(type) == spv::OpTypeVector
                    ? std::optional(kWordBytes)
-                   : types_.decoration(type, spv::DecorationArrayStride);
+                   : module_.decorationOf(type, spv::DecorationArrayStride);
     }
 
     Place placeOf(std::uint32_t address) const {
-        const ParsedInstruction* const definition = definitions_[address];
+        const SpirvInstruction* const definition = module_.definitions[address];
         if (definition == nullptr || !isAccessChain(definition->opcode) ||
             !types_.isAddress(definition->type)) {
             return {renamed(address), {}};
         }
-        const std::span<const std::uint32_t> chain = module_.wordsOf(*definition);
+        const std::span<const std::uint32_t> chain = definition->words();
         Place place = placeOf(renamed(chain[kPointerOperand]));
-        std::uint32_t type = types_[typeOf(chain[kPointerOperand])][3];
+        std::uint32_t type = types_[module_.typeOf(chain[kPointerOperand])][3];
         for (const std::uint32_t index : chain.subspan(kPointerOperand + 1)) {
             const std::span<const std::uint32_t> words = types_[type];
             const std::optional<std::uint32_t> number = types_.constant(index);
@@ -336,7 +285,7 @@ private:
             } else if (types_.opcodeOf(type) == spv::OpTypeStruct && number) {
                 place.offset += offsetOf(type, *number);
                 place.isReadOnly =
-                    place.isReadOnly || types_.decoration(type, spv::DecorationNonWritable, number);
+                    place.isReadOnly || module_.decorationOf(type, spv::DecorationNonWritable, number);
                 type = words[2 + *number];
             } else {
                 return {renamed(address), {}};
@@ -345,21 +294,21 @@ private:
         return place;
     }
 
-    std::uint32_t addressOf(const ParsedInstruction& load) const {
-        return renamed(module_.words[load.at + kPointerOperand]);
+    std::uint32_t addressOf(const SpirvInstruction& load) const {
+        return renamed(load.words()[kPointerOperand]);
     }
 
-    bool isPlainLoad(const ParsedInstruction& instruction) const {
-        return instruction.opcode == spv::OpLoad && instruction.length == kAccessOperand + 2 &&
-               module_.words[instruction.at + kAccessOperand] == spv::MemoryAccessAlignedMask &&
-               types_.isAddress(typeOf(module_.words[instruction.at + kPointerOperand]));
+    bool isPlainLoad(const SpirvInstruction& instruction) const {
+        return instruction.opcode == spv::OpLoad && instruction.words().size() == kAccessOperand + 2 &&
+               instruction.words()[kAccessOperand] == spv::MemoryAccessAlignedMask &&
+               types_.isAddress(module_.typeOf(instruction.words()[kPointerOperand]));
     }
 
-    bool mayWrite(const ParsedInstruction& instruction) const {
+    bool mayWrite(const SpirvInstruction& instruction) const {
         switch (instruction.opcode) {
             case spv::OpStore:
                 // Other memory holds nothing that these loads read.
-                return types_.isAddress(typeOf(module_.words[instruction.at + 1]));
+                return types_.isAddress(module_.typeOf(instruction.words()[1]));
             case spv::OpCopyMemory:
             case spv::OpFunctionCall:
             case spv::OpControlBarrier:
@@ -376,7 +325,7 @@ private:
     void read(const ParsedFunction& function) {
         std::vector<Load> stretch;
         std::size_t order = 0;
-        for (const ParsedInstruction& instruction : function.body) {
+        for (const SpirvInstruction& instruction : function.body) {
             order_[instruction.result] = ++order;
             if (mayWrite(instruction)) {
                 join(stretch);
@@ -388,7 +337,7 @@ private:
                                 {},
                                 placeOf(address),
                                 types_.wordsOf(instruction.type),
-                                module_.words[instruction.at + kAccessOperand + 1],
+                                instruction.words()[kAccessOperand + 1],
                                 order};
                 if (load.words > 0) {
                     add(load, stretch);
@@ -432,7 +381,7 @@ private:
             return false;
         }
         return std::ranges::all_of(
-            users_.contains(id) ? users_.at(id) : Users(), [&](const ParsedInstruction* user) {
+            users_.contains(id) ? users_.at(id) : Users(), [&](const SpirvInstruction* user) {
                 if (user->opcode == spv::OpCopyLogical) {
                     copies.push_back(user->at);
                     return collectParts(whole, user->result, parts, copies);
@@ -444,7 +393,7 @@ private:
                 part.value = *user;
                 std::uint32_t type = whole.load.type;
                 std::uint32_t offset = 0;
-                for (const std::uint32_t index : module_.wordsOf(*user).subspan(kPointerOperand + 1)) {
+                for (const std::uint32_t index : user->words().subspan(kPointerOperand + 1)) {
                     const std::optional<std::uint32_t> stride = strideOf(type);
                     offset += stride ? *stride * index : offsetOf(type, index);
                     type = types_[type][stride ? 2 : 2 + index];
@@ -518,8 +467,10 @@ private:
     // Appends what makes an address before the instruction of number `order`: instructions that stand behind
     // it and may stand before it. Returns whether that is possible.
     bool hoist(std::uint32_t id, std::size_t order, std::vector<std::uint32_t>& hoisted) const {
-        const ParsedInstruction* const definition = definitions_[id];
-        if (definition == nullptr || order_.at(id) < order ||
+        const SpirvInstruction* const definition = module_.definitions[id];
+        // Only functions have an order.
+        const auto place = order_.find(id);
+        if (place == order_.end() || place->second < order ||
             std::ranges::find(hoisted, id) != hoisted.end()) {
             return true;
         }
@@ -527,14 +478,15 @@ private:
             (!isAccessChain(definition->opcode) && definition->opcode != spv::OpIAdd)) {
             return false;
         }
-        for (std::size_t at = definition->at + kPointerOperand; at < definition->at + definition->length;
-             ++at) {
-            if (module_.isId[at] && !hoist(renamed(module_.words[at]), order, hoisted)) {
-                return false;
-            }
+        bool possible = true;
+        module_.forIds(
+            *definition,
+            [&](std::uint32_t operand) { possible = possible && hoist(renamed(operand), order, hoisted); },
+            kPointerOperand);
+        if (possible) {
+            hoisted.push_back(id);
         }
-        hoisted.push_back(id);
-        return true;
+        return possible;
     }
 
     void replace(Window window) {
@@ -550,11 +502,12 @@ private:
             replace({window.begin() + 1, window.end()});
             return;
         }
-        Words& before = edits_[first.load.at].before;
+        SpirvWords& before = edits_[first.load.at].before;
         for (const std::uint32_t id : hoisted) {
-            copy(*definitions_[id], before);
+            module_.append(
+                *module_.definitions[id], [this](std::uint32_t it) { return renamed(it); }, before);
             moved_.insert(id);
-            edits_[definitions_[id]->at].removes = true;
+            edits_[module_.definitions[id]->at].removes = true;
             order_[id] = first.order - 1;
         }
         std::uint32_t count = 0;
@@ -569,7 +522,8 @@ private:
         const std::uint32_t type = isAlone ? lowest.value.type : types_.vectorOf(scalar, count);
         const std::uint32_t value = isAlone ? lowest.value.result : types_.newId();
         const std::uint32_t address = addressFor(lowest, type, before);
-        append(before, spv::OpLoad, {type, value, address, spv::MemoryAccessAlignedMask, lowest.alignment});
+        appendInstruction(before, spv::OpLoad,
+                          {type, value, address, spv::MemoryAccessAlignedMask, lowest.alignment});
         for (const Load* load : window) {
             edits_[load->value.at].removes = true;
             if (load != &lowest) {
@@ -586,7 +540,7 @@ private:
     }
 
     // Returns the address of a value as that of a value of another type.
-    std::uint32_t addressFor(const Load& load, std::uint32_t type, Words& before) {
+    std::uint32_t addressFor(const Load& load, std::uint32_t type, SpirvWords& before) {
         std::uint32_t address = addressOf(load.load);
         if (!load.path.empty()) {
             const std::uint32_t part = types_.newId();
@@ -594,10 +548,8 @@ private:
             for (const std::uint32_t index : load.path) {
                 indices.push_back(types_.index(index));
             }
-            before.push_back(static_cast<std::uint32_t>(4 + indices.size()) << spv::WordCountShift |
-                             spv::OpAccessChain);
-            before.insert(before.end(), {types_.addressOf(load.value.type), part, address});
-            before.insert(before.end(), indices.begin(), indices.end());
+            appendInstruction(before, spv::OpAccessChain, {types_.addressOf(load.value.type), part, address},
+                              indices);
             address = part;
         }
         if (type == load.value.type) {
@@ -606,74 +558,55 @@ private:
         const std::uint32_t cast = types_.newId();
         const std::uint32_t pointer = types_.addressOf(type);
         if (!load.place.isReadOnly) {
-            append(before, spv::OpBitcast, {pointer, cast, address});
+            appendInstruction(before, spv::OpBitcast, {pointer, cast, address});
             return cast;
         }
         const std::uint32_t member = types_.newId();
-        append(before, spv::OpBitcast, {types_.addressOf(types_.readOnlyOf(type)), cast, address});
-        append(before, spv::OpAccessChain, {pointer, member, cast, types_.index(0)});
+        appendInstruction(before, spv::OpBitcast, {types_.addressOf(types_.readOnlyOf(type)), cast, address});
+        appendInstruction(before, spv::OpAccessChain, {pointer, member, cast, types_.index(0)});
         return member;
     }
 
     // Takes the value of a load out of a vector, from component `begin` on.
     void take(const Load& load, std::uint32_t value, std::uint32_t scalar, std::uint32_t begin) {
         // Parts of a structure may be extracted in another block than others of the same value.
-        Edit& edit = edits_[load.load.at];
+        SpirvEdit& edit = edits_[load.load.at];
         const std::uint32_t type = load.value.type;
         const std::uint32_t part = types_.vectorOf(scalar, load.words);
         const bool converts = part != type;
         const std::uint32_t id = converts ? types_.newId() : load.value.result;
         if (load.words == 1) {
-            append(edit.before, spv::OpCompositeExtract, {part, id, value, begin});
+            appendInstruction(edit.before, spv::OpCompositeExtract, {part, id, value, begin});
         } else {
-            edit.before.push_back((5 + load.words) << spv::WordCountShift | spv::OpVectorShuffle);
-            edit.before.insert(edit.before.end(), {part, id, value, value});
-            for (std::uint32_t i = 0; i < load.words; ++i) {
-                edit.before.push_back(begin + i);
-            }
+            std::array<std::uint32_t, kMostWords> components{};
+            std::iota(components.begin(), components.end(), begin);
+            appendInstruction(edit.before, spv::OpVectorShuffle, {part, id, value, value},
+                              std::span(components).first(load.words));
         }
         if (converts) {
-            append(edit.before, spv::OpBitcast, {type, load.value.result, id});
+            appendInstruction(edit.before, spv::OpBitcast, {type, load.value.result, id});
         }
     }
 
-    Words write() {
-        Words to;
-        to.reserve(module_.words.size());
-        std::size_t from = 0;
-        const auto keepUntil = [&](std::size_t end) {
-            for (; from < end; ++from) {
-                to.push_back(module_.isId[from] ? renamed(module_.words[from]) : module_.words[from]);
-            }
-        };
+    SpirvWords write() {
         // Decorations come before types (SPIR-V 2.4).
-        const auto type = std::ranges::find_if(module_.globals, [](const ParsedInstruction& it) {
+        const auto type = std::ranges::find_if(module_.globals, [](const SpirvInstruction& it) {
             return it.opcode >= spv::OpTypeVoid && it.opcode <= spv::OpTypeForwardPointer;
         });
-        keepUntil(type->at);
-        to.insert(to.end(), types_.decorations().begin(), types_.decorations().end());
-        keepUntil(module_.functions.front().body.front().at);
-        to.insert(to.end(), types_.added().begin(), types_.added().end());
-        for (const auto& [at, edit] : edits_) {
-            keepUntil(at);
-            to.insert(to.end(), edit.before.begin(), edit.before.end());
-            from += edit.removes ? module_.words[at] >> spv::WordCountShift : 0;
-        }
-        keepUntil(module_.words.size());
-        to[kSpirvBoundWord] = types_.bound();
-        return to;
+        edits_[type->at].before = types_.decorations();
+        edits_[module_.code.front().at].before = types_.added();
+        return edited(module_, edits_, renamed_, types_.bound());
     }
 
     const ParsedModule& module_;
     Types types_;
-    std::vector<const ParsedInstruction*> definitions_;  // by ID; of functions
-    std::vector<std::uint32_t> uses_;                    // by ID; in functions
-    using Users = std::vector<const ParsedInstruction*>;
+    std::vector<std::uint32_t> uses_;  // by ID; in functions
+    using Users = std::vector<const SpirvInstruction*>;
     std::map<std::uint32_t, Users> users_;            // of structures and arrays, by ID
     std::map<std::uint32_t, std::size_t> order_;      // by ID: number of the instruction in its function
     std::map<std::uint32_t, std::uint32_t> renamed_;  // IDs of loads that earlier ones stand for
     std::set<std::uint32_t> moved_;                   // IDs whose instructions stand earlier
-    std::map<std::size_t, Edit> edits_;               // by the word of an instruction
+    SpirvEdits edits_;
 };
 
 }  // namespace
@@ -681,7 +614,7 @@ private:
 Status widenLoads(std::vector<std::uint32_t>& words, const std::string& name) {
     GLINT_TRY(const ParsedModule module, parseModule(words, name));
     if (!module.functions.empty()) {
-        Words wide = WideLoads(module).make();
+        SpirvWords wide = WideLoads(module).make();
         words = std::move(wide);
     }
     return okStatus();

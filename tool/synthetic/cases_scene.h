@@ -7,7 +7,6 @@
 #pragma once
 
 #include "gltf/scene.h"
-#include "materials/material.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -53,35 +52,11 @@ std::string_view nameOf(Shares shares);        // "uniform"
 // MergePolicy::None it has exactly `cases` keys and so as many cases; the floor has the key of one of them.
 gltf::Scene makeCasesScene(const CasesOptions& options);
 
-struct CaseMaterial {
-    materials::Material material;
-    // The attributes of its primitives, besides positions and texture coordinates.
-    bool normals = false;
-    bool tangents = false;
-    bool colors = false;
-};
-
-// Returns `count` materials. Eight switches make 256 sets. Sets with half of the switches come first, and
-// each set is followed by the set that has exactly the other switches. So any even number of cases has each
-// switch in half of them, and the average work does not grow with the number of cases.
-std::vector<CaseMaterial> makeCaseMaterials(Cost cost, int count);
-
-// Returns a material with the same key whose lobes and textures change next to nothing: a mirror, or a white
-// surface that scatters.
-CaseMaterial makeFloorMaterial(const CaseMaterial& like, Coherence coherence);
-
-// Heights in metres above the floor, which is at height 0: the camera's and the ceiling's.
-inline constexpr double kCameraHeight = 1.0;
-inline constexpr double kCeilingHeight = 3.0;
-// The camera's vertical field of view, in radians.
-inline constexpr double kFieldOfView = 1.0;
-
 // The half size of the camera's view at a distance, from the middle to the edge.
 struct Extent {
     double x = 0.0;
     double z = 0.0;
 };
-Extent viewExtent(double distance, double aspect);
 
 // The ceiling. It is parallel to the floor, around the vertical axis.
 struct Ceiling {
@@ -101,5 +76,16 @@ Ceiling makeCeiling(const CasesOptions& options);
 
 // Returns the share that each case should have, largest first. They add up to 1.
 std::vector<double> sharesOf(const CasesOptions& options);
+
+// Returns by how much two hits of 32 successive rays of the list are likelier of the same case than any two
+// hits: (a - r) / (1 - r), where a is that chance and r is the sum of squared shares. 0 means random order; 1
+// means that all hits are alike, or that there is one case. The form is that of Cohen's kappa ("A coefficient
+// of agreement for nominal scales", 1960).
+//
+// It is computed from the geometry, not read from a device. Rays of a mirror follow the law of reflection
+// through the middle of each pixel; other rays use random numbers of this function's own. 32 rays in a row
+// are a block of 8 x 4 pixels, as a subgroup of 32 appends them. In large pictures only some of the blocks
+// are evaluated.
+double coherentShareOf(const CasesOptions& options, std::uint32_t width, std::uint32_t height);
 
 }  // namespace glint::synthetic

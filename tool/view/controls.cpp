@@ -14,12 +14,13 @@
 
 namespace glint::view {
 
-void Controls::mark(const std::string& name) {
+bool Controls::mark(const std::string& name, bool used) {
     const ImVec2 min = ImGui::GetItemRectMin();
     const ImVec2 max = ImGui::GetItemRectMax();
     const ImVec2 clipMin = ImGui::GetWindowDrawList()->GetClipRectMin();
     const ImVec2 clipMax = ImGui::GetWindowDrawList()->GetClipRectMax();
     current_[name] = {{min.x, min.y}, {max.x, max.y}, {clipMin.x, clipMin.y}, {clipMax.x, clipMax.y}};
+    return used;
 }
 
 std::optional<Controls::Place> Controls::find(const std::string& name) const {
@@ -45,6 +46,12 @@ void fittedText(const std::string& text) {
         shown = --length > 0 ? text.substr(0, length) + "..." : std::string();
     }
     ImGui::TextUnformatted(shown.c_str());
+}
+
+void coloredText(const std::array<float, 3>& color, const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, {color[0], color[1], color[2], 1.0F});
+    ImGui::TextWrapped("%s", text.c_str());
+    ImGui::PopStyleColor();
 }
 
 void tip(const std::string& text) {
@@ -176,20 +183,19 @@ std::optional<std::string> SettingsPanel::drawList(Controls& controls, const Sho
         const bool isChosen = std::ranges::find(chosen, word.name) != chosen.end();
         const ImGuiSelectableFlags flags =
             isList ? ImGuiSelectableFlags_DontClosePopups : ImGuiSelectableFlags_None;
-        if (ImGui::Selectable(word.name.c_str(), isChosen, flags)) {
+        if (controls.mark(name + "=" + word.name, ImGui::Selectable(word.name.c_str(), isChosen, flags))) {
             next = isList ? toggled(shown.present, word.name, shown.words) : word.name;
         }
-        controls.mark(name + "=" + word.name);
         tip(word.what.empty() ? word.name : word.what);
     }
     if (shown.isNumber) {
         std::string typed = isWordOf(shown.words, shown.typed) ? "" : shown.typed;
         ImGui::SetNextItemWidth(ImGui::GetFontSize() * 6.0F);
-        if (ImGui::InputText("number", &typed, ImGuiInputTextFlags_EnterReturnsTrue)) {
+        if (controls.mark(name + "=",
+                          ImGui::InputText("number", &typed, ImGuiInputTextFlags_EnterReturnsTrue))) {
             next = typed;
             ImGui::CloseCurrentPopup();
         }
-        controls.mark(name + "=");
     }
     closeByEscape();
     ImGui::EndCombo();
@@ -201,10 +207,9 @@ std::optional<std::string> SettingsPanel::drawValue(Controls& controls, const Sh
     std::optional<std::string> next;
     if (row.values.form == ValueForm::Switch) {
         bool on = shown.present == "on";
-        if (ImGui::Checkbox(shown.label.c_str(), &on)) {
+        if (controls.mark(shown.name, ImGui::Checkbox(shown.label.c_str(), &on))) {
             next = on ? "on" : "off";
         }
-        controls.mark(shown.name);
         return next;
     }
     if (row.values.form != ValueForm::Text && !(shown.isNumber && shown.words.empty())) {
@@ -273,10 +278,9 @@ bool SettingsPanel::drawRow(Controls& controls, const Descriptor& row, compiler:
     ImGui::EndDisabled();
     if (differs && locked.empty()) {
         ImGui::SameLine(0.0F, ImGui::GetStyle().ItemSpacing.x);
-        if (ImGui::Button(("x" + shown.label).c_str(), {resetWidth, 0.0F})) {
+        if (controls.mark("reset:" + name, ImGui::Button(("x" + shown.label).c_str(), {resetWidth, 0.0F}))) {
             next = row.values.text(kUsual);
         }
-        controls.mark("reset:" + name);
         tip("back to " + row.values.text(kUsual));
     }
     return next && *next != present && take(row, *next, settings);
@@ -286,12 +290,9 @@ bool SettingsPanel::draw(Controls& controls, compiler::Settings& settings,
                          const compiler::BenchFacts& facts) {
     bool changed = false;
     ImGui::SetNextItemWidth(-1.0F);
-    ImGui::InputTextWithHint("##filter", "find a setting", &filter_);
-    controls.mark("find");
+    controls.mark("find", ImGui::InputTextWithHint("##filter", "find a setting", &filter_));
     if (!complaint_.empty()) {
-        ImGui::PushStyleColor(ImGuiCol_Text, {1.0F, 0.55F, 0.35F, 1.0F});
-        ImGui::TextWrapped("%s", complaint_.c_str());
-        ImGui::PopStyleColor();
+        coloredText(kErrorColor, complaint_);
     }
     std::vector<std::string_view> groups;
     for (const Descriptor& row : compiler::settingsTable()) {

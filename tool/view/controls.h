@@ -29,8 +29,8 @@ public:
         places_.swap(current_);
         current_.clear();
     }
-    // Notes the place of ImGui's last item.
-    void mark(const std::string& name);
+    // Notes the place of ImGui's last item. Returns `used`, which is what the item has returned.
+    bool mark(const std::string& name, bool used = false);
     // Returns the place in the last frame, or no value if the control was not there.
     std::optional<Place> find(const std::string& name) const;
 
@@ -44,6 +44,10 @@ void closeByEscape();
 
 // Draws a text that ends with dots where the line has no room for it.
 void fittedText(const std::string& text);
+
+// Draws a text over as many lines as it needs, in a colour from 0 to 1.
+void coloredText(const std::array<float, 3>& color, const std::string& text);
+inline constexpr std::array<float, 3> kErrorColor{1.0F, 0.55F, 0.35F};
 
 // Shows a text while the mouse is over ImGui's last item.
 void tip(const std::string& text);

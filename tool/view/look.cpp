@@ -258,10 +258,9 @@ std::optional<Look> drawLooks(Controls& controls, const Build& build, const Look
                               const measure::View* shown, const std::string& note) {
     std::optional<Look> clicked;
     const auto row = [&](const Look& look, const std::string& label, const std::string& name) {
-        if (ImGui::Selectable((label + "##" + name).c_str(), look == chosen)) {
+        if (controls.mark(name, ImGui::Selectable((label + "##" + name).c_str(), look == chosen))) {
             clicked = look;
         }
-        controls.mark(name);
         tip(describe(look));
     };
     // The list keeps its place under the mouse when a legend comes below it.
@@ -286,9 +285,7 @@ std::optional<Look> drawLooks(Controls& controls, const Build& build, const Look
     ImGui::TextColored({0.55F, 0.80F, 1.0F, 1.0F}, "%s", chosen.name().c_str());
     ImGui::TextWrapped("%s", describe(chosen).c_str());
     if (!note.empty()) {
-        ImGui::PushStyleColor(ImGuiCol_Text, {1.0F, 0.75F, 0.45F, 1.0F});
-        ImGui::TextWrapped("%s", note.c_str());
-        ImGui::PopStyleColor();
+        coloredText({1.0F, 0.75F, 0.45F}, note);
     }
     if (shown != nullptr) {
         drawLegend(*shown, chosen);

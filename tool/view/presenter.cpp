@@ -49,11 +49,8 @@ Result<std::unique_ptr<Presenter>> Presenter::create(Context& context, GLFWwindo
         return surfaceError(context.deviceName() + " can't show pictures in the window");
     }
     made->format_ = *format;
-    for (const Status& status : {made->createRenderPass(), made->createFrames()}) {
-        if (!status) {
-            return status.error();
-        }
-    }
+    GLINT_TRY_DO(made->createRenderPass());
+    GLINT_TRY_DO(made->createFrames());
     return made;
 }
 
@@ -402,33 +399,11 @@ Status Interface::start(GLFWwindow* window, const Presenter& presenter) {
 
 #if IMGUI_VERSION_NUM < 19000
     // Older backends leave the upload of the font to the program.
-    VkCommandPoolCreateInfo commandPool{};
-    commandPool.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-    commandPool.queueFamilyIndex = handles.queueFamily;
-    VkCommandPool once = VK_NULL_HANDLE;
-    GLINT_TRY_DO(
-        checkCall("vkCreateCommandPool", vkCreateCommandPool(handles.device, &commandPool, nullptr, &once)));
-    VkCommandBufferAllocateInfo allocation{};
-    allocation.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-    allocation.commandPool = once;
-    allocation.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-    allocation.commandBufferCount = 1;
-    VkCommandBuffer commands = VK_NULL_HANDLE;
-    vkAllocateCommandBuffers(handles.device, &allocation, &commands);
-    VkCommandBufferBeginInfo begin{};
-    begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-    begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-    vkBeginCommandBuffer(commands, &begin);
-    ImGui_ImplVulkan_CreateFontsTexture(commands);
-    vkEndCommandBuffer(commands);
-    VkSubmitInfo submit{};
-    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-    submit.commandBufferCount = 1;
-    submit.pCommandBuffers = &commands;
-    vkQueueSubmit(handles.queue, 1, &submit, VK_NULL_HANDLE);
+    GLINT_TRY(auto commands, OneTimeCommands::create(context_));
+    ImGui_ImplVulkan_CreateFontsTexture(commands.handle());
+    GLINT_TRY_DO(commands.submit(context_));
     vkQueueWaitIdle(handles.queue);
     ImGui_ImplVulkan_DestroyFontUploadObjects();
-    vkDestroyCommandPool(handles.device, once, nullptr);
 #endif
     return okStatus();
 }

@@ -61,9 +61,6 @@ public:
     VkRenderPass renderPass() const {
         return renderPass_;
     }
-    std::uint32_t imageCount() const {
-        return static_cast<std::uint32_t>(images_.size());
-    }
 
 private:
     Presenter(Context& context, GLFWwindow* window) : context_(context), window_(window) {}

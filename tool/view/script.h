@@ -7,9 +7,7 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -60,97 +58,33 @@ struct ScriptHost {
     std::function<void(const std::string&)> detail;  // says which step begins
 };
 
-class Script {
-public:
-    // Reads the steps of a file. A line has a word and its arguments; # begins a comment.
-    //   wait complete            until nothing is made any more and all samples are there
-    //   wait failed              until an error is shown
-    //   wait frames N            until N frames were drawn
-    //   wait control NAME        until it is there
-    //   pause SECONDS
-    //   key NAME...              presses keys of X together: key Tab, key ctrl+a
-    //   hold NAME SECONDS        keeps a key pressed
-    //   type TEXT
-    //   move X Y                 in window coordinates
-    //   click X Y | click NAME   a control by its name
-    //   drag X Y X Y [BUTTON]    1 left, 2 middle, 3 right
-    //   wheel N                  up, or down below 0
-    //   choose NAME WORD...      opens a list and clicks words
-    //   number NAME TEXT         types a number into a slider
-    //   enter NAME TEXT          types a text
-    //   size W H | minimise | restore
-    //   copy FROM TO             replaces a file
-    //   drop FILE
-    //   picture FILE.png         what the X server shows of the window
-    //   report FILE.json
-    //   quit
-    // Errors: those of reading the file, and "window-script" for a line that is none of these.
-    static Result<std::unique_ptr<Script>> read(const std::string& file, const ScriptHost& host);
-    Script(const Script&) = delete;
-    Script& operator=(const Script&) = delete;
-
-    // Goes on, between two frames. Error "window-script" if a step or a part of it fails or takes longer than
-    // three minutes.
-    Status step();
-    bool isDone() const;
-
-    // A part of a step. Returns whether it is complete.
-    using Act = std::function<Result<bool>()>;
-
-private:
-    Script(std::string file, const ScriptHost& host);
-    Status parse(const std::string& text);
-    // A line of the file.
-    struct Line {
-        std::vector<std::string> words;
-        std::vector<double> numbers;  // among the words behind the first
-        std::string rest;             // the text behind the second word, with its blanks
-
-        // The text behind the first word.
-        std::string text() const {
-            return words[1] + (rest.empty() ? "" : " " + rest);
-        }
-    };
-    // These add the parts of a step. They return false for lines that are none.
-    bool addInput(const Line& line);
-    bool addOther(const Line& line);
-    bool addWait(const Line& line);
-    void addKeys(const Line& line);
-    void addDrag(const std::vector<double>& numbers);
-    void addWheel(double turns);
-    void addChoice(const std::vector<std::string>& words);
-    void addText(const std::string& control, const std::string& text, bool isNumber);
-    void addSize(int width, int height);
-    void addMinimising(bool minimises);
-    void addCopy(const std::string& from, const std::string& to);
-    void addPicture(const std::string& file);
-    // These add single parts.
-    void act(Act act);
-    void perform(const std::function<void()>& work);
-    void waitUntil(const std::function<bool()>& test);
-    void pause(double seconds);
-    void click();
-    void frames(std::uint64_t count);
-    void moveTo(double x, double y);
-    void button(unsigned number, bool down);
-    void key(const std::string& name, bool down);
-    void keys(const std::vector<std::string>& names);
-    void typeText(const std::string& text);
-    void reveal(const std::string& control);
-    void clickControl(const std::string& control, bool withControlKey = false);
-
-    std::string file_;
-    ScriptHost host_;
-    X11Input input_;
-    struct Step {
-        int line = 0;
-        Act act;
-    };
-    std::deque<Step> steps_;
-    int line_ = 0;   // the line that is being parsed
-    int shown_ = 0;  // the line that runs
-    std::vector<std::string> lines_;
-    std::int64_t began_ = 0;
-};
+// Reads the steps of a file. A line has a word and its arguments; # begins a comment.
+//   wait complete            until nothing is made any more and all samples are there
+//   wait failed              until an error is shown
+//   wait frames N            until N frames were drawn
+//   wait control NAME        until it is there
+//   pause SECONDS
+//   key NAME...              presses keys of X together: key Tab, key ctrl+a
+//   hold NAME SECONDS        keeps a key pressed
+//   type TEXT
+//   move X Y                 in window coordinates
+//   click X Y | click NAME   a control by its name
+//   drag X Y X Y [BUTTON]    1 left, 2 middle, 3 right
+//   wheel N                  up, or down below 0
+//   choose NAME WORD...      opens a list and clicks words
+//   number NAME TEXT         types a number into a slider
+//   enter NAME TEXT          types a text
+//   size W H | minimise | restore
+//   copy FROM TO             replaces a file
+//   drop FILE
+//   picture FILE.png         what the X server shows of the window
+//   report FILE.json
+//   quit
+// Errors: those of reading the file, and "window-script" for a line that is none of these.
+//
+// The result is to be called between two frames. It goes on with the steps and returns whether all are done.
+// Error "window-script" if a step or a part of it fails or takes longer than three minutes. The members of
+// `host` must outlive it.
+Result<std::function<Result<bool>()>> readScript(const std::string& file, const ScriptHost& host);
 
 }  // namespace glint::view

@@ -1,6 +1,5 @@
-#include "image/hdr.h"
-
 #include "image/image_file.h"
+
 #include "support/hdr_writer.h"
 #include "support/must.h"
 

@@ -1,8 +1,7 @@
 // Tests shaders that are compiled in parts and joined.
-#include "spirv/join/join.h"
+#include "spirv/join.h"
 
 #include "spirv/compiler.h"
-#include "spirv/join/parsed_module.h"
 #include "spirv/optimize.h"
 #include "spirv/reader.h"
 #include "spirv/statistics.h"

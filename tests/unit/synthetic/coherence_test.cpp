@@ -1,5 +1,5 @@
 // Tests the measure of coherence at its extremes, and that it orders scenes as intended.
-#include "synthetic/coherence.h"
+#include "synthetic/cases_scene.h"
 
 #include <gtest/gtest.h>
 

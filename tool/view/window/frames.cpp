@@ -67,11 +67,7 @@ void Window::startCamera() {
         orbitDistance_ = distanceToMiddle(choice->view);
     }
     camera_.start(choice->view, one.wanted.camera, orbitDistance_);
-    for (std::unique_ptr<Side>& each : sides_) {
-        if (each) {
-            each->picture.restart();
-        }
-    }
+    restartPictures();
 }
 
 void Window::animate(double seconds) {
@@ -209,11 +205,8 @@ Status Window::frame() {
     drawInterface();
     interface_->end();
     animate(seconds);
-    for (const Status& status : {fitSize(), applyPose()}) {
-        if (!status) {
-            return status;
-        }
-    }
+    GLINT_TRY_DO(fitSize());
+    GLINT_TRY_DO(applyPose());
     if (cameraIsNew_) {
         startCamera();
     }

@@ -74,26 +74,22 @@ void Window::openFile(const std::string& file) {
             selected_ = -1;
         }
         scene_ = file;
-        for (std::unique_ptr<Side>& one : sides_) {
-            if (one) {
-                opening_->wanted.push_back(one->wanted);
-                one->wanted.camera.clear();
-                one->wanted.package.clear();
-                one->wanted.sceneInFile.clear();
-                one->wanted.variant.clear();
-            }
-        }
+        forSides([this](Side& one) {
+            opening_->wanted.push_back(one.wanted);
+            one.wanted.camera.clear();
+            one.wanted.package.clear();
+            one.wanted.sceneInFile.clear();
+            one.wanted.variant.clear();
+        });
         poses_ = plays_ = false;
         time_ = 0.0;
         showTitle();
         say("opening " + file);
     } else if (extension == ".hdr" || extension == ".exr") {
-        for (std::unique_ptr<Side>& one : sides_) {
-            if (one) {
-                one->wanted.environment = file;
-                one->wanted.sky.reset();
-            }
-        }
+        forSides([&](Side& one) {
+            one.wanted.environment = file;
+            one.wanted.sky.reset();
+        });
         exposureIsNew_ = autoExposure_;
         say("lighting the scene by " + file);
     } else {
@@ -101,11 +97,7 @@ void Window::openFile(const std::string& file) {
                        "drop a .gltf, .glb, .hdr or .exr file"));
         return;
     }
-    for (std::size_t i = 0; i < kPictures; ++i) {
-        if (sides_[i]) {
-            order(i);
-        }
-    }
+    orderAll();
 }
 
 // Goes back to the scene that is shown, because another one could not be opened.
@@ -134,6 +126,11 @@ void Window::showTitle() {
     glfwSetWindowTitle(window_, ("glint view: " + scene_).c_str());
 }
 
+void Window::restartPictures() {
+    forSides([](Side& one) { one.picture.restart(); });
+    wakes_ = 4;
+}
+
 void Window::fly(double seconds) {
     const auto isDown = [this](int key) { return glfwGetKey(window_, key) == GLFW_PRESS ? 1.0 : 0.0; };
     if (isDown(GLFW_KEY_LEFT_CONTROL) + isDown(GLFW_KEY_RIGHT_CONTROL) > 0.0) {
@@ -148,12 +145,7 @@ void Window::fly(double seconds) {
     constexpr double kFast = 4.0;
     const double factor = isDown(GLFW_KEY_LEFT_SHIFT) > 0.0 ? kFast : 1.0;
     camera_.fly(right, up, forward, factor * seconds);
-    for (std::unique_ptr<Side>& one : sides_) {
-        if (one) {
-            one->picture.restart();
-        }
-    }
-    wakes_ = 4;
+    restartPictures();
 }
 
 void Window::handleInput(double seconds) {
@@ -181,21 +173,13 @@ void Window::handleMouse() {
     const double width = area_.width / static_cast<double>(pixelScale_);
     const double height = area_.height / static_cast<double>(pixelScale_);
     const bool isInside = at[0] >= 0.0 && at[1] >= 0.0 && at[0] < width && at[1] < height;
-    const auto restart = [this] {
-        for (std::unique_ptr<Side>& one : sides_) {
-            if (one) {
-                one->picture.restart();
-            }
-        }
-        wakes_ = 4;
-    };
     if (isInside && scrolled_ != 0.0 && !io.WantCaptureMouse) {
         if (flies_) {
             camera_.changeSpeed(std::pow(1.25, scrolled_));
             say(fmt::format("flies {:.3g} times the target's distance a second", camera_.speed()));
         } else {
             camera_.approach(1.0 - std::pow(1.0 - kWheelStep, scrolled_));
-            restart();
+            restartPictures();
         }
     }
     if (!drags_) {
@@ -237,7 +221,7 @@ void Window::handleMouse() {
     } else {
         camera_.orbit(right, down);
     }
-    restart();
+    restartPictures();
 }
 
 void Window::handleKey(const KeyPress& press) {
@@ -326,11 +310,7 @@ void Window::nextCamera() {
     const std::size_t count = sides_[0]->picture.scene().cameras.size();
     cameraIndex_ = (cameraIndex_ + 1) % (count + 1);
     const std::string name = cameraIndex_ == count ? "auto" : std::to_string(cameraIndex_);
-    for (std::unique_ptr<Side>& one : sides_) {
-        if (one) {
-            one->wanted.camera = name;
-        }
-    }
+    forSides([&](Side& one) { one.wanted.camera = name; });
     orbitDistance_ = 0.0;
     cameraIsNew_ = true;
     say("camera " + name);

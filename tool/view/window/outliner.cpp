@@ -47,11 +47,11 @@ bool dragNumbers(Controls& controls, const std::string& name, std::span<const ch
         const std::string control = name + "." + parts[i];
         auto number = static_cast<float>(numbers[i]);
         ImGui::SetNextItemWidth(std::max(width, 1.0F));
-        if (ImGui::DragFloat(("##" + control).c_str(), &number, speed, 0.0F, 0.0F, format)) {
+        if (controls.mark(control,
+                          ImGui::DragFloat(("##" + control).c_str(), &number, speed, 0.0F, 0.0F, format))) {
             numbers[i] = number;
             changed = true;
         }
-        controls.mark(control);
         ImGui::SameLine();
     }
     ImGui::TextUnformatted(name.substr(name.rfind('.') + 1).c_str());
@@ -111,13 +111,11 @@ void Window::dropEdits(const Diagnostic& error) {
         return;
     }
     edits_.resize(kept);
-    for (std::unique_ptr<Side>& one : sides_) {
-        if (one) {
-            if (const Status left = one->picture.edit(edits_, kept, presenter_->submitted() + 1); !left) {
-                report(left.error());
-            }
+    forSides([&](Side& one) {
+        if (const Status left = one.picture.edit(edits_, kept, presenter_->submitted() + 1); !left) {
+            report(left.error());
         }
-    }
+    });
     say("the edit was not made: " + error.message);
 }
 
@@ -182,10 +180,9 @@ void Window::drawNode(const gltf::Scene& scene, const std::vector<std::vector<in
                           ImGui::GetStyleColorVec4(node.shown ? ImGuiCol_Text : ImGuiCol_TextDisabled));
     const bool isOpen = ImGui::TreeNodeEx(label.c_str(), flags);
     ImGui::PopStyleColor();
-    if (ImGui::IsItemClicked() && !ImGui::IsItemToggledOpen()) {
+    if (controls_.mark("node " + titleOf(node), ImGui::IsItemClicked() && !ImGui::IsItemToggledOpen())) {
         selected_ = index;
     }
-    controls_.mark("node " + titleOf(node));
     if (isOpen) {
         for (const int child : below) {
             drawNode(scene, children, child);
@@ -270,12 +267,13 @@ void Window::drawMaterials(const gltf::Scene& scene) {
         }
         for (int material = 0; material < static_cast<int>(scene.materials.size()); ++material) {
             const std::string title = titleOf(scene, material);
-            if (ImGui::Selectable(fmt::format("{}##{}", title, material).c_str(), material == present)) {
+            if (controls_.mark(
+                    name + "=" + title,
+                    ImGui::Selectable(fmt::format("{}##{}", title, material).c_str(), material == present))) {
                 chosen = Edit{.kind = EditKind::Material, .node = session::nodeLabel(scene, selected_)};
                 chosen->material = std::to_string(material);
                 chosen->primitive = static_cast<std::uint32_t>(i);
             }
-            controls_.mark(name + "=" + title);
         }
         closeByEscape();
         ImGui::EndCombo();
@@ -315,10 +313,10 @@ void Window::drawVariants(const gltf::Scene& scene) {
     const std::string present = scene.variant.empty() ? "none" : scene.variant;
     if (ImGui::BeginCombo("variant##scene", present.c_str())) {
         const auto word = [&](const std::string& title, const std::string& variant) {
-            if (ImGui::Selectable(title.c_str(), variant == scene.variant)) {
+            if (controls_.mark("scene.variant=" + title,
+                               ImGui::Selectable(title.c_str(), variant == scene.variant))) {
                 chosen = variant;
             }
-            controls_.mark("scene.variant=" + title);
         };
         word("none", "");
         for (const std::string& variant : scene.variants) {

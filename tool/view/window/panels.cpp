@@ -100,12 +100,8 @@ void Window::drawInterface() {
     if (measured != measuresPasses_) {
         // Times of whole frames and of passes don't mix in a chart. A complete picture has no times of passes
         // yet.
-        for (std::unique_ptr<Side>& one : sides_) {
-            if (one) {
-                one->history.clear();
-                one->picture.restart();
-            }
-        }
+        forSides([](Side& one) { one.history.clear(); });
+        restartPictures();
     }
 }
 
@@ -202,41 +198,36 @@ void Window::drawStatus(float width, float y, float height) {
 
 void Window::drawHead() {
     const bool compares = sides_[1] != nullptr;
-    if (ImGui::Button("Help F1")) {
+    if (controls_.mark("Help", ImGui::Button("Help F1"))) {
         showsHelp_ = !showsHelp_;
     }
-    controls_.mark("Help");
     ImGui::SameLine();
-    if (ImGui::Button("Screenshot P")) {
+    if (controls_.mark("Screenshot", ImGui::Button("Screenshot P"))) {
         wantsShot_ = true;
     }
-    controls_.mark("Screenshot");
     ImGui::SameLine();
-    if (ImGui::Button(compares ? "Stop comparing B" : "Compare A|B  B")) {
+    if (controls_.mark("Compare", ImGui::Button(compares ? "Stop comparing B" : "Compare A|B  B"))) {
         compare(!compares);
     }
-    controls_.mark("Compare");
     ImGui::SameLine();
     const std::string resolution = fmt::format("1:{} M", divisor_);
-    if (ImGui::Button(resolution.c_str())) {
+    if (controls_.mark("Resolution", ImGui::Button(resolution.c_str()))) {
         divisor_ = divisor_ % 4 + 1;
     }
-    controls_.mark("Resolution");
     tip("pixels of the picture to pixels of the window, each way");
 
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("exposure");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 9.0F);
-    if (ImGui::SliderFloat("##exposure", &exposure_, -16.0F, 16.0F, "%+.2f stops")) {
+    if (controls_.mark("exposure",
+                       ImGui::SliderFloat("##exposure", &exposure_, -16.0F, 16.0F, "%+.2f stops"))) {
         autoExposure_ = false;
     }
-    controls_.mark("exposure");
     ImGui::SameLine();
-    if (ImGui::Checkbox("auto", &autoExposure_) && autoExposure_) {
+    if (controls_.mark("exposure auto", ImGui::Checkbox("auto", &autoExposure_)) && autoExposure_) {
         exposureIsNew_ = true;
     }
-    controls_.mark("exposure auto");
     tip("log-average luminance of the surfaces to 18 % grey, when a picture begins and when it is complete");
     drawAnimation();
 }
@@ -249,10 +240,9 @@ void Window::drawAnimation() {
     if (animations.empty() && sides_[0]->wanted.materials.empty()) {
         return;
     }
-    if (ImGui::Button(plays_ ? "Pause" : "Play")) {
+    if (controls_.mark("Play", ImGui::Button(plays_ ? "Pause" : "Play"))) {
         togglePlaying();
     }
-    controls_.mark("Play");
     double duration = 0.0;
     for (const std::size_t index : animations_) {
         duration = index < animations.size() ? std::max(duration, animations[index].duration) : duration;
@@ -261,23 +251,21 @@ void Window::drawAnimation() {
     ImGui::SameLine();
     auto seconds = static_cast<float>(time_);
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 11.0F);
-    if (ImGui::SliderFloat("##time", &seconds, 0.0F, static_cast<float>(duration), "%.3f s")) {
+    if (controls_.mark(
+            "time", ImGui::SliderFloat("##time", &seconds, 0.0F, static_cast<float>(duration), "%.3f s"))) {
         time_ = seconds;
         poses_ = true;
         plays_ = false;
     }
-    controls_.mark("time");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(ImGui::GetFontSize() * 4.0F);
-    ImGui::SliderFloat("##speed", &playSpeed_, 0.1F, 4.0F, "x %.1f");
-    controls_.mark("speed");
+    controls_.mark("speed", ImGui::SliderFloat("##speed", &playSpeed_, 0.1F, 4.0F, "x %.1f"));
     tip("speed of the animation");
     if (poses_) {
         ImGui::SameLine();
-        if (ImGui::Button("Rest")) {
+        if (controls_.mark("Rest", ImGui::Button("Rest"))) {
             poses_ = plays_ = false;
         }
-        controls_.mark("Rest");
         tip("the pose in which the file places everything");
     }
     if (animations.size() > 1) {
@@ -291,10 +279,10 @@ void Window::drawAnimation() {
         ImGui::SetNextItemWidth(-1.0F);
         if (ImGui::BeginCombo("##animation", nameOfAnimation(animationChoice_).c_str())) {
             for (int i = 0; i <= static_cast<int>(animations.size()); ++i) {
-                if (ImGui::Selectable(nameOfAnimation(i).c_str(), i == animationChoice_)) {
+                if (controls_.mark(fmt::format("animation={}", i),
+                                   ImGui::Selectable(nameOfAnimation(i).c_str(), i == animationChoice_))) {
                     animationChoice_ = i;
                 }
-                controls_.mark(fmt::format("animation={}", i));
             }
             closeByEscape();
             ImGui::EndCombo();
@@ -314,32 +302,31 @@ void Window::drawCompare() {
     constexpr const char* kNames[] = {"A", "B"};
     for (std::size_t i = 0; i < kPictures; ++i) {
         ImGui::SameLine();
-        if (ImGui::RadioButton(fmt::format("{}##edited", kNames[i]).c_str(), edited_ == i)) {
+        if (controls_.mark(fmt::format("edit {}", kNames[i]),
+                           ImGui::RadioButton(fmt::format("{}##edited", kNames[i]).c_str(), edited_ == i))) {
             edited_ = i;
         }
-        controls_.mark(fmt::format("edit {}", kNames[i]));
     }
     ImGui::SameLine(0.0F, 24.0F);
-    if (ImGui::Button("Measure")) {
+    if (controls_.mark("Measure", ImGui::Button("Measure"))) {
         measureDifference();
     }
-    controls_.mark("Measure");
     tip("how far B is from A: as seen (FLIP), and in linear light");
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("show       ");
     constexpr const char* kShown[] = {"A", "B", "A|B", "difference"};
     for (std::uint32_t i = 0; i < std::size(kShown); ++i) {
         ImGui::SameLine();
-        if (ImGui::RadioButton(fmt::format("{}##shown", kShown[i]).c_str(),
-                               shown_ == static_cast<Shown>(i))) {
+        if (controls_.mark(fmt::format("show {}", kShown[i]),
+                           ImGui::RadioButton(fmt::format("{}##shown", kShown[i]).c_str(),
+                                              shown_ == static_cast<Shown>(i)))) {
             shown_ = static_cast<Shown>(i);
         }
-        controls_.mark(fmt::format("show {}", kShown[i]));
     }
     if (shown_ == Shown::Difference) {
         ImGui::SetNextItemWidth(ImGui::GetFontSize() * 9.0F);
-        ImGui::SliderFloat("times##gain", &gain_, 1.0F, 64.0F, "%.0f", ImGuiSliderFlags_Logarithmic);
-        controls_.mark("gain");
+        controls_.mark("gain", ImGui::SliderFloat("times##gain", &gain_, 1.0F, 64.0F, "%.0f",
+                                                  ImGuiSliderFlags_Logarithmic));
     }
     if (!difference_.empty()) {
         ImGui::TextUnformatted(difference_.c_str());
@@ -428,27 +415,23 @@ void Window::drawScene() {
 
 void Window::drawMessages() {
     unread_ = 0;
-    if (ImGui::Button("Copy all")) {
+    if (controls_.mark("Copy all", ImGui::Button("Copy all"))) {
         std::string all;
         for (const Diagnostic& message : messages_) {
             all += toString(message) + "\n";
         }
         ImGui::SetClipboardText(all.c_str());
     }
-    controls_.mark("Copy all");
     ImGui::SameLine();
-    if (ImGui::Button("Clear")) {
+    if (controls_.mark("Clear", ImGui::Button("Clear"))) {
         messages_.clear();
     }
-    controls_.mark("Clear");
     ImGui::BeginChild("messages");
     for (const Diagnostic& message : messages_) {
-        const ImVec4 color = message.severity == Severity::Error     ? ImVec4(1.0F, 0.5F, 0.35F, 1.0F)
-                             : message.severity == Severity::Warning ? ImVec4(0.95F, 0.8F, 0.4F, 1.0F)
-                                                                     : ImVec4(0.8F, 0.85F, 0.9F, 1.0F);
-        ImGui::PushStyleColor(ImGuiCol_Text, color);
-        ImGui::TextWrapped("%s", toString(message).c_str());
-        ImGui::PopStyleColor();
+        coloredText(message.severity == Severity::Error     ? std::array{1.0F, 0.5F, 0.35F}
+                    : message.severity == Severity::Warning ? std::array{0.95F, 0.8F, 0.4F}
+                                                            : std::array{0.8F, 0.85F, 0.9F},
+                    toString(message));
         ImGui::Separator();
     }
     if (messages_.empty()) {
@@ -465,9 +448,7 @@ void Window::drawSidePanel(float x, float width, float height) {
     drawCompare();
     ImGui::Separator();
     if (error_) {
-        ImGui::PushStyleColor(ImGuiCol_Text, {1.0F, 0.55F, 0.35F, 1.0F});
-        ImGui::TextWrapped("%s", toString(*error_).c_str());
-        ImGui::PopStyleColor();
+        coloredText(kErrorColor, toString(*error_));
     }
     if (ImGui::BeginTabBar("tabs")) {
         const auto tab = [this](const char* name, const std::string& title, const auto& draw) {

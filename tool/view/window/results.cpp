@@ -28,6 +28,14 @@ void Window::order(std::size_t index, bool rereads) {
     builder_->start({index, one.wanted, scene_, edits_, rereads});
 }
 
+void Window::orderAll(bool rereads) {
+    for (std::size_t i = 0; i < kPictures; ++i) {
+        if (sides_[i]) {
+            order(i, rereads);
+        }
+    }
+}
+
 void Window::pollFiles() {
     if (base::millisecondsSince(polled_) < kPollMs || builder_->isBusy(0)) {
         return;
@@ -45,11 +53,7 @@ void Window::pollFiles() {
     const std::vector<std::string> changed = watch_.changed();
     if (!changed.empty()) {
         say(changed.front() + " has changed");
-        for (std::size_t i = 0; i < kPictures; ++i) {
-            if (sides_[i]) {
-                order(i, true);
-            }
-        }
+        orderAll(true);
     }
 }
 

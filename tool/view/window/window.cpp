@@ -46,16 +46,12 @@ Window::Window(const Request& request) : request_(request), scene_(request.scene
 
 Window::~Window() {
     builder_.reset();
-    for (const std::unique_ptr<Side>& one : sides_) {
-        if (one) {
-            one->picture.cancelLoad();
-        }
-    }
+    forSides([](Side& one) { one.picture.cancelLoad(); });
     if (context_) {
         vkDeviceWaitIdle(context_->handles().device);
         request_.closing(*context_);
     }
-    script_.reset();
+    script_ = nullptr;
     for (std::unique_ptr<Side>& one : sides_) {
         one.reset();
     }
@@ -180,7 +176,7 @@ Status Window::open() {
                               [this](const std::string& file) { return writeReport(file); },
                               [this] { return frames_; },
                               [this](const std::string& text) { request_.observer->detail(text); }};
-        GLINT_TRY(script_, Script::read(request_.script, host));
+        GLINT_TRY(script_, readScript(request_.script, host));
         glfwFocusWindow(window_);
     }
     return okStatus();
@@ -232,9 +228,9 @@ Status Window::run() {
         pollFiles();
         GLINT_TRY_DO(takeBuilds());
         if (script_) {
-            GLINT_TRY_DO(script_->step());
-            if (script_->isDone()) {
-                script_.reset();
+            GLINT_TRY(const bool isDone, script_());
+            if (isDone) {
+                script_ = nullptr;
             }
         }
         const std::vector<std::string> validation = context_->validationMessages();

@@ -17,6 +17,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -76,10 +77,20 @@ private:
     Side& side() {
         return *sides_[edited_];
     }
+    // Visits the sides that are there.
+    template <typename Visit>
+    void forSides(const Visit& visit) {
+        for (const std::unique_ptr<Side>& one : sides_) {
+            if (one) {
+                visit(*one);
+            }
+        }
+    }
 
     // --- results.cpp: builds ---
     // `rereads`: files have changed.
     void order(std::size_t side, bool rereads = false);
+    void orderAll(bool rereads = false);
     void pollFiles();
     Status takeBuilds();
     Status install(std::size_t side, Build build);
@@ -108,6 +119,7 @@ private:
     void handleInput(double seconds);
     void handleKey(const KeyPress& press);
     void handleMouse();
+    void restartPictures();
     void fly(double seconds);
     void addFile(const std::string& file);
     void openFile(const std::string& file);
@@ -161,7 +173,7 @@ private:
     std::unique_ptr<Display> display_;
     std::array<std::unique_ptr<Side>, kPictures> sides_;
     std::unique_ptr<Builder> builder_;
-    std::unique_ptr<Script> script_;
+    std::function<Result<bool>()> script_;  // readScript(); empty: none
 
     std::string scene_;
     // The scene and settings that are shown while another scene is being opened.

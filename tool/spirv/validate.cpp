@@ -1,5 +1,5 @@
 #include "base/parallel.h"
-#include "spirv/join/join.h"
+#include "spirv/join.h"
 #include "spirv/optimize.h"
 #include "spirv/reader.h"
 
@@ -33,10 +33,8 @@ struct FunctionWords {
 class ValidationCopies {
 public:
     explicit ValidationCopies(std::span<const std::uint32_t> words) : words_(words), ownerOf_(words[3]) {
-        std::size_t length = 0;
-        for (std::size_t at = kSpirvHeaderWords; at < words.size(); at += length) {
-            length = words[at] >> spv::WordCountShift;
-            read(at, length);
+        for (const SpirvInstruction& instruction : SpirvInstructions(words)) {
+            read(instruction);
         }
     }
 
@@ -71,21 +69,19 @@ public:
     // Returns the module with the code of one group.
     std::vector<std::uint32_t> copy(std::size_t group) const {
         std::vector<std::uint32_t> words(words_.begin(), words_.begin() + kSpirvHeaderWords);
-        std::size_t length = 0;
-        for (std::size_t at = kSpirvHeaderWords; at < globalsEnd(); at += length) {
-            length = words_[at] >> spv::WordCountShift;
-            if (!isAnnotation(words_[at] & spv::OpCodeMask) || hasCode(ownerOf_[words_[at + 1]], group)) {
-                append(words, at, at + length);
+        for (const SpirvInstruction& it : SpirvInstructions(words_.first(globalsEnd()))) {
+            if (!isAnnotation(it.opcode) || hasCode(ownerOf_[it.operands[0]], group)) {
+                appendWords(words, it.words());
             }
         }
         for (std::size_t i = 0; i < functions_.size(); ++i) {
             const FunctionWords& function = functions_[i];
             if (hasCode(i + 1, group)) {
-                append(words, function.begin, function.end);
+                appendWords(words, words_.subspan(function.begin, function.size()));
             } else {
-                append(words, function.begin, function.label + 2);
-                words.push_back(1U << spv::WordCountShift | spv::OpUnreachable);
-                words.push_back(1U << spv::WordCountShift | spv::OpFunctionEnd);
+                appendWords(words, words_.subspan(function.begin, function.label + 2 - function.begin));
+                appendInstruction(words, spv::OpUnreachable, {});
+                appendInstruction(words, spv::OpFunctionEnd, {});
             }
         }
         return words;
@@ -95,14 +91,7 @@ private:
     static constexpr std::size_t kEveryGroup = SIZE_MAX;
 
     static bool isAnnotation(std::uint32_t opcode) {
-        return opcode == spv::OpName || opcode == spv::OpMemberName || opcode == spv::OpDecorate ||
-               opcode == spv::OpMemberDecorate || opcode == spv::OpDecorateId ||
-               opcode == spv::OpDecorateString || opcode == spv::OpMemberDecorateString;
-    }
-    void append(std::vector<std::uint32_t>& to, std::size_t begin, std::size_t end) const {
-        const auto first = words_.begin();
-        to.insert(to.end(), first + static_cast<std::ptrdiff_t>(begin),
-                  first + static_cast<std::ptrdiff_t>(end));
+        return opcode == spv::OpName || opcode == spv::OpMemberName || isSpirvDecoration(opcode);
     }
     std::size_t globalsEnd() const {
         return functions_.empty() ? words_.size() : functions_.front().begin;
@@ -112,23 +101,22 @@ private:
         return owner == 0 || groupOf_[owner - 1] == kEveryGroup || groupOf_[owner - 1] == group;
     }
 
-    void read(std::size_t at, std::size_t length) {
-        const std::uint32_t opcode = words_[at] & spv::OpCodeMask;
-        if (opcode == spv::OpEntryPoint) {
-            entry_ = words_[at + 2];
-        } else if (opcode == spv::OpFunction) {
-            functions_.push_back({words_[at + 2], at, 0, 0, {}});
+    void read(const SpirvInstruction& it) {
+        if (it.opcode == spv::OpEntryPoint) {
+            entry_ = it.operands[1];
+        } else if (it.opcode == spv::OpFunction) {
+            functions_.push_back({it.result, it.at, 0, 0, {}});
         } else if (!functions_.empty()) {
             FunctionWords& function = functions_.back();
             if (function.label == 0) {
-                function.label = opcode == spv::OpLabel ? at : 0;
-            } else if (opcode == spv::OpFunctionCall) {
-                function.calls.push_back(words_[at + 3]);
-                ownerOf_[words_[at + 2]] = functions_.size();
-            } else if (opcode == spv::OpFunctionEnd) {
-                function.end = at + length;
+                function.label = it.opcode == spv::OpLabel ? it.at : 0;
+            } else if (it.opcode == spv::OpFunctionEnd) {
+                function.end = it.at + it.words().size();
             } else {
-                ownerOf_[resultAt(words_, at)] = functions_.size();
+                ownerOf_[it.result] = functions_.size();
+            }
+            if (it.opcode == spv::OpFunctionCall) {
+                function.calls.push_back(it.operands[2]);
             }
         }
         ownerOf_[0] = 0;

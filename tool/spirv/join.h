@@ -1,7 +1,7 @@
 // Joins SPIR-V modules: a shader whose functions were compiled by themselves becomes one module.
 #pragma once
 
-#include "spirv/join/parsed_module.h"
+#include "spirv/reader.h"
 
 #include <glint/result.h>
 
