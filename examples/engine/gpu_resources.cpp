@@ -85,8 +85,8 @@ void Engine::State::placeInstances() {
             }
             records.push_back(view);
             recordIndexCounts.push_back(geometry.indexCount);
-            data.push_back({address, indices[place].address, entry->shaderId, entry->materialIndex,
-                            entry->key, i, 0});
+            data.push_back(
+                {address, indices[place].address, entry->shaderId, entry->materialIndex, entry->key, i, 0});
         }
     }
     geometryData = gpu.upload(bytesOf(data));

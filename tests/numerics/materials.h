@@ -20,10 +20,8 @@ struct TestMaterial {
     glsl::uint inputs = 0;
 
     glsl::Features features() const {
-        return {.sometimesLobes = 0xFFFFFFFFU,
-                .sometimesInputs = 0xFFFFFFFFU,
-                .lobes = lobes,
-                .inputs = inputs};
+        return {
+            .sometimesLobes = 0xFFFFFFFFU, .sometimesInputs = 0xFFFFFFFFU, .lobes = lobes, .inputs = inputs};
     }
     bool has(glsl::uint lobe) const {
         return (lobes & lobe) != 0U;

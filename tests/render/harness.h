@@ -56,8 +56,8 @@ public:
     std::unique_ptr<Renderer> makeRenderer(const RendererOptions& options) const {
         return testing::makeRenderer(package(), gpuScene(), options);
     }
-    // Renders an image. `counters` may be null. Keeps the renderer for further images with the same options, because making one takes longer than most
-    // images.
+    // Renders an image. `counters` may be null. Keeps the renderer for further images with the same options,
+    // because making one takes longer than most images.
     LinearImage render(package::Strategy strategy, const RenderSetup& setup,
                        FrameCounters* counters = nullptr) const;
     // The size is that of the setup.

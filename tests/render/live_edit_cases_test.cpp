@@ -172,7 +172,8 @@ TEST(LiveEditVertices, ChangeInPlace) {
     SceneEditor& editor = edited.editor();
     const PrimitiveView flat = edited.primitive(1, 0);
     const SceneEditor::EditedPrimitive primitive{flat, edited.materials[1].handle};
-    const SceneEditor::AddedMesh mesh = must(editor.addMesh(std::span(&primitive, 1), SceneEditor::MeshUse::Changing));
+    const SceneEditor::AddedMesh mesh =
+        must(editor.addMesh(std::span(&primitive, 1), SceneEditor::MeshUse::Changing));
     const std::array<float, 12> rows{1, 0, 0, -0.6F, 0, 1, 0, 0, 0, 0, 1, -2.2F};
     const SceneEditor::AddedInstance cloth = must(editor.addInstance({mesh.mesh, rows}));
     const LinearImage before = edited.picture();
@@ -191,7 +192,8 @@ TEST(LiveEditVertices, ChangeInPlace) {
     PrimitiveView bent = flat;
     bent.positions = positions;
     const SceneEditor::EditedPrimitive other{bent, edited.materials[1].handle};
-    const SceneEditor::AddedMesh fresh = must(editor.addMesh(std::span(&other, 1), SceneEditor::MeshUse::Changing));
+    const SceneEditor::AddedMesh fresh =
+        must(editor.addMesh(std::span(&other, 1), SceneEditor::MeshUse::Changing));
     ASSERT_TRUE(editor.setInstanceMesh(cloth.instance, fresh.mesh));
     EXPECT_EQ(edited.picture().pixels, after.pixels);
     expectError(editor.setVertices(edited.meshes[0].handle, 0, {positions}), "scene-edit-value");

@@ -171,7 +171,8 @@ std::string moduleTable(const inspect::InspectedPackage& inspected, Detail detai
 }
 
 std::string hitLobesText(const inspect::Manifest& manifest) {
-    return manifest.hitLobes.size() == static_cast<std::size_t>(std::ranges::count_if(manifest.features, &compiler::ManifestFeature::lobe))
+    return manifest.hitLobes.size() == static_cast<std::size_t>(std::ranges::count_if(
+                                           manifest.features, &compiler::ManifestFeature::lobe))
                ? "all"
                : base::join(manifest.hitLobes);
 }

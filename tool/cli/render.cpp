@@ -163,7 +163,8 @@ std::array<std::uint8_t, 3> colorOf(Renderer::PixelPath path) {
 // that left the scene. Grey: no ray. Black: no surface. `paths` has width * height pixels.
 image::DisplayImage coverageMap(const std::vector<Renderer::PixelPath>& paths, std::uint32_t width,
                                 std::uint32_t height) {
-    return {width, height, base::mapped<image::Color8>(paths, [](Renderer::PixelPath path) { return colorOf(path); })};
+    return {width, height,
+            base::mapped<image::Color8>(paths, [](Renderer::PixelPath path) { return colorOf(path); })};
 }
 
 // Writes everything that comes after the pictures.

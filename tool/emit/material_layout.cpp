@@ -175,8 +175,9 @@ MaterialLayout materialLayoutOf(const Plan& plan) {
 bool isOfModel(const materials::Material& material, int model) {
     const materials::MaterialModel& all = material.model();
     return model < 0 ||
-           material.reads(all.features[static_cast<std::size_t>(all.models[static_cast<std::size_t>(model)].feature)]
-                              .object);
+           material.reads(
+               all.features[static_cast<std::size_t>(all.models[static_cast<std::size_t>(model)].feature)]
+                   .object);
 }
 
 std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material,
@@ -211,8 +212,9 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
     for (const TextureSlot& row : layout.textures) {
         const auto index = static_cast<std::size_t>(row.texture);
         const materials::TextureInfo& info = material.textures[index];
-        if (isOfModel(material, row.model) && (info.texture >= 0 || (layout.turnsFrames &&
-                                                     layout.model->textures[index].name == kFrameTexture))) {
+        if (isOfModel(material, row.model) &&
+            (info.texture >= 0 ||
+             (layout.turnsFrames && layout.model->textures[index].name == kFrameTexture))) {
             const gpu::TextureRecord texture = transformed(info.transform);
             std::memcpy(&record[layout.textureOffset + static_cast<std::size_t>(row.slot) * sizeof texture],
                         &texture, sizeof texture);
@@ -225,12 +227,13 @@ std::string recordStruct(const MaterialLayout& layout, std::string_view scope) {
     std::string text = "struct MaterialRecord {\n";
     for (const RecordField& field : layout.fields) {
         if (field.model < 0) {
-            text += fmt::format("    {}{} {};{}{}\n", field.channels == 1 ? "" : scope, field.type, field.name,
-                                field.note.empty() ? "" : "  // ", field.note);
+            text += fmt::format("    {}{} {};{}{}\n", field.channels == 1 ? "" : scope, field.type,
+                                field.name, field.note.empty() ? "" : "  // ", field.note);
         }
     }
     if (layout.ownFloats() > 0) {
-        text += fmt::format("    float own[{}];  // the fields of the material's model\n", layout.ownFloats());
+        text +=
+            fmt::format("    float own[{}];  // the fields of the material's model\n", layout.ownFloats());
     }
     if (layout.textureCount > 0) {
         text += fmt::format("    {}TextureRecord textures[{}];\n", scope, layout.textureCount);
@@ -243,10 +246,10 @@ std::string recordDeclarations(const MaterialLayout& layout, const materials::Fe
     // Whether shaders with those features may name what belongs to the feature.
     const auto isNamed = [&](int feature) {
         const int owner = feature < 0 ? -1 : model.features[static_cast<std::size_t>(feature)].model;
-        return owner < 0 ||
-               used.has(model.features[static_cast<std::size_t>(
-                                           model.models[static_cast<std::size_t>(owner)].feature)]
-                            .bit);
+        return owner < 0 || used.has(model
+                                         .features[static_cast<std::size_t>(
+                                             model.models[static_cast<std::size_t>(owner)].feature)]
+                                         .bit);
     };
     std::string text =
         "// The values of a material that the scenes of the package need.\n" + recordStruct(layout, "");
@@ -263,7 +266,7 @@ std::string recordDeclarations(const MaterialLayout& layout, const materials::Fe
     }
     text += "#define GLINT_TEXTURE(record, slot) ";
     text += layout.textureCount == 0 ? "TextureRecord(0u, 0u, 0u, vec3(0.0), vec3(0.0), vec2(0.0), 0.0)\n"
-                                    : "(record).textures[slot]\n";
+                                     : "(record).textures[slot]\n";
     text += fmt::format("#define GLINT_TEXTURE_SLOTS {}\n", layout.textureCount);
     text += "// The record of the material of a Hit or a SurfacePoint.\n";
     text += "#define GLINT_MATERIAL(hit) hostMaterials().data[(hit).material]\n";
@@ -272,8 +275,8 @@ std::string recordDeclarations(const MaterialLayout& layout, const materials::Fe
                             std::span<const float> fallback) {
         const auto field = std::ranges::find(layout.fields, name, &RecordField::name);
         if (isNamed(feature)) {
-            text += fieldMacros(name, field != layout.fields.end() ? readOf(layout, *field)
-                                                                   : literalOf(type, fallback));
+            text += fieldMacros(
+                name, field != layout.fields.end() ? readOf(layout, *field) : literalOf(type, fallback));
         }
     };
     for (const materials::Parameter& parameter : model.parameters) {

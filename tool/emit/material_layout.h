@@ -62,8 +62,8 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
                                              const MaterialLayout& layout);
 
 // Returns the GLSL of the record: the struct MaterialRecord, a constant for each texture, and for each
-// declared field a macro GLINT_MATERIAL_<FIELD>(hit), which is a constant where records lack the field. Of what
-// belongs to models of packs, it has that of the models of `used`.
+// declared field a macro GLINT_MATERIAL_<FIELD>(hit), which is a constant where records lack the field. Of
+// what belongs to models of packs, it has that of the models of `used`.
 std::string recordDeclarations(const MaterialLayout& layout, const materials::FeatureMask& used);
 // Returns the struct alone. `scope` stands before the names of vector types: empty in GLSL, "gpu::" in C++.
 std::string recordStruct(const MaterialLayout& layout, std::string_view scope);

@@ -15,7 +15,8 @@ void ModelBuilder::assignBits() {
     std::ranges::sort(sorted, {}, [this](int i) {
         const Pending& row = pending_[static_cast<std::size_t>(i)];
         const Pending* const base = row.base < 0 ? nullptr : &pending_[static_cast<std::size_t>(row.base)];
-        // The bits of Glint's own features are the same with packs as without. Those of a model follow its base.
+        // The bits of Glint's own features are the same with packs as without. Those of a model follow its
+        // base.
         return std::tuple(row.isOfPack, base != nullptr, base != nullptr ? base->order : 0.0,
                           base != nullptr ? std::string_view(base->feature.name) : std::string_view(),
                           !isLobe(row.feature), row.order, std::string_view(row.feature.name));
@@ -39,15 +40,14 @@ void ModelBuilder::assignBits() {
             }
             row.feature.model = static_cast<int>(model_.models.size()) - 1;
         } else {
-            row.feature.bit = row.feature.isLobe             ? lobe++
-                              : input < kFirstOfModels ? input++
-                                                       : --further;
+            row.feature.bit = row.feature.isLobe ? lobe++ : input < kFirstOfModels ? input++ : --further;
         }
         if (lobe > further || own > FeatureMask::kBits) {
-            failAt(row.where, lobe > further
-                                  ? fmt::format("there are more features than the {} bits that all models share",
-                                                kFirstOfModels)
-                                  : fmt::format("the packs have more than {} features", FeatureMask::kBits));
+            failAt(row.where,
+                   lobe > further
+                       ? fmt::format("there are more features than the {} bits that all models share",
+                                     kFirstOfModels)
+                       : fmt::format("the packs have more than {} features", FeatureMask::kBits));
         }
         model_.lobes |= row.feature.isLobe ? row.feature.mask() : 0;
         indexOf[static_cast<std::size_t>(i)] = index;

@@ -127,7 +127,8 @@ std::uint32_t MaterialModel::modelWord(int model) const {
     word |= bothSides.has(base) ? gpu::kModelBothSides : 0U;
     word |= ownModels.has(base) ? gpu::kModelOwnCode : 0U;
     for (const FeatureCode& one : code) {
-        const bool isOfModel = one.feature >= 0 && features[static_cast<std::size_t>(one.feature)].model == model;
+        const bool isOfModel =
+            one.feature >= 0 && features[static_cast<std::size_t>(one.feature)].model == model;
         word |= isOfModel && one.isSampled ? gpu::kModelSampled : 0U;
         word |= isOfModel && !(one.coordinates.empty() && one.opacity.empty()) ? gpu::kModelChangesAlpha : 0U;
     }
@@ -167,8 +168,8 @@ FeatureMask MaterialModel::maskOf(const package::KeyWords& words) const {
     return mask;
 }
 
-std::pair<package::KeyWords, package::KeyWords> MaterialModel::caseWords(
-    const FeatureMask& always, const FeatureMask& sometimes) const {
+std::pair<package::KeyWords, package::KeyWords> MaterialModel::caseWords(const FeatureMask& always,
+                                                                         const FeatureMask& sometimes) const {
     package::KeyWords least = words(always);
     package::KeyWords some = words(sometimes);
     const std::uint32_t any = words(always | sometimes).model;
@@ -194,12 +195,12 @@ std::string MaterialModel::featureDefines(const FeatureMask& used) const {
         const std::string name = feature.macroEnd();
         if (feature.model >= 0) {
             const package::KeyWords word = words(feature.mask());
-            const std::string rest =
-                fmt::format("{}u, 0x{:x}u)", word.model & gpu::kModelNumber, word.own);
+            const std::string rest = fmt::format("{}u, 0x{:x}u)", word.model & gpu::kModelNumber, word.own);
             text += used.has(features[static_cast<std::size_t>(baseOf(feature))].bit)
-                        ? fmt::format("#define GLINT_HAS_{0}(features) hasOwn(features, {1}\n"
-                                      "#define GLINT_KEY_HAS_{0}(features) ownOfKey(features, {1}\n",
-                                      name, rest)
+                        ? fmt::format(
+                              "#define GLINT_HAS_{0}(features) hasOwn(features, {1}\n"
+                              "#define GLINT_KEY_HAS_{0}(features) ownOfKey(features, {1}\n",
+                              name, rest)
                         : "";
             continue;
         }

@@ -101,7 +101,8 @@ package::Effect findEffect(const std::vector<EffectDeclaration>& effects, std::s
 //   bits 32..63  inputs: where the surface's parameters are read from
 //   bits 64...   features of base models that packs declare: of each model, its base and then its others
 //
-// If packs have more inputs than fit, these take bits from 31 downwards. A number stands for the first 64 bits.
+// If packs have more inputs than fit, these take bits from 31 downwards. A number stands for the first 64
+// bits.
 class FeatureMask {
 public:
     static constexpr int kBits = 4096;
@@ -378,8 +379,8 @@ struct FeatureCode {
     std::string gains{};          // why more light may leave the surface than reaches it; empty: none may
 };
 
-// A base model that a pack declares. Of keys, shaders see it and its features in two words of their own, in which each
-// model numbers its features anew (package::KeyWords).
+// A base model that a pack declares. Of keys, shaders see it and its features in two words of their own, in
+// which each model numbers its features anew (package::KeyWords).
 struct BaseModel {
     std::string name;  // of the declaration
     int feature = -1;  // index into MaterialModel::features: the base itself
@@ -477,16 +478,16 @@ public:
     package::KeyWords words(const FeatureMask& mask) const;
     // Returns the set that the words of a key stand for.
     FeatureMask maskOf(const package::KeyWords& words) const;
-    // Returns what the keys of a case have, and what some of them have. Cases of several models know nothing about
-    // the features of each.
+    // Returns what the keys of a case have, and what some of them have. Cases of several models know nothing
+    // about the features of each.
     std::pair<package::KeyWords, package::KeyWords> caseWords(const FeatureMask& always,
                                                               const FeatureMask& sometimes) const;
     // Returns the word by which shaders know the base of index `model`: its number and what it does.
     std::uint32_t modelWord(int model) const;
-    // Returns "#define GLINT_BASE_COLOR_TEXTURE 0x1u" for every feature that all models share; lobes and inputs
-    // are numbered within their own word. For these and for all features of the models of `used`,
-    // GLINT_HAS_BASE_COLOR_TEXTURE(features) asks for it, and GLINT_KEY_HAS_BASE_COLOR_TEXTURE(features) where
-    // the code runs for keys that are not the module's own. GLINT_LOBES is the set of shared lobes;
+    // Returns "#define GLINT_BASE_COLOR_TEXTURE 0x1u" for every feature that all models share; lobes and
+    // inputs are numbered within their own word. For these and for all features of the models of `used`,
+    // GLINT_HAS_BASE_COLOR_TEXTURE(features) asks for it, and GLINT_KEY_HAS_BASE_COLOR_TEXTURE(features)
+    // where the code runs for keys that are not the module's own. GLINT_LOBES is the set of shared lobes;
     // GLINT_UNLIT_LOBES and GLINT_BOTH_SIDES_LOBES are those that take no light and that let light through.
     std::string featureDefines(const FeatureMask& used = kAllFeatures) const;
 

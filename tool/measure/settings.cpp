@@ -146,8 +146,7 @@ compiler::BenchFacts factsOf(const compiler::Build& build, std::size_t index) {
         // Hits that keep only the lobes of the base lose a lobe.
         const materials::FeatureMask further =
             materials::builtinMaterialModel().lobes & ~compiler::baseLobes();
-        facts.furtherLobes =
-            facts.furtherLobes || (build.plan.primaryMaskOfPrimitive[i] & further) != 0;
+        facts.furtherLobes = facts.furtherLobes || (build.plan.primaryMaskOfPrimitive[i] & further) != 0;
     }
     facts.textures = !scene.textures.empty();
     facts.effects = namesOfChosen(build.plan.effects);

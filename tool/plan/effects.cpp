@@ -106,8 +106,7 @@ public:
     }
 
     bool has(int feature) const {
-        return feature < 0 ||
-               key_.has(material_.model().features[static_cast<std::size_t>(feature)].bit);
+        return feature < 0 || key_.has(material_.model().features[static_cast<std::size_t>(feature)].bit);
     }
 
     double leastRoughness() const {

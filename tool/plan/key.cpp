@@ -137,8 +137,9 @@ private:
     // A file requests only textures that it has. A lobe is present by its values, whether or not the file
     // gives its extension.
     Presence decide(const materials::Feature& feature) const {
-        const bool isOfOther = feature.model >= 0 && !has(model_.baseOf(feature)) &&
-                               feature.bit != model_.features[static_cast<std::size_t>(model_.baseOf(feature))].bit;
+        const bool isOfOther =
+            feature.model >= 0 && !has(model_.baseOf(feature)) &&
+            feature.bit != model_.features[static_cast<std::size_t>(model_.baseOf(feature))].bit;
         if (isOfOther) {
             return {};
         }

@@ -176,8 +176,7 @@ struct KeyWords {
     // Returns whether the set has one of `features`, which are of one model at most. Those of a model without
     // bits in `own` are the model itself.
     constexpr bool hasAny(const KeyWords& features) const {
-        const bool isOfModel =
-            features.model != 0 && (features.model == model || model == ~std::uint32_t{0});
+        const bool isOfModel = features.model != 0 && (features.model == model || model == ~std::uint32_t{0});
         return ((lobes & features.lobes) | (inputs & features.inputs)) != 0 ||
                (isOfModel && (features.own == 0 || (own & features.own) != 0));
     }

@@ -34,8 +34,7 @@ float floatAt(const MaterialTable& materials, std::uint32_t material, std::uint3
 }
 
 bool readsTexture(const package::OpacityEntry& opacity, const package::PrimitiveEntry& entry) {
-    return opacity.texture != package::OpacityEntry::kNone &&
-           (entry.key.inputs & opacity.textureInput) != 0;
+    return opacity.texture != package::OpacityEntry::kNone && (entry.key.inputs & opacity.textureInput) != 0;
 }
 
 // The alpha of a texel of RGBA with 8 bits a channel, after the image's channels.
@@ -162,7 +161,8 @@ private:
     bool isDecidable(const PrimitiveView& view, const package::PrimitiveEntry& entry) const {
         constexpr std::uint32_t kOther =
             gpu::kGeometryBlended | gpu::kGeometryPassesLight | gpu::kGeometryEmitter;
-        const bool hasCode = entry.key.hasAny(opacity_.code) || (entry.key.model & gpu::kModelChangesAlpha) != 0;
+        const bool hasCode =
+            entry.key.hasAny(opacity_.code) || (entry.key.model & gpu::kModelChangesAlpha) != 0;
         const std::size_t triangles = view.indices.size() / 3;
         return (entry.geometryFlags & gpu::kGeometryAlphaTested) != 0 &&
                (entry.geometryFlags & kOther) == 0 && !hasCode && triangles > 0 &&

@@ -343,8 +343,8 @@ Status checkFields(const Package::State& state, const std::string& where) {
     std::uint64_t end = 0;
     std::uint32_t model = 0;
     for (const package::FieldEntry& entry : state.fields) {
-        const bool isInOrder = (entry.model != model || entry.offset >= end) && entry.offset % 4 == 0 &&
-                               entry.bytes % 4 == 0;
+        const bool isInOrder =
+            (entry.model != model || entry.offset >= end) && entry.offset % 4 == 0 && entry.bytes % 4 == 0;
         model = entry.model;
         end = std::uint64_t{entry.offset} + entry.bytes;
         if (!inStrings(state, entry.name) || !isInOrder || entry.bytes == 0 ||

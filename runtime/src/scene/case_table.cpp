@@ -157,11 +157,10 @@ Status CaseTable::checkEmitter(const MaterialKey& key, const std::string& where)
         differing.own = isOther ? 0 : own;
     }
     if (!isEmpty(differing)) {
-        return makeError(
-            "scene-edit-case", where,
-            "the package has no shader that samples lights that differ from its own in: " +
-                namesOf(differing),
-            "compile the package with --fallback, or from a scene that has such a light");
+        return makeError("scene-edit-case", where,
+                         "the package has no shader that samples lights that differ from its own in: " +
+                             namesOf(differing),
+                         "compile the package with --fallback, or from a scene that has such a light");
     }
     return okStatus();
 }

@@ -6,9 +6,9 @@
 #include <glint/scene.h>
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
-#include <map>
 #include <vector>
 
 namespace glint {

@@ -48,7 +48,8 @@ TEST(SceneSource, AlphaHasWhatItReadsAlone) {
     EXPECT_TRUE(defines(sceneSource(plan, settings), "GLINT_ALPHA_ALWAYS_INPUTS", "0x0u"));
     settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     const std::string text = sceneSource(plan, settings);
-    EXPECT_TRUE(defines(text, "GLINT_ALPHA_ALWAYS_INPUTS", fmt::format("{:#x}u", bit("texCoord0").shared() >> 32U)));
+    EXPECT_TRUE(
+        defines(text, "GLINT_ALPHA_ALWAYS_INPUTS", fmt::format("{:#x}u", bit("texCoord0").shared() >> 32U)));
     EXPECT_TRUE(defines(text, "GLINT_ALPHA_SOMETIMES_INPUTS", "0x1u"));
 }
 

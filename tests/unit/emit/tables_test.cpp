@@ -412,8 +412,7 @@ TEST(Tables, GivePrimitivesTheirPrimaryMask) {
     EXPECT_EQ(primitives[0].key.lobes, bit("clearcoat").shared());
     EXPECT_EQ((plan.always | plan.sometimes) & bit("clearcoat"), 0U);
     for (std::size_t i = 0; i < 4; ++i) {
-        EXPECT_EQ(plan.model->maskOf(primitives[i].key),
-                  plan.primaryMaskOfPrimitive[i]);
+        EXPECT_EQ(plan.model->maskOf(primitives[i].key), plan.primaryMaskOfPrimitive[i]);
     }
 }
 

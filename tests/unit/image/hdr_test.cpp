@@ -1,5 +1,4 @@
 #include "image/image_file.h"
-
 #include "support/hdr_writer.h"
 #include "support/must.h"
 

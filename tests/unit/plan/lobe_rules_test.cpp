@@ -33,7 +33,8 @@ TEST(LobeKey, SpecularGlossinessExcludesTheOthersButNotTheCore) {
     Dropped dropped;
     const materials::FeatureMask key = compiler::makeKey(material, fullPrimitive(), kTested, &dropped);
     EXPECT_EQ(key & materials::builtinMaterialModel().lobes, bit("specularGlossiness"));
-    for (const std::string_view lobe : materials::builtinMaterialModel().names(materials::builtinMaterialModel().lobes)) {
+    for (const std::string_view lobe :
+         materials::builtinMaterialModel().names(materials::builtinMaterialModel().lobes)) {
         const bool is = lobe == "unlit" || lobe == "specularGlossiness";
         EXPECT_EQ(reasonFor(dropped, std::string(lobe)).empty(), is) << lobe;
     }
@@ -65,7 +66,8 @@ TEST(LobeKey, UnlitWinsOverSpecularGlossiness) {
     material.give("KHR_materials_unlit");
     material.give("KHR_materials_pbrSpecularGlossiness");
     Dropped dropped;
-    EXPECT_EQ(compiler::makeKey(material, fullPrimitive(), kTested, &dropped) & materials::builtinMaterialModel().lobes,
+    EXPECT_EQ(compiler::makeKey(material, fullPrimitive(), kTested, &dropped) &
+                  materials::builtinMaterialModel().lobes,
               bit("unlit"));
     EXPECT_FALSE(reasonFor(dropped, "specularGlossiness").empty());
 }
@@ -155,9 +157,9 @@ TEST(HitLobes, ALobeThatHitsDoNotKeepTakesItsInputsWithIt) {
         }
         Dropped dropped;
         const materials::FeatureMask whole = compiler::makeKey(fullMaterial(), fullPrimitive(), kTested);
-        const materials::FeatureMask kept =
-            compiler::makeKey(fullMaterial(), fullPrimitive(),
-                              {package::AlphaPolicy::Tested, materials::builtinMaterialModel().lobes & ~lobe}, &dropped);
+        const materials::FeatureMask kept = compiler::makeKey(
+            fullMaterial(), fullPrimitive(),
+            {package::AlphaPolicy::Tested, materials::builtinMaterialModel().lobes & ~lobe}, &dropped);
         EXPECT_EQ(kept & lobe, 0U) << info.name;
         EXPECT_EQ(kept & ~whole, 0U) << info.name;
         EXPECT_NE(reasonFor(dropped, std::string(info.name)).find("hits do not keep it"), std::string::npos);
@@ -181,7 +183,8 @@ TEST(HitLobes, NoneLeavesTheCoreAndTheBaseModels) {
     EXPECT_EQ(compiler::makeKey(other, fullPrimitive(), none) & materials::builtinMaterialModel().lobes,
               bit("specularGlossiness"));
     other.give("KHR_materials_unlit");
-    EXPECT_EQ(compiler::makeKey(other, fullPrimitive(), none) & materials::builtinMaterialModel().lobes, bit("unlit"));
+    EXPECT_EQ(compiler::makeKey(other, fullPrimitive(), none) & materials::builtinMaterialModel().lobes,
+              bit("unlit"));
 }
 
 }  // namespace

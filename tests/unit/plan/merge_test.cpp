@@ -31,8 +31,7 @@ std::vector<compiler::WeightedKey> randomKeys(std::mt19937& random, std::size_t 
     std::map<materials::FeatureMask, double> weights;
     while (weights.size() < count) {
         const materials::FeatureMask mask = std::uint64_t{random()} << 32U | random();
-        const materials::FeatureMask sparse =
-            mask & (std::uint64_t{random()} << 32U | random()) & known;
+        const materials::FeatureMask sparse = mask & (std::uint64_t{random()} << 32U | random()) & known;
         // The weights range from a hundred thousand to one, and some keys have no hits.
         weights[sparse] = random() % 8 == 0 ? 0.0 : std::exp2(static_cast<double>(random() % 17));
     }

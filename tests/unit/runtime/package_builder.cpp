@@ -193,7 +193,8 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     }
     std::vector<package::CaseEntry> cases;
     for (const CaseSpec& entry : spec.cases) {
-        cases.push_back({wordsOf(entry.always), wordsOf(entry.sometimes), addString(strings, entry.name), entry.keyCount});
+        cases.push_back({wordsOf(entry.always), wordsOf(entry.sometimes), addString(strings, entry.name),
+                         entry.keyCount});
     }
     const std::vector<package::SceneEntry> scenes = makeScenes(spec, strings);
     std::vector<package::EffectEntry> effects = spec.effects;

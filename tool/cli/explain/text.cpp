@@ -331,8 +331,9 @@ std::set<materials::FeatureMask> primaryMasksOf(const compiler::Build& build, co
 }
 
 base::Json primaryToJson(const compiler::Build& build, const compiler::Key& key, int material) {
-    return listOf(primaryMasksOf(build, key, material),
-                  [&](const materials::FeatureMask& mask) { return featuresToJson(*build.plan.model, mask); });
+    return listOf(primaryMasksOf(build, key, material), [&](const materials::FeatureMask& mask) {
+        return featuresToJson(*build.plan.model, mask);
+    });
 }
 
 // The values of the material that animations change: planning drops no feature for a value that passes.

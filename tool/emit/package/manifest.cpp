@@ -349,9 +349,9 @@ Manifest manifestOf(const gltf::SceneList& scenes, const CompiledPackage& packag
         }
     }
     for (const Key& key : plan.keys) {
-        manifest.keys.push_back({namesOf(model, key.mask), toHex(key.mask),
-                                 key.primitives.size(), placesOf(scenes, key.materials),
-                                 roundedShare(key.share), static_cast<std::uint32_t>(key.shaderId)});
+        manifest.keys.push_back({namesOf(model, key.mask), toHex(key.mask), key.primitives.size(),
+                                 placesOf(scenes, key.materials), roundedShare(key.share),
+                                 static_cast<std::uint32_t>(key.shaderId)});
     }
     for (const DroppedFeature& feature : plan.dropped) {
         manifest.dropped.push_back({feature.feature, placesOf(scenes, feature.materials), feature.reason});

@@ -149,9 +149,10 @@ std::vector<FieldEntry> makeFields(const MaterialLayout& layout, StringTable& st
     for (const TextureSlot& row : layout.textures) {
         const std::string& name = layout.model->textures[static_cast<std::size_t>(row.texture)].name;
         const auto slot = static_cast<std::uint32_t>(row.slot);
-        entries.push_back({strings.add(name),
-                           layout.textureOffset + slot * static_cast<std::uint32_t>(sizeof(gpu::TextureRecord)),
-                           sizeof(gpu::TextureRecord), wordOf(row.model)});
+        entries.push_back(
+            {strings.add(name),
+             layout.textureOffset + slot * static_cast<std::uint32_t>(sizeof(gpu::TextureRecord)),
+             sizeof(gpu::TextureRecord), wordOf(row.model)});
     }
     std::ranges::stable_sort(entries, {}, [](const FieldEntry& entry) {
         return std::pair(entry.model & gpu::kModelNumber, entry.offset);
@@ -166,9 +167,7 @@ EmissionEntry emissionOf(const MaterialLayout& layout, const EmitterFeatures& fe
         return field == layout.fields.end() ? EmissionEntry::kNone : field->offset;
     };
     const int slot = layout.slotOf(model.findTexture("emissiveTexture"));
-    const auto inputOf = [&](std::string_view name) {
-        return model.words(model.mask(name)).inputs;
-    };
+    const auto inputOf = [&](std::string_view name) { return model.words(model.mask(name)).inputs; };
     const auto [always, sometimes] = model.caseWords(features.always, features.sometimes);
     return {offsetOf("emissiveFactor"),
             offsetOf("emissiveStrength"),
@@ -190,9 +189,7 @@ std::optional<OpacityEntry> opacityOf(const MaterialLayout& layout) {
         return std::nullopt;
     }
     const int slot = layout.slotOf(model.findTexture("baseColorTexture"));
-    const auto inputOf = [&](std::string_view name) {
-        return model.words(model.mask(name)).inputs;
-    };
+    const auto inputOf = [&](std::string_view name) { return model.words(model.mask(name)).inputs; };
     constexpr std::uint32_t kAlpha = 3 * sizeof(float);  // after red, green and blue
     return OpacityEntry{factor->offset + kAlpha,
                         cutoff->offset,
@@ -417,7 +414,9 @@ MaterialTables makeMaterialTables(const gltf::Scene& scene, const MaterialLayout
                 tables.textures.push_back(entry);
             }
             const int slot = layout.slotOf(static_cast<int>(i));
-            const int model = material.model().features[static_cast<std::size_t>(material.model().textures[i].feature)].model;
+            const int model = material.model()
+                                  .features[static_cast<std::size_t>(material.model().textures[i].feature)]
+                                  .model;
             if (slot < 0 || !isOfModel(material, model)) {
                 continue;
             }

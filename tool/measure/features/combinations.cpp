@@ -180,9 +180,8 @@ bool hasFeature(const materials::Material& material, int feature, bool isRich) {
     inputs.hasTexCoords1 = isRich;
     inputs.colors = isRich ? materials::ColorContent::Varying : inputs.colors;
     inputs.attributes = ~std::uint64_t{0};
-    return feature < 0 ||
-           compiler::makeKey(material, inputs, {})
-               .has(material.model().features[static_cast<std::size_t>(feature)].bit);
+    return feature < 0 || compiler::makeKey(material, inputs, {})
+                              .has(material.model().features[static_cast<std::size_t>(feature)].bit);
 }
 
 // One combination, before it is known whether its key has the feature.

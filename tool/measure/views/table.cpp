@@ -168,8 +168,9 @@ void showKeys(const ViewInput& input, ViewValues& values) {
             return;
         }
         const auto place = std::ranges::lower_bound(ordered, set) - ordered.begin();
-        filler.category(i, static_cast<std::uint32_t>(place),
-                        [&] { return fmt::format("{}", fmt::join(input.package->featureNames({set, 0, 0, 0}), " ")); });
+        filler.category(i, static_cast<std::uint32_t>(place), [&] {
+            return fmt::format("{}", fmt::join(input.package->featureNames({set, 0, 0, 0}), " "));
+        });
     });
 }
 
@@ -298,7 +299,8 @@ void showCost(const ViewInput& input, ViewValues& values) {
     }
     std::vector<double> ofCase;
     for (const package::CaseEntry& entry : input.package->cases()) {
-        ofCase.push_back(weightOfFeatures(input.model->maskOf(entry.always), input.model->maskOf(entry.sometimes), input));
+        ofCase.push_back(
+            weightOfFeatures(input.model->maskOf(entry.always), input.model->maskOf(entry.sometimes), input));
     }
     std::vector<const std::vector<std::uint32_t>*> hits;  // of each effect
     for (const auto& [name, layer] : input.layers) {

@@ -265,7 +265,8 @@ struct FieldEntry {
     StringRef name;        // of the parameter or the texture: "clearcoatFactor"
     std::uint32_t offset;  // in a record, bytes
     std::uint32_t bytes;
-    // The model whose records have it, as in keys; 0: all have it. Fields of different models share their places.
+    // The model whose records have it, as in keys; 0: all have it. Fields of different models share their
+    // places.
     std::uint32_t model;
 };
 
