@@ -31,8 +31,7 @@ TEST(Grazing, SamplesOfWeakLobesDoNotBringThePeakOfSmoothOnes) {
         return static_cast<float>(std::uniform_real_distribution<double>(0.0, 0.9999999)(engine));
     };
     for (const glsl::uint lobes : {0U, GLINT_TRANSMISSION | GLINT_VOLUME}) {
-        const glsl::Features features{
-            .sometimesLobes = 0xFFFFFFFFU, .sometimesInputs = 0xFFFFFFFFU, .lobes = lobes};
+        const glsl::Features features{0U, 0U, 0xFFFFFFFFU, 0xFFFFFFFFU, 0U, 0U, 0U, lobes, 0U, 0U, 0U};
         glsl::Bsdf b{};
         b.alpha = glsl::vec2(glsl::kMinAlpha);
         b.f0 = glsl::vec3(0.04F);

@@ -20,8 +20,7 @@ struct TestMaterial {
     glsl::uint inputs = 0;
 
     glsl::Features features() const {
-        return {
-            .sometimesLobes = 0xFFFFFFFFU, .sometimesInputs = 0xFFFFFFFFU, .lobes = lobes, .inputs = inputs};
+        return {0U, 0U, 0xFFFFFFFFU, 0xFFFFFFFFU, 0U, 0U, 0U, lobes, inputs, 0U, 0U};
     }
     bool has(glsl::uint lobe) const {
         return (lobes & lobe) != 0U;

@@ -31,7 +31,7 @@ glsl::Features featuresOf(const materials::Material& material) {
     glsl::uint lobes = 0;
     lobes |= material["clearcoatFactor"] > 0.0F ? GLINT_CLEARCOAT : 0U;
     lobes |= toVec(material["sheenColorFactor"]) != Vec3(0.0) ? GLINT_SHEEN : 0U;
-    return {0U, GLINT_PARTIAL_METAL, 0xFFFFFFFFU, 0U, lobes, 0U};
+    return {0U, GLINT_PARTIAL_METAL, 0xFFFFFFFFU, 0U, 0U, 0U, 0U, lobes, 0U, 0U, 0U};
 }
 
 glsl::Bsdf bsdfOf(const materials::Material& material, const Vec3& color, const Vec3& view) {

@@ -111,7 +111,7 @@ struct SurfaceLobes {
     glsl::Features features() const {
         // Here every material has both bases. The specification mixes them whatever the share of the metal
         // is.
-        return {.alwaysInputs = GLINT_PARTIAL_METAL, .sometimesLobes = 0xFFFFFFFFU, .lobes = lobes};
+        return {0U, GLINT_PARTIAL_METAL, 0xFFFFFFFFU, 0U, 0U, 0U, 0U, lobes, 0U, 0U, 0U};
     }
     bool has(glsl::uint lobe) const {
         return (lobes & lobe) != 0U;

@@ -83,9 +83,16 @@ public:
     }
 
 private:
+    static std::string textOf(const FeatureMask& mask) {
+        return toHex(mask);
+    }
+    template <typename Value>
+    static std::string textOf(const Value& value) {
+        return fmt::format("{}", value);
+    }
     template <typename... Values>
     void add(const Values&... values) {
-        ((text_ += fmt::format("{};", values)), ...);
+        ((text_ += textOf(values) + ';'), ...);
         text_ += '\n';
     }
 
