@@ -22,7 +22,7 @@ struct Features {
 };
 
 // The members of Features that are the key of a geometry.
-#if GLINT_PACK_MODELS
+#if GLINT_USES_MODELS
 #define GLINT_KEY(geometry) (geometry).featureLobes, (geometry).featureInputs, (geometry).featureModel, (geometry).featureOwn
 #else
 #define GLINT_KEY(geometry) (geometry).featureLobes, (geometry).featureInputs, 0u, 0u

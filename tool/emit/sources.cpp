@@ -115,7 +115,7 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     defineFeatures(text, "GLINT_ALPHA", *plan.model, passesGlass ? plan.primaryAlways : plan.always & alpha,
                    passesGlass ? plan.primarySometimes : plan.sometimes & alpha);
     text += "// Some key is of a model that a pack declares.\n";
-    text += fmt::format("#define GLINT_PACK_MODELS {}\n", flag(used != used.shared()));
+    text += fmt::format("#define GLINT_USES_MODELS {}\n", flag(used != used.shared()));
     text += "// Settings\n";
     text += fmt::format("#define GLINT_ALPHA_TESTED {}\n", flag(alphaPolicy != package::AlphaPolicy::Opaque));
     text += fmt::format("#define GLINT_BLENDED {}\n", flag(hasBlended));

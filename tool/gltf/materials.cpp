@@ -195,9 +195,12 @@ void warnOfConflicts(Document& document, const std::string& pointer, const mater
     std::set<int> told;
     for (const materials::Exclusion& exclusion : model.exclusions) {
         const int by = objectOf(model.features[static_cast<std::size_t>(exclusion.by)]);
+        if (by < 0) {
+            continue;
+        }
         for (const materials::Feature& feature : model.features) {
-            const int object = (exclusion.excluded & feature.mask()) != 0 ? objectOf(feature) : -1;
-            if (by < 0 || object < 0 || object == by || !told.insert(object).second) {
+            const int object = exclusion.excluded.has(feature.bit) ? objectOf(feature) : -1;
+            if (object < 0 || object == by || !told.insert(object).second) {
                 continue;
             }
             document.warn("material-conflict",

@@ -197,7 +197,7 @@ std::string lostInput(const Material& material, const PrimitiveInputs& primitive
     }
     for (const Exclusion& exclusion : model.exclusions) {
         const Feature& by = model.features[static_cast<std::size_t>(exclusion.by)];
-        if ((asked & by.mask()) != 0 && exclusion.excluded.has(feature.bit)) {
+        if (asked.has(by.bit) && exclusion.excluded.has(feature.bit)) {
             return {};
         }
     }

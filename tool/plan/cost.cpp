@@ -23,11 +23,22 @@ double idleShare(double p) {
 // skipped.
 template <typename Use>
 void forEachFeature(const materials::MaterialModel& model, materials::FeatureMask mask, const Use& use) {
-    for (const materials::Feature& feature : model.features) {
-        if (mask.has(feature.bit)) {
-            use(feature);
+    // Those of models come last, and follow each other as their bits do.
+    const int ofModels = model.models.empty() ? 0
+                                              : model.models.back().firstBit + model.models.back().bits -
+                                                    materials::kFirstOfModels;
+    const std::size_t shared = model.features.size() - static_cast<std::size_t>(ofModels);
+    for (std::size_t i = 0; i < shared; ++i) {
+        if (mask.has(model.features[i].bit)) {
+            use(model.features[i]);
         }
     }
+    mask.forEach([&](int bit) {
+        const int place = bit - materials::kFirstOfModels;
+        if (place >= 0 && place < ofModels) {
+            use(model.features[shared + static_cast<std::size_t>(place)]);
+        }
+    });
 }
 
 // Returns the surplus of an average hit of a case in which the share p of the hits have the feature.

@@ -19,6 +19,7 @@ constexpr std::size_t kNobody = std::numeric_limits<std::size_t>::max();
 struct Group {
     Cluster cluster;
     KeySet set;
+    int model = -1;  // modelOf(set)
     double cost = 0.0;
     bool alive = true;
     // `partner` is the later group with which merging costs least; `increase` is the cost that this merge
@@ -27,7 +28,25 @@ struct Group {
     double increase = 0.0;
 };
 
+// What merging keys of different base models costs, whose code has nothing in common: more than any other
+// merge, so that they share a case only where there would be too many cases.
+constexpr double kOtherModel = 1e9;
+constexpr int kSeveralModels = -2;
+
+// Returns the index of the model of a pack that all keys have, -1 if none has one, or kSeveralModels.
+int modelOf(const KeySet& set) {
+    const std::vector<materials::BaseModel>& models = set.model->models;
+    const auto found = std::ranges::find_if(
+        models, [&](const materials::BaseModel& model) { return set.any.has(model.firstBit - 1); });
+    return found == models.end()                 ? -1
+           : set.always.has(found->firstBit - 1) ? static_cast<int>(found - models.begin())
+                                                 : kSeveralModels;
+}
+
 double increaseOf(const Group& a, const Group& b) {
+    if (a.model != b.model || a.model == kSeveralModels) {
+        return kOtherModel;
+    }
     return mergingCost(a.set, b.set) - a.cost - b.cost - kCaseCost;
 }
 
@@ -57,6 +76,7 @@ std::vector<Group> makeGroups(std::vector<Cluster> start, std::span<const Weight
     for (Cluster& cluster : start) {
         Group group;
         group.set = toSet(cluster.keys, keys);
+        group.model = modelOf(group.set);
         group.cost = mergingCost(group.set);
         group.cluster = std::move(cluster);
         groups.push_back(std::move(group));
@@ -89,6 +109,7 @@ void mergeWithPartner(std::vector<Group>& groups, std::size_t index) {
     list.insert(list.end(), other.cluster.keys.begin(), other.cluster.keys.end());
     std::ranges::sort(list);
     group.set = unionOf(group.set, other.set);
+    group.model = modelOf(group.set);
     group.cost = mergingCost(group.set);
     other.alive = false;
 
@@ -119,11 +140,13 @@ constexpr double kLeastSaving = 1e-9;
 struct Movable {
     Cluster cluster;
     KeySet set;
+    int model = -1;     // modelOf(set)
     double cost = 0.0;  // with kCaseCost; 0 for none
 
     void update(std::span<const WeightedKey> keys) {
         const bool isEmpty = cluster.keys.empty();
         set = isEmpty ? KeySet{} : toSet(cluster.keys, keys);
+        model = modelOf(set);
         cost = isEmpty ? 0.0 : mergingCost(set) + kCaseCost;
     }
 };
@@ -135,9 +158,10 @@ std::size_t betterPlace(const std::vector<Movable>& places, std::size_t from, co
     std::size_t best = kNobody;
     double least = saving - kLeastSaving;
     bool opened = false;
+    const int model = modelOf(key);
     for (std::size_t i = 0; i < places.size(); ++i) {
         const bool isEmpty = places[i].cluster.keys.empty();
-        if (i == from || (isEmpty && (!mayOpen || opened))) {
+        if (i == from || (isEmpty ? !mayOpen || opened : places[i].model != model)) {
             continue;
         }
         opened = opened || isEmpty;

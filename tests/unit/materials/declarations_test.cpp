@@ -83,7 +83,7 @@ TEST(Declarations, OneFileAddsAFeature) {
         "neutral": [{"when": "wetness == 0", "because": "wetness is 0"}],
         "effects": [{"does": "reflects", "when": "wetness > 0", "roughness": "0.02", "text": "is wet"}]})"));
     const materials::FeatureMask wet = model.mask("wet");
-    EXPECT_NE(wet & materials::builtinMaterialModel().lobes, 0U);
+    EXPECT_NE(wet & model.lobes, 0U);
     EXPECT_NE(model.featureDefines().find("#define GLINT_WET_TEXTURE "), std::string::npos);
     materials::Material material(model);
     material["metallicFactor"] = 0.0F;
