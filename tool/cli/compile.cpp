@@ -23,7 +23,6 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
-#include <ranges>
 #include <span>
 
 namespace glint::cli {
@@ -83,19 +82,22 @@ struct Outcome {
 };
 
 base::Json shadersToJson(const Outcome& outcome) {
-    const auto isUsed = [](const compiler::Case& shader) { return !shader.isRetired(); };
-    return listOf(outcome.plan.cases | std::views::filter(isUsed),
-                  [&](const compiler::Case& shader) -> base::Json {
-                      return {{"id", shader.shaderId},
-                              {"name", shader.name},
-                              {"always", featuresToJson(*outcome.plan.model, shader.always)},
-                              {"sometimes", featuresToJson(*outcome.plan.model, shader.sometimes)},
-                              {"keys", shader.keys.size()},
-                              {"share", compiler::roundedShare(shader.share)},
-                              {"reason", toString(shader.reason)},
-                              {"materials", materialsToJson(outcome.scenes, shader.materials)},
-                              {"stages", stagesToJson(outcome.package, shader.shaderId)}};
-                  });
+    base::Json list = base::Json::array();
+    for (const compiler::Case& shader : outcome.plan.cases) {
+        if (shader.isRetired()) {
+            continue;
+        }
+        list.push_back({{"id", shader.shaderId},
+                        {"name", shader.name},
+                        {"always", featuresToJson(*outcome.plan.model, shader.always)},
+                        {"sometimes", featuresToJson(*outcome.plan.model, shader.sometimes)},
+                        {"keys", shader.keys.size()},
+                        {"share", compiler::roundedShare(shader.share)},
+                        {"reason", toString(shader.reason)},
+                        {"materials", materialsToJson(outcome.scenes, shader.materials)},
+                        {"stages", stagesToJson(outcome.package, shader.shaderId)}});
+    }
+    return list;
 }
 
 base::Json plannedToJson(const Outcome& outcome) {

@@ -17,7 +17,6 @@
 #include <algorithm>
 #include <bit>
 #include <memory>
-#include <ranges>
 #include <set>
 
 namespace glint::cli {
@@ -79,12 +78,17 @@ base::Json shadersToJson(const inspect::InspectedPackage& inspected) {
 }
 
 base::Json scenesToJson(const inspect::InspectedPackage& inspected) {
-    return listOf(std::views::iota(0U, inspected.package.sceneCount()), [&](std::uint32_t i) -> base::Json {
+    base::Json list = base::Json::array();
+    for (std::uint32_t i = 0; i < inspected.package.sceneCount(); ++i) {
         const PackageScene scene = inspected.package.scene(i);
-        return {{"name", std::string(scene.name)},     {"variant", base::textOrNull(inspected.variantOf(i))},
-                {"materials", scene.materials.size()}, {"primitives", scene.primitives.size()},
-                {"textures", scene.textures.size()},   {"samplers", scene.samplers.size()}};
-    });
+        list.push_back({{"name", std::string(scene.name)},
+                        {"variant", base::textOrNull(inspected.variantOf(i))},
+                        {"materials", scene.materials.size()},
+                        {"primitives", scene.primitives.size()},
+                        {"textures", scene.textures.size()},
+                        {"samplers", scene.samplers.size()}});
+    }
+    return list;
 }
 
 package::ShadowPlacement firstShadowsOf(const Package& package) {
