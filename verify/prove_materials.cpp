@@ -299,8 +299,8 @@ Result<FeatureProof> compileFeatureProof(const compiler::Build& build, const mat
     const package::KeyWords key = plan.model->words(mask);
     context.set("lobes", std::to_string(key.lobes));
     context.set("inputBits", std::to_string(key.inputs));
-    context.set("model", fmt::format("{:#x}u", key.model));
-    context.set("own", fmt::format("{:#x}u", key.own));
+    context.set("modelWord", fmt::format("{:#x}u", key.model));
+    context.set("ownWord", fmt::format("{:#x}u", key.own));
     GLINT_TRY(const auto text, compiler::renderTemplate(sources, kProofTemplate, context));
     GLINT_TRY(const auto glsl,
               compiler::flatten(kProofName, text, sources.lookup(), compiler::FlattenSide::Glsl));
