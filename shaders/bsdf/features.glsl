@@ -23,7 +23,8 @@ struct Features {
 
 // The members of Features that are the key of a geometry.
 #if GLINT_USES_MODELS
-#define GLINT_KEY(geometry) (geometry).featureLobes, (geometry).featureInputs, (geometry).featureModel, (geometry).featureOwn
+#define GLINT_KEY(geometry)                                                                                     \
+    (geometry).featureLobes, (geometry).featureInputs, (geometry).featureModel, (geometry).featureOwn
 #else
 #define GLINT_KEY(geometry) (geometry).featureLobes, (geometry).featureInputs, 0u, 0u
 #endif
