@@ -299,7 +299,8 @@ void fillBsdfReflection(InputSource& in) {
 }
 
 void fillBsdfWithoutSheen(InputSource& in) {
-    putMaterialViewLight(in, static_cast<std::uint32_t>(materials::builtinMaterialModel().mask("sheen").shared()));
+    putMaterialViewLight(
+        in, static_cast<std::uint32_t>(materials::builtinMaterialModel().mask("sheen").shared()));
 }
 
 void fillBsdfSample(InputSource& in) {
