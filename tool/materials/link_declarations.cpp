@@ -19,7 +19,7 @@ void ModelBuilder::assignBits() {
         // base.
         return std::tuple(row.isOfPack, base != nullptr, base != nullptr ? base->order : 0.0,
                           base != nullptr ? std::string_view(base->feature.name) : std::string_view(),
-                          !isLobe(row.feature), row.order, std::string_view(row.feature.name));
+                          i != row.base, !isLobe(row.feature), row.order, std::string_view(row.feature.name));
     });
     std::vector<int> indexOf(pending_.size());
     int lobe = 0;

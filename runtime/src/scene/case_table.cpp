@@ -112,11 +112,14 @@ Status CaseTable::checkAttributes(const MaterialKey& key, const std::string& whe
 }
 
 Status CaseTable::checkKnown(const MaterialKey& key, const std::string& where) const {
-    package::KeyWords unknown = without(key.features, known_);
-    const auto own = knownOwn_.find(key.features.model);
-    if (own == knownOwn_.end() || (key.features.own & ~own->second) != 0) {
-        unknown.model = key.features.model;
-        unknown.own = key.features.own & ~(own == knownOwn_.end() ? 0 : own->second);
+    const package::KeyWords all{key.features.lobes | key.hitFeatures.lobes,
+                                key.features.inputs | key.hitFeatures.inputs, key.features.model,
+                                key.features.own | key.hitFeatures.own};
+    package::KeyWords unknown = without(all, known_);
+    const auto own = knownOwn_.find(all.model);
+    if (own == knownOwn_.end() || (all.own & ~own->second) != 0) {
+        unknown.model = all.model;
+        unknown.own = all.own & ~(own == knownOwn_.end() ? 0 : own->second);
     }
     if (!isEmpty(unknown)) {
         return makeError("scene-edit-feature", where,

@@ -205,6 +205,19 @@ TEST_F(MaterialPacks, DivisionByZeroDropsNothing) {
     EXPECT_NE(compiler::makeKey(materials::Material(*model), {}, {}) & model->mask("mud"), 0U);
 }
 
+// A model's further features may have names and orders before its base's.
+TEST_F(MaterialPacks, TheBaseComesFirstOfItsModel) {
+    write("zinc.json", R"json({"name": "zinc", "extension": "EXT_zinc", "stage": "base",
+        "features": [{"name": "alloy", "gltf": "alloy", "order": -1,
+                      "neutral": [{"when": "not has(zinc)", "because": "there is no zinc"}]}]})json");
+    const materials::MaterialModel* model = must(load());
+    ASSERT_EQ(model->models.size(), 1U);
+    const materials::BaseModel& zinc = model->models[0];
+    EXPECT_EQ(zinc.name, "zinc");
+    EXPECT_EQ(model->mask("zinc"), materials::FeatureMask::ofBit(zinc.firstBit - 1));
+    EXPECT_EQ(model->words(model->mask("alloy")).own, 1U);
+}
+
 // Inputs that find no place among the inputs take bits of the lobes' word, and there is an end to these, too.
 TEST_F(MaterialPacks, FeaturesFillTheKey) {
     const std::size_t room = materials::kFirstOfModels - materials::builtinMaterialModel().features.size();
