@@ -190,6 +190,7 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky,
     float random = hostRandom(hit.target, shadingDimension(kDimensionLight));
     uint lights = hostLightCount(hit.position);
     float total = 0.0;
+    vec3 whole = vec3(0.0);
     vec3 chosen = vec3(0.0);  // light with the weight 1
     for (uint i = 0u; i < lights; ++i) {
         DrawnLight light = lightOfSurface(hit, features, i);
@@ -218,6 +219,7 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky,
             continue;
         }
         total += weight;
+        whole += contribution;
         float probability = weight / total;
         if (random < probability) {
             random /= probability;
@@ -241,6 +243,7 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky,
             continue;
         }
         total += weight;
+        whole += point.irradiance;
         float probability = weight / total;
         if (random < probability) {
             random /= probability;
@@ -254,6 +257,12 @@ void chooseLight(Hit hit, Surface surface, Features features, SkyShares sky,
     }
 #endif
     result.direct = chosen * total;
+#if GLINT_SHADES_ALL
+    // The chosen light stands for all of them, so its shadow is that of the whole.
+    if (total > 0.0 && shadesAll(features)) {
+        result.direct = shadeAll(surface.bsdf.layers, features, surface.bsdf.view, whole);
+    }
+#endif
 #if GLINT_EFFECT_SHADOW
     // Nothing is between the surface and a light around it.
     if (result.shadowDistance <= 0.0) {

@@ -44,6 +44,44 @@ LightSample foundPoint(HostLight light, LightSample centre, uint slot, float den
 
 #endif
 
+#if GLINT_SHADES_ALL
+
+// A model that shades all lights at once needs the sum of their light before any shadow ray leaves: directLight() goes
+// over the lights twice.
+bool sumsLight = false;      // in the first turn: all light arrives
+float wholeLuminance = 0.0;  // of the sum; 0 if each light counts by itself
+vec3 wholeLight;             // that the model makes of the sum
+
+// Returns the part of the whole light that `light` stands for.
+vec3 partOfWhole(vec3 light) {
+    return wholeLuminance > 0.0 ? luminance(light) / wholeLuminance * wholeLight : light;
+}
+
+#else
+
+vec3 partOfWhole(vec3 light) {
+    return light;
+}
+
+#endif
+
+#if GLINT_EFFECT_SHADOW
+
+vec3 sendLight(Hit hit, SurfaceShadow ray, inout ShadowCounts counts) {
+#if GLINT_SHADES_ALL
+    if (sumsLight) {
+        return ray.light;
+    }
+#if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
+    ray.pastGlass = partOfWhole(ray.pastGlass);
+#endif
+#endif
+    ray.light = partOfWhole(ray.light);
+    return sendShadow(hit, ray, counts);
+}
+
+#endif
+
 #if GLINT_SIZED_LIGHTS && GLINT_LIGHT_SAMPLES > 0 && GLINT_RAY_EFFECTS > 0
 
 // The light of all lights that the rays of effects meet, as far as it is known.
@@ -60,7 +98,7 @@ vec3 foundLight(Hit hit, Features features, inout ShadowCounts counts) {
                 light.chance = leafChance(receiver, leaf);
                 float density = densityOfPoints(light, centre, lightPointCount(light));
                 LightSample point = foundPoint(light, centre, slot, density);
-                sum += sendShadow(
+                sum += sendLight(
                     hit, surfaceShadow(point.direction, point.distance, point.irradiance, kShadowOfLight), counts);
             }
         }
@@ -73,7 +111,7 @@ vec3 foundLight(Hit hit, Features features, inout ShadowCounts counts) {
 #if GLINT_EFFECT_SHADOW
 
 // The light of all lights as far as it is known. traceWaiting() returns the rest.
-vec3 directLight(Hit hit, Surface surface, Features features, SkyShares sky, inout ShadowCounts counts) {
+vec3 lightOfEach(Hit hit, Surface surface, Features features, SkyShares sky, inout ShadowCounts counts) {
     vec3 sum = vec3(0.0);
     uint lights = hostLightCount(hit.position);
     for (uint i = 0u; i < lights; ++i) {
@@ -111,7 +149,7 @@ vec3 directLight(Hit hit, Surface surface, Features features, SkyShares sky, ino
             LightSample point = foundPoint(light, centre, j, density);
             if (point.irradiance != vec3(0.0)) {
                 vec3 arriving = float(points) * point.irradiance;
-                sum += sendShadow(hit, surfaceShadow(point.direction, point.distance, arriving, sees), counts);
+                sum += sendLight(hit, surfaceShadow(point.direction, point.distance, arriving, sees), counts);
             }
         }
 #endif
@@ -141,7 +179,7 @@ vec3 directLight(Hit hit, Surface surface, Features features, SkyShares sky, ino
             if (luminance(scattered) <= 0.0) {
                 counts.facing += 1u;
             } else if (point.distance <= 0.0) {
-                sum += scattered;  // nothing is between the surface and a light around it
+                sum += partOfWhole(scattered);  // nothing is between the surface and a light around it
             } else {
                 SurfaceShadow shadow = surfaceShadow(point.direction, point.distance, scattered, sees);
 #if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
@@ -153,7 +191,7 @@ vec3 directLight(Hit hit, Surface surface, Features features, SkyShares sky, ino
                         scatteredLight(whole, features, hit.geometricNormal, direction) * point.irradiance;
                 }
 #endif
-                sum += sendShadow(hit, shadow, counts);
+                sum += sendLight(hit, shadow, counts);
             }
         }
     }
@@ -161,6 +199,26 @@ vec3 directLight(Hit hit, Surface surface, Features features, SkyShares sky, ino
     sum += foundLight(hit, features, counts);
 #endif
     return sum;
+}
+
+vec3 directLight(Hit hit, Surface surface, Features features, SkyShares sky, inout ShadowCounts counts) {
+#if GLINT_SHADES_ALL
+    vec3 sum;
+    for (uint turn = shadesAll(features) ? 0u : 1u; turn < 2u; ++turn) {
+        sumsLight = turn == 0u;
+        ShadowCounts counted = counts;
+        sum = lightOfEach(hit, surface, features, sky, counted);
+        if (sumsLight) {
+            wholeLuminance = luminance(sum);
+            wholeLight = shadeAll(surface.bsdf.layers, features, surface.bsdf.view, sum);
+        } else {
+            counts = counted;
+        }
+    }
+    return sum;
+#else
+    return lightOfEach(hit, surface, features, sky, counts);
+#endif
 }
 
 #else
@@ -173,6 +231,9 @@ vec3 directLight(Hit hit, Surface surface, Features features) {
         vec3 scattered = unshadowedLight(hit, surface, features, light);
         sum += luminance(scattered) > 0.0 ? scattered : vec3(0.0);
     }
+#if GLINT_SHADES_ALL
+    sum = shadeAll(surface.bsdf.layers, features, surface.bsdf.view, sum);
+#endif
     return sum;
 }
 

@@ -11,9 +11,11 @@
 #include "support/printed_files.h"
 #include "support/temporary_folder.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <numbers>
 #include <regex>
@@ -130,6 +132,12 @@ void expectLight(const Pixel& pixel, double share, const std::string& what) {
     for (std::size_t channel = 0; channel < 3; ++channel) {
         const double expected = 2.0 * static_cast<double>(kColor[channel]) * share / std::numbers::pi;
         EXPECT_NEAR(pixel[channel], expected, 1e-5) << what;
+    }
+}
+
+void expectTone(const Pixel& pixel, double tone) {
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        EXPECT_NEAR(pixel[channel], static_cast<double>(kColor[channel]) * tone, 1e-5);
     }
 }
 
@@ -253,6 +261,96 @@ TEST(Models, OneOfManyGivesThePictureOfOneAlone) {
             reference = image;
         }
     }
+}
+
+// A wall and a floor of the model cel, seen in a mirror too, under lights that come with the same cosine to
+// both.
+gltf::Scene celRoom(const materials::MaterialModel& model, int lights, bool blocked) {
+    materials::Material cel(model);
+    cel.give("EXAMPLE_materials_cel");
+    cel["celColor"] = {kColor[0], kColor[1], kColor[2], 1.0F};
+    gltf::Scene scene = sceneWithCamera();
+    addQuad(scene, cel, {-3, -1, -6}, {6, 0, 0}, {0, 4, 0});
+    addQuad(scene, cel, {-3, -1, 1}, {6, 0, 0}, {0, 0, -7});
+    materials::Material mirror(model);
+    mirror["roughnessFactor"] = 0.0F;
+    addQuad(scene, mirror, {1.2F, -0.9F, -5}, {1, 0, 1}, {0, 1.5F, 0});
+    if (blocked) {
+        addQuad(scene, mirror, {-40, 30, 1000}, {0, 0, -2000}, {39, 0, 0});
+    }
+    for (int i = 0; i < lights; ++i) {
+        addDirectionalLight(scene, {i == 0 ? 0.48F : -0.48F, -0.62F, -0.62F},
+                            3.0F / static_cast<float>(lights));
+    }
+    return scene;
+}
+
+// Two lights of half the strength fall into the tone of one, in first hits and in the mirror. One of the two
+// in shadow takes half of that tone away.
+TEST(Models, OneThatShadesAllLightsHasTheToneOfTheirSum) {
+    const test::TemporaryFolder folder;
+    test::writePrintedFiles("material_features.md", folder.path(),
+                            {"cel/cel.json", "cel/cel.glsl", "cel/cel_surface.glsl"});
+    const materials::MaterialModel& model =
+        *must(materials::loadMaterialModel(std::vector{folder.path().string()}));
+    for (const package::Strategy strategy : {package::kStrategyVisibility, package::kStrategyHitShaders}) {
+        const auto draw = [&](int lights, bool blocked) {
+            const gltf::Scene scene = celRoom(model, lights, blocked);
+            compiler::CompileSettings settings;
+            settings.strategies = strategy;
+            settings.effects = {false, compiler::builtinEffects({"shadow", "reflection"})};
+            RenderSetup setup = defaultSetup(scene, 25, 25);
+            setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+            return LoadedScene(scene, settings).render(strategy, setup);
+        };
+        const LinearImage one = draw(1, false);
+        expectSameImage(draw(2, false), one, "two lights");
+        // 3 cos / π = 0.59, of which the tone is two thirds.
+        expectTone(at(one, 8, 6), 2.0 / 3.0);
+        expectTone(at(draw(2, true), 8, 6), 1.0 / 3.0);
+    }
+}
+
+// The same function in HLSL and in GLSL.
+TEST(Models, OneInHlslGivesThePictureOfGlsl) {
+    const test::TemporaryFolder printed;
+    const test::TemporaryFolder folder;
+    test::writePrintedFiles("material_features.md", printed.path(), {"cel/cel.json", "cel/cel_surface.glsl"});
+    test::writePrintedFiles("material_features.md", folder.path(), {"chalk/chalk.hlsl", "chalk/chalk.glsl"});
+    const std::string chalk = (folder.path() / "chalk/chalk").string();
+    for (const char* const ending : {".json", "_surface.glsl"}) {
+        const base::Bytes bytes = must(base::readFile(printed.path() / (std::string("cel/cel") + ending)));
+        std::string text(bytes.begin(), bytes.end());
+        for (const auto& [word, by] :
+             {std::pair{", \"shadesAll\": true", ""}, {"cel", "chalk"}, {"Cel", "Chalk"}}) {
+            text = std::regex_replace(text, std::regex(word), by);
+        }
+        ASSERT_TRUE(base::writeFile(chalk + ending, text));
+    }
+    const std::string command = fmt::format(
+        "glslangValidator -D -V -Od -S comp -e main --target-env vulkan1.2 '{0}.hlsl' -o '{0}.spv' "
+        ">'{0}.log'",
+        chalk);
+    ASSERT_EQ(std::system(command.c_str()), 0);
+    const auto draw = [&] {
+        const materials::MaterialModel& model =
+            *must(materials::loadMaterialModel(std::vector{folder.path().string()}));
+        materials::Material material(model);
+        material.give("EXAMPLE_materials_chalk");
+        material["chalkColor"] = {kColor[0], kColor[1], kColor[2], 1.0F};
+        gltf::Scene scene = sceneWithCamera();
+        addQuad(scene, material, {-3, -1, -6}, {6, 0, 0}, {0, 4, 0});
+        addDirectionalLight(scene, {0.3F, -0.8F, -0.52F}, 1.5F);
+        return LoadedScene(scene, {}).render(package::kStrategyUber, defaultSetup(scene, 16, 16));
+    };
+    const LinearImage inHlsl = draw();
+    EXPECT_GT(meanOf(inHlsl), 0.05);
+    ASSERT_TRUE(base::writeFile(chalk + ".glsl",
+                                "#include \"bsdf/model.glsl\"\nstruct Chalk { vec3 color; };\n"
+                                "void chalkPrepare(inout Chalk model, vec3 view) {}\n"
+                                "vec3 chalkEvaluate(Chalk model, vec3 view, vec3 l) {\n"
+                                "    return model.color * (l.z / 3.14159265);\n}\n"));
+    expectSameImage(draw(), inHlsl, "as GLSL");
 }
 
 // A material has one model: the first that it names. That leaves out what changes glTF's base, and keeps

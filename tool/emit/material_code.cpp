@@ -135,6 +135,7 @@ void addLayers(mustache::data& context, const materials::MaterialModel& model,
         }
     }
     mustache::data models(mustache::data::type::list);
+    bool anyShadesAll = false;
     for (const materials::FeatureCode* const one : code) {
         if (!one->model.empty()) {
             models.push_back(mustache::object{
@@ -142,9 +143,12 @@ void addLayers(mustache::data& context, const materials::MaterialModel& model,
                 {"type", typeName(one->name)},
                 {"file", one->model},
                 {"has", hasMacro(model.features[static_cast<std::size_t>(one->feature)], Asked::OfModule)},
-                {"isSampled", mustache::data(one->isSampled)}});
+                {"isSampled", mustache::data(one->isSampled)},
+                {"shadesAll", mustache::data(one->shadesAll)}});
+            anyShadesAll = anyShadesAll || one->shadesAll;
         }
     }
+    context.set("anyShadesAll", mustache::data(anyShadesAll));
     context.set("hasModels", mustache::data(!models.is_empty_list()));
     context.set("models", models);
     context.set("diffuse", diffuse);

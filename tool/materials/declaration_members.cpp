@@ -157,6 +157,8 @@ constexpr MemberRow kRows[] = {
     {"traced", at({Glsl}), flag, "True: rays may trace the layer's reflection."},
     {"sampled", at({Glsl}), flag,
      "True: the model has nameSample() and nameDensity(); otherwise directions are cosine-weighted."},
+    {"shadesAll", at({Glsl}), flag,
+     "True: the model has nameShadeAll(), which changes the light of all lights together."},
     {"reciprocal", at({Glsl}), flag,
      "True: the layer or the model claims that view and light may change places, which check-materials "
      "checks."},
@@ -219,7 +221,7 @@ constexpr MemberRule kRules[] = {
     {Glsl, "coversEmission traced", "layer", "", "is for layers; there is no \"layer\"", ""},
     {Glsl, "reciprocal", "layer model", "", "is for layers and models; there is no \"layer\" or \"model\"",
      ""},
-    {Glsl, "sampled", "model", "", "is for models; there is no \"model\"", ""},
+    {Glsl, "sampled shadesAll", "model", "", "is for models; there is no \"model\"", ""},
     {Glsl, "layer model diffuse", "bsdf", "", "needs \"bsdf\", which sets its parameters", ""},
     {Glsl, "layer", "", "model diffuse", "can be neither a model nor a diffuse lobe", ""},
     {Glsl, "model", "", "diffuse", "can't be a diffuse lobe", ""},

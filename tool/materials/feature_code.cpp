@@ -51,6 +51,7 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
     code.isTraced = members.flag("traced", false);
     code.isReciprocal = members.flag("reciprocal", false);
     code.isSampled = members.flag("sampled", false);
+    code.shadesAll = members.flag("shadesAll", false);
     code.gains = members.text("gainsEnergy", "");
     if (!code.model.empty()) {
         checkModel(declaration, members);

@@ -375,6 +375,7 @@ struct FeatureCode {
     bool isTraced = false;        // rays may trace the layer's reflection
     bool isReciprocal = false;    // the layer or model claims that view and light may change places
     bool isSampled = false;       // the model samples directions itself; otherwise they are cosine-weighted
+    bool shadesAll = false;       // the model shades the light of all lights at once
     bool isOfPack = false;        // of a user's own
     std::string gains{};          // why more light may leave the surface than reaches it; empty: none may
 };

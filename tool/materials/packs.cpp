@@ -52,7 +52,8 @@ Diagnostic folderError(const std::string& folder, std::string message) {
 }
 
 bool isPackFile(const fs::path& path) {
-    return path.extension() == ".json" || path.extension() == ".glsl" || path.extension() == ".comp";
+    return path.extension() == ".json" || path.extension() == ".glsl" || path.extension() == ".comp" ||
+           path.extension() == ".spv";
 }
 
 // Adds the files of one folder.

@@ -1,6 +1,7 @@
 #include "spirv/compiler.h"
 
 #include "spirv/join.h"
+#include "spirv/link.h"
 #include "spirv/optimize.h"
 #include "spirv/reader.h"
 #include "spirv_source_hash.h"
@@ -232,6 +233,14 @@ Diagnostic makeGlslError(const ShaderSource& source, std::string_view log) {
         return makeError("glsl", source.name, text.empty() ? "does not compile" : std::string(text), kHint);
     }
     std::string_view line = log.substr(start + kPrefix.size());
+    constexpr std::string_view kNoBody = "No function definition (body) found:";
+    if (const std::size_t place = line.find(kNoBody); place != std::string_view::npos) {
+        // The next line has the function with its parameters.
+        const std::string_view function = trim(line.substr(place + kNoBody.size()));
+        return makeError("glsl", source.name,
+                         fmt::format("{} has no body", function.substr(0, function.find_first_of("(\n"))),
+                         "write one, or include a .spv file that has the function");
+    }
     line = trim(line.substr(0, line.find('\n')));
     const std::size_t length = placeLength(line);
     if (length == 0) {
@@ -241,7 +250,7 @@ Diagnostic makeGlslError(const ShaderSource& source, std::string_view log) {
                      std::string(trim(line.substr(length + 1))) + " (in " + source.name + ")", kHint);
 }
 
-// Returns glslang's translation of the source, without any optimisation.
+// Returns glslang's translation of the source with the functions of its libraries, without any optimisation.
 Result<std::vector<std::uint32_t>> translate(const ShaderSource& source) {
     if (!initializeGlslang()) {
         return makeError("glsl", source.name, "glslang can't be initialised");
@@ -249,8 +258,9 @@ Result<std::vector<std::uint32_t>> translate(const ShaderSource& source) {
     constexpr int kDefaultVersion = 460;
     constexpr auto kMessages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
     const EShLanguage stage = toGlslang(source.stage);
-    const char* const text = source.glsl.c_str();
-    const int length = static_cast<int>(source.glsl.size());
+    const LinkedGlsl linked = takeLibraries(source.glsl);
+    const char* const text = linked.glsl.c_str();
+    const int length = static_cast<int>(linked.glsl.size());
     const char* const name = source.name.c_str();
 
     glslang::TShader shader(stage);
@@ -270,7 +280,7 @@ Result<std::vector<std::uint32_t>> translate(const ShaderSource& source) {
     options.disableOptimizer = true;  // SPIRV-Tools optimises instead, with the passes that we choose.
     std::vector<std::uint32_t> words;
     glslang::GlslangToSpv(*program.getIntermediate(stage), words, &options);
-    return words;
+    return linked.libraries.empty() ? words : linkFunctions(std::move(words), linked.libraries, source.name);
 }
 
 // Returns the functions that must stay functions: those of the source, and those that cross the border of the

@@ -299,17 +299,8 @@ Status inlineAndClear(std::vector<std::uint32_t>& words, const std::string& name
 
 }  // namespace
 
-// Capabilities come first in a module (SPIR-V 2.4).
 bool tracesByPipeline(std::span<const std::uint32_t> words) {
-    for (const SpirvInstruction& it : SpirvInstructions(words)) {
-        if (it.opcode != spv::OpCapability) {
-            break;
-        }
-        if (it.operands[0] == spv::CapabilityRayTracingKHR) {
-            return true;
-        }
-    }
-    return false;
+    return hasCapability(words, spv::CapabilityRayTracingKHR);
 }
 
 Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t>& words,
@@ -339,6 +330,14 @@ Status clearJoined(std::vector<std::uint32_t>& words, const std::string& name, b
     return runPasses(words, name, [&](spvtools::Optimizer& optimizer) {
         optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
         registerDeadDeclarations(optimizer, keepMembers);
+    });
+}
+
+Status stripLibrary(std::vector<std::uint32_t>& words, const std::string& name) {
+    return runPasses(words, name, [](spvtools::Optimizer& optimizer) {
+        optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+            .RegisterPass(spvtools::CreateDeadVariableEliminationPass())
+            .RegisterPass(spvtools::CreateStripDebugInfoPass());
     });
 }
 

@@ -37,6 +37,9 @@ bool tracesByPipeline(std::span<const std::uint32_t> words);
 // constants. `keepNames` keeps the members. Error "spirv-optimize".
 Status clearJoined(std::vector<std::uint32_t>& words, const std::string& name, bool keepNames);
 
+// Removes what the exported functions of a library do not need, and all names. Error "spirv-optimize".
+Status stripLibrary(std::vector<std::uint32_t>& words, const std::string& name);
+
 // The use of a module.
 enum class SpirvUse {
     Vulkan,  // a shader for Vulkan 1.2

@@ -59,6 +59,19 @@ Status visitSpirv(std::span<const std::uint32_t> words,
     return okStatus();
 }
 
+// Capabilities come first in a module (SPIR-V 2.4).
+bool hasCapability(std::span<const std::uint32_t> words, std::uint32_t capability) {
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
+        if (it.opcode != spv::OpCapability) {
+            break;
+        }
+        if (it.operands[0] == capability) {
+            return true;
+        }
+    }
+    return false;
+}
+
 bool isSpirvDecoration(std::uint32_t opcode) {
     return opcode == spv::OpDecorate || opcode == spv::OpMemberDecorate || opcode == spv::OpDecorateId ||
            opcode == spv::OpDecorateString || opcode == spv::OpMemberDecorateString;

@@ -80,6 +80,7 @@ private:
 Status visitSpirv(std::span<const std::uint32_t> words,
                   const std::function<void(const SpirvInstruction&)>& visit);
 
+bool hasCapability(std::span<const std::uint32_t> words, std::uint32_t capability);
 bool isSpirvDecoration(std::uint32_t opcode);
 // Returns whether an instruction belongs before the debug instructions, and so before the decorations
 // (section 2.4).

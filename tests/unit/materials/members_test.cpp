@@ -210,6 +210,7 @@ const std::map<std::string_view, std::vector<const char*>> kValues{
     {"coversEmission", {"true"}},
     {"traced", {"true"}},
     {"sampled", {"true"}},
+    {"shadesAll", {"true"}},
     {"reciprocal", {"true"}},
     {"gainsEnergy", {R"("it is drawn")"}},
     {"at", {R"("moist")", R"("_MOIST")"}},

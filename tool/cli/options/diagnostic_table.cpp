@@ -53,7 +53,7 @@ constexpr DiagnosticList kLists[] = {
      " scene-order scene-origin scene-package scene-samplers scene-still scene-textures scene-unknown"
      " settings-file sized-lights skin-attribute skin-joint-range skin-joints skin-matrices"
      " sky sky-light source-conditional source-include source-version sparse-count sparse-index"
-     " spirv-format spirv-invalid spirv-join spirv-linkage spirv-optimize spirv-validate strategy"
+     " spirv-format spirv-functions spirv-invalid spirv-join spirv-linkage spirv-optimize spirv-validate strategy"
      " stream-frame template texture-basisu texture-trusted threads timings-pending timings-unavailable"
      " tlas-limit tracer uri-unsafe validation validation-layer variant-unknown verify-missing"
      " vertex-limit view-layer view-reference view-source vulkan-call vulkan-function vulkan-loader"

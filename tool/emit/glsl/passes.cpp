@@ -1,6 +1,7 @@
 #include "emit/glsl/passes.h"
 
 #include "emit/glsl/text.h"
+#include "spirv/link.h"
 
 #include <fmt/format.h>
 
@@ -171,6 +172,10 @@ private:
         if (!text) {
             return errorAt("source-include", file.name, line, fmt::format("there is no \"{}\"", name),
                            "names are relative to the shader folder, or to the file that includes them");
+        }
+        if (name.ends_with(".spv")) {
+            GLINT_TRY(const auto library, libraryLine(name, *text));
+            return addFile(name, library);
         }
         return addFile(name, *text);
     }
