@@ -367,7 +367,7 @@ Result<PackageFit> GpuScene::State::fit(const std::shared_ptr<const Package>& ot
     GLINT_TRY_DO(checkEmission(*this, *other, known));
     GLINT_TRY_DO(checkDecided(*this, *other, known));
     GLINT_TRY(auto content, otherPackage(*this, other, *index));
-    PackageFit fit{*index, std::move(content.shaderIds)};
+    PackageFit fit{*index, content.records, std::move(content.shaderIds)};
     if (content.edited) {
         fit.missing = std::move(content.edited->report.missing);
     }
