@@ -19,6 +19,7 @@
 #include "data/retired.h"
 #include "data/scene_checks.h"
 #include "scene/case_table.h"
+#include "scene/draw_runs.h"
 #include "scene/gpu_scene_state.h"
 #include "scene/record_store.h"
 #include "scene/scene_upload.h"
@@ -199,6 +200,7 @@ struct SceneStore {
     std::optional<DeformPass> deformPass;
     std::set<std::uint32_t> shaped;          // by index
     std::set<std::uint32_t> reshaped;        // by index
+    DrawRuns draws;
     std::set<std::uint32_t> reshapedMeshes;  // by index: those with other vertices
     std::uint64_t shapeVersion = 0;  // changes when geometry records do, if some instance has its own shape
 
@@ -213,7 +215,7 @@ struct SceneStore {
     std::unique_ptr<Uploader> ownUploader;  // null in the upload, which has one of its own
     Uploader* uploader = nullptr;
     std::vector<BlasBuild> builds;  // of BLASes that instances share, with their destinations
-    bool drawsDirty = true;
+    bool drawsDirty = false;
     bool lightsDirty = true;     // other lights
     bool lightsMoved = false;    // the same lights with other values
     bool emittersDirty = false;  // other emissive triangles
@@ -303,8 +305,8 @@ package::PrimitiveEntry entryOf(const SceneStore& store, const StoredInstance& i
 void placeParts(SceneStore& store, const StoredInstance& instance);
 // Writes where deformed vertices and poses are, after one of the arrays has moved to these addresses.
 void writeDeforms(SceneStore& store, std::uint32_t instance, VkDeviceAddress poses);
-// The draws of all instances.
-std::vector<Draw> drawsOf(SceneStore& store);
+// Notes what the raster pass draws of an instance, if it is shown.
+void placeDraws(SceneStore& store, InstanceHandle handle, const StoredInstance& instance);
 
 // Calls visit(index, geometry) for the parts of an instance, with their first geometry records.
 template <typename Visit>

@@ -290,6 +290,21 @@ void countUse(Slots<StoredMaterial, MaterialHandle>& materials, MaterialHandle m
 Diagnostic tooManyGeometries(const std::string& where) {
     return makeError("scene-geometries", where,
                      "the scene's instances have more than 2^24 - 2 primitives altogether",
+// Counts the records and the triangles of an instance, once more or once less.
+void countRecords(SceneStore& store, const StoredInstance& instance, bool adds) {
+    GpuScene::Statistics& statistics = store.scene.statistics;
+    forEachGeometry(*store.meshes.find(instance.mesh), instance,
+                    [&](const TriangleRange& range, const StoredPrimitive&, std::uint32_t) {
+                        if (adds) {
+                            ++statistics.geometries;
+                            statistics.triangles += range.drawn;
+                        } else {
+                            --statistics.geometries;
+                            statistics.triangles -= range.drawn;
+                        }
+                    });
+}
+
                      "join primitives of a material, or use fewer instances");
 }
 
@@ -301,6 +316,7 @@ void link(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
     const bool isLeftOut = !store.keeps() && !instance.isShown();
     instance.geometryCount = isLeftOut ? 0 : mesh.geometryCount;
     instance.firstGeometry = store.geometryRuns.allocate(instance.geometryCount);
+    countRecords(store, instance, true);
     instance.placeInMesh = static_cast<std::uint32_t>(mesh.instances.size());
     mesh.instances.push_back(index);
     for (const MaterialHandle material : instance.materials) {
@@ -322,6 +338,9 @@ void releaseShape(SceneStore& store, std::uint32_t index, StoredInstance& instan
     ++store.shapeVersion;
 }
 
+    countRecords(store, instance, false);
+    store.draws.set(index, {});
+    store.drawsDirty = true;
 // Takes the instance out of the TLAS and gives back its records and uses.
 void unlink(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
     StoredMesh& mesh = *store.meshes.find(instance.mesh);
@@ -338,7 +357,6 @@ void unlink(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
         countUse(store.materialSlots, material, &StoredMaterial::instances, index, false);
     }
     releaseShape(store, index, instance);
-    store.drawsDirty = true;
 }
 
 void shrinkRecords(SceneStore& store) {
@@ -487,6 +505,7 @@ package::PrimitiveEntry entryOf(const SceneStore& store, const StoredInstance& i
     entry.materialIndex = material.index;
     entry.key = shading.features;
     entry.geometryFlags = shading.geometryFlags;
+    bool turns = false;
     return entry;
 }
 
@@ -497,9 +516,12 @@ void writeGeometries(SceneStore& store, InstanceHandle handle, const StoredInsta
         [&](const TriangleRange& range, const StoredPrimitive& primitive, std::uint32_t index) {
             const gpu::GeometryRecord record = recordAt(store, instance, handle.index, range, primitive);
             const std::uint32_t before = index < store.geometries.count()
+    if (turns) {
+        placeDraws(store, handle, instance);
+    }
                                              ? store.geometries.read<gpu::GeometryRecord>(index).flags
-                                             : ~record.flags;
-            store.drawsDirty = store.drawsDirty || ((before ^ record.flags) & gpu::kGeometryDoubleSided) != 0;
+                                             : record.flags;
+            turns = turns || ((before ^ record.flags) & gpu::kGeometryDoubleSided) != 0;
             store.geometries.write(index, record);
         });
     noteEmitters(store, handle, instance);
@@ -567,11 +589,11 @@ Result<InstanceHandle> placeInstance(SceneStore& store, const Package* package, 
     const InstanceHandle handle = store.instanceSlots.add(std::move(instance));
     StoredInstance& placed = store.instanceSlots.at(handle.index);
     link(store, handle.index, placed);
+    placeDraws(store, handle, placed);
     if (shape != nullptr) {
         takeShape(store, handle.index, placed, std::move(shape), pose);
     }
     store.instances.write(handle.index, makeInstanceRecord(placed.objectToWorld));
-    store.drawsDirty = true;
     writeGeometries(store, handle, placed);
     return handle;
 }
@@ -596,12 +618,15 @@ void moveInstance(SceneStore& store, InstanceHandle handle, const Rows& objectTo
     const bool shows = wasShown != instance.isShown();
     moveEmitters(store, handle, shows);
     placeParts(store, instance);
-    store.drawsDirty = store.drawsDirty || turned || shows;
+    if (turned || shows) {
+        placeDraws(store, handle, instance);
+    }
 }
 
 void exchangeMesh(SceneStore& store, InstanceHandle handle, MeshHandle mesh,
                   std::span<const MaterialHandle> materials) {
     StoredInstance& instance = store.instanceSlots.at(handle.index);
+    placeDraws(store, handle, instance);
     unlink(store, handle.index, instance);
     instance.mesh = mesh;
     instance.materials.assign(materials.begin(), materials.end());
@@ -651,30 +676,23 @@ Status poseInstance(SceneStore& store, const Package* package, InstanceHandle ha
     return okStatus();
 }
 
-std::vector<Draw> drawsOf(SceneStore& store) {
+void placeDraws(SceneStore& store, InstanceHandle handle, const StoredInstance& instance) {
     std::vector<Draw> draws;
-    std::uint64_t triangles = 0;
-    std::uint32_t geometries = 0;
-    store.instanceSlots.forEach([&](InstanceHandle handle, const StoredInstance& instance) {
-        const bool mirrored =
-            (store.instances.read<gpu::InstanceRecord>(handle.index).flags & gpu::kInstanceMirrored) != 0;
-        const bool isHidden = !instance.isShown();
-        forEachGeometry(
-            *store.meshes.find(instance.mesh), instance,
-            [&](const TriangleRange& range, const StoredPrimitive&, std::uint32_t geometry) {
-                ++geometries;
-                if (range.drawn == 0) {
-                    return;
-                }
-                const auto record = store.geometries.read<gpu::GeometryRecord>(geometry);
-                draws.push_back({geometry, 3 * range.drawn, (record.flags & gpu::kGeometryDoubleSided) != 0,
-                                 mirrored, handle.index, isHidden, range.primitive, instance.mesh.index});
-                triangles += range.drawn;
-            });
-    });
-    store.scene.statistics.triangles = triangles;
-    store.scene.statistics.geometries = geometries;
-    return draws;
+    if (instance.isShown()) {
+        const std::uint32_t flags = store.instances.read<gpu::InstanceRecord>(handle.index).flags;
+        forEachGeometry(*store.meshes.find(instance.mesh), instance,
+                        [&](const TriangleRange& range, const StoredPrimitive&, std::uint32_t geometry) {
+                            const auto record = store.geometries.read<gpu::GeometryRecord>(geometry);
+                            if (range.drawn > 0) {
+                                draws.push_back({geometry, 3 * range.drawn,
+                                                 (record.flags & gpu::kGeometryDoubleSided) != 0,
+                                                 (flags & gpu::kInstanceMirrored) != 0, range.primitive,
+                                                 instance.mesh.index});
+                            }
+                        });
+    }
+    store.draws.set(handle.index, std::move(draws));
+    store.drawsDirty = true;
 }
 
 }  // namespace glint

@@ -306,6 +306,7 @@ private:
         for (const InstanceHandle handle : store_.firstInstances) {
             StoredInstance& instance = store_.instanceSlots.at(handle.index);
             const std::uint32_t count = store_.meshes.find(instance.mesh)->decidedCount;
+                scene_.statistics.geometries += count;
             if (count > 0 && instance.geometryCount > 0) {
                 instance.firstDecided = store_.geometryRuns.allocate(count);
                 writeGeometries(store_, handle, instance);
