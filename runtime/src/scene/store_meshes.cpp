@@ -26,8 +26,8 @@ BlasInput inputOf(const SceneStore& store, const StoredMesh& mesh, const MeshPar
             geometry.positions = shape->vertices[range.primitive].positions;
         }
         if (store.editable) {
-            // The TLAS says whether the material is opaque.
-            geometry.once = store.passesLight;
+            // The TLAS says whether the material is opaque. Light may pass any material of another package.
+            geometry.once = true;
             continue;
         }
         const std::uint32_t flags = primitive.entry.geometryFlags;
@@ -90,8 +90,9 @@ Status makePrimitive(SceneStore& store, const Package& package, const MeshConten
     if (store.editable) {
         made.attributes = attributesOf(package, view);
     }
-    if (store.emission && (store.editable || (made.entry.geometryFlags & gpu::kGeometryEmitter) != 0)) {
-        made.shape = std::make_shared<EmitterShape>(*store.emission, view, indices);
+    if (store.editable || (made.entry.geometryFlags & gpu::kGeometryEmitter) != 0) {
+        made.shape =
+            std::make_shared<EmitterShape>(view, indices, store.editable || hasEmissionTexture(store));
     }
     return okStatus();
 }
@@ -275,21 +276,20 @@ void retireMesh(SceneStore& store, MeshHandle handle) {
 }
 
 void countUse(Slots<StoredMaterial, MaterialHandle>& materials, MaterialHandle material,
-              MaterialUsers StoredMaterial::*users, std::uint32_t user, bool adds) {
-    StoredMaterial* const entry = materials.find(material);
-    if (entry == nullptr) {
-        return;
-    }
-    std::uint32_t& count = (entry->*users)[user];
-    count = adds ? count + 1 : count - 1;
-    if (count == 0) {
-        (entry->*users).erase(user);
+              Users StoredMaterial::*users, std::uint32_t user, bool adds) {
+    if (StoredMaterial* const entry = materials.find(material); entry != nullptr) {
+        countUse(entry->*users, user, adds);
     }
 }
 
 Diagnostic tooManyGeometries(const std::string& where) {
     return makeError("scene-geometries", where,
                      "the scene's instances have more than 2^24 - 2 primitives altogether",
+                     "join primitives of a material, or use fewer instances");
+}
+
+namespace {
+
 // Counts the records and the triangles of an instance, once more or once less.
 void countRecords(SceneStore& store, const StoredInstance& instance, bool adds) {
     GpuScene::Statistics& statistics = store.scene.statistics;
@@ -305,23 +305,18 @@ void countRecords(SceneStore& store, const StoredInstance& instance, bool adds) 
                     });
 }
 
-                     "join primitives of a material, or use fewer instances");
-}
-
-namespace {
-
 // Links the instance to its mesh and its materials, and gives it geometry records.
 void link(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
     StoredMesh& mesh = *store.meshes.find(instance.mesh);
     const bool isLeftOut = !store.keeps() && !instance.isShown();
     instance.geometryCount = isLeftOut ? 0 : mesh.geometryCount;
     instance.firstGeometry = store.geometryRuns.allocate(instance.geometryCount);
-    countRecords(store, instance, true);
     instance.placeInMesh = static_cast<std::uint32_t>(mesh.instances.size());
     mesh.instances.push_back(index);
     for (const MaterialHandle material : instance.materials) {
         countUse(store.materialSlots, material, &StoredMaterial::instances, index, true);
     }
+    countRecords(store, instance, true);
 }
 
 void releaseShape(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
@@ -338,14 +333,14 @@ void releaseShape(SceneStore& store, std::uint32_t index, StoredInstance& instan
     ++store.shapeVersion;
 }
 
-    countRecords(store, instance, false);
-    store.draws.set(index, {});
-    store.drawsDirty = true;
 // Takes the instance out of the TLAS and gives back its records and uses.
 void unlink(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
     StoredMesh& mesh = *store.meshes.find(instance.mesh);
     forEachPart(mesh, instance,
                 [&](std::size_t /*part*/, std::uint32_t geometry) { store.topLevel.remove(geometry); });
+    countRecords(store, instance, false);
+    store.draws.set(index, {});
+    store.drawsDirty = true;
     store.geometryRuns.release(instance.firstGeometry, instance.geometryCount);
     const std::uint32_t last = mesh.instances.back();
     mesh.instances[instance.placeInMesh] = last;
@@ -505,25 +500,25 @@ package::PrimitiveEntry entryOf(const SceneStore& store, const StoredInstance& i
     entry.materialIndex = material.index;
     entry.key = shading.features;
     entry.geometryFlags = shading.geometryFlags;
-    bool turns = false;
     return entry;
 }
 
 void writeGeometries(SceneStore& store, InstanceHandle handle, const StoredInstance& instance) {
     const StoredMesh& mesh = *store.meshes.find(instance.mesh);
+    bool turns = false;
     forEachGeometry(
         mesh, instance,
         [&](const TriangleRange& range, const StoredPrimitive& primitive, std::uint32_t index) {
             const gpu::GeometryRecord record = recordAt(store, instance, handle.index, range, primitive);
             const std::uint32_t before = index < store.geometries.count()
-    if (turns) {
-        placeDraws(store, handle, instance);
-    }
                                              ? store.geometries.read<gpu::GeometryRecord>(index).flags
                                              : record.flags;
             turns = turns || ((before ^ record.flags) & gpu::kGeometryDoubleSided) != 0;
             store.geometries.write(index, record);
         });
+    if (turns) {
+        placeDraws(store, handle, instance);
+    }
     noteEmitters(store, handle, instance);
     placeParts(store, instance);
     ++store.shapeVersion;
@@ -589,12 +584,12 @@ Result<InstanceHandle> placeInstance(SceneStore& store, const Package* package, 
     const InstanceHandle handle = store.instanceSlots.add(std::move(instance));
     StoredInstance& placed = store.instanceSlots.at(handle.index);
     link(store, handle.index, placed);
-    placeDraws(store, handle, placed);
     if (shape != nullptr) {
         takeShape(store, handle.index, placed, std::move(shape), pose);
     }
     store.instances.write(handle.index, makeInstanceRecord(placed.objectToWorld));
     writeGeometries(store, handle, placed);
+    placeDraws(store, handle, placed);
     return handle;
 }
 
@@ -626,12 +621,12 @@ void moveInstance(SceneStore& store, InstanceHandle handle, const Rows& objectTo
 void exchangeMesh(SceneStore& store, InstanceHandle handle, MeshHandle mesh,
                   std::span<const MaterialHandle> materials) {
     StoredInstance& instance = store.instanceSlots.at(handle.index);
-    placeDraws(store, handle, instance);
     unlink(store, handle.index, instance);
     instance.mesh = mesh;
     instance.materials.assign(materials.begin(), materials.end());
     link(store, handle.index, instance);
     writeGeometries(store, handle, instance);
+    placeDraws(store, handle, instance);
     shrinkRecords(store);
 }
 
