@@ -294,17 +294,32 @@ TEST(LiveEditKeys, ACaseForSeveralKeysShadesTheKeysBetweenThem) {
     expectSameImage(edited.picture(), pictureWithCoatedTexture(edited, options), "a key between others");
 }
 
-TEST(LiveEditUpload, RefusesScenesThatMove) {
+// A scene that is edited takes poses, too. Only materials that read a texture use it.
+TEST(LiveEditUpload, AnEditableSceneTakesPoses) {
     const gltf::Scene scene = catalogueScene();
-    const LoadedScene loaded(scene, EditedSceneOptions().settings);
-    const session::SceneViewData data = session::makeSceneView(scene);
+    const EditedSceneOptions options;
+    const LoadedScene loaded(scene, options.settings);
+    session::SceneViewData data = session::makeSceneView(scene);
     SceneView view = data.view();
     view.editable = true;
     EXPECT_EQ(loaded.gpuScene().editor(), nullptr);
     const auto editable = uploadScene(loaded.package(), view);
     ASSERT_NE(editable, nullptr);
     EXPECT_TRUE(EngineScene::share(sharedContext(), *editable));
-    expectError(editable->updateAndWait({}), "scene-still");
+    expectError(editable->editor()->removeTexture(editable->editor()->texture(0)), "scene-edit-used",
+                "1 materials");
+    for (std::size_t i = 0; i < data.instances.size(); ++i) {
+        data.instances[i].objectToWorld[3] += 0.1F * static_cast<float>(i);
+        data.instances[i].objectToWorld[11] -= 2.0F;
+    }
+    ASSERT_TRUE(editable->updateAndWait(data.motion()));
+    const RenderSetup setup = defaultSetup(scene, options.width, options.height);
+    RendererOptions renderer = options.renderer;
+    renderer.width = options.width;
+    renderer.height = options.height;
+    const auto posed = uploadScene(loaded.package(), data.view());
+    EXPECT_EQ(drawn(*makeRenderer(loaded.package(), *editable, renderer), setup.frame).pixels,
+              drawn(*makeRenderer(loaded.package(), *posed, renderer), setup.frame).pixels);
 }
 
 TEST(LiveEditFallback, ShadesAndReportsKeysWithoutACase) {

@@ -1,4 +1,6 @@
 // Which packages a renderer takes over, and what its scene keeps of the values before.
+#include "context/commands.h"
+#include "render/edited_scene.h"
 #include "render/pixel_test.h"
 #include "render/replacement.h"
 #include "render/scene_builder.h"
@@ -213,6 +215,162 @@ TEST_F(ReplacePackageScene, AnEditedMaterialNeedsAShader) {
     ASSERT_EQ(replaced.missing.size(), 1U);
     EXPECT_EQ(replaced.missing.front().material, editor.material(kGlossy));
     EXPECT_TRUE(differ(draw(*renderer), before)) << "the other wall has a sheen";
+}
+
+// A scene that is edited, with a renderer, beside the scene that it should be by now.
+class EditedRoom {
+public:
+    EditedRoom(const gltf::Scene& scene, const std::shared_ptr<const Package>& package,
+               const RendererOptions& options)
+        : present(scene),
+          package_(package),
+          scene_(uploadScene(*package, scene, [](SceneView& view) { view.editable = true; })),
+          renderer_(makeRenderer(*package, *scene_, options)) {}
+
+    // Gives the room's material of this number the one that `present` has.
+    void setMaterial(std::uint32_t number) {
+        const materials::Material& material = present.materials[number];
+        const session::MaterialSourceData source = session::makeMaterialSource(
+            *package_, session::recordLayoutOf(*package_, material.model()), present, material,
+            session::uploadedTextures(editor(), package_->scene(0), present));
+        const Result<EditReport> set = editor().setMaterial(editor().material(number), source.view());
+        EXPECT_TRUE(set) << toString(set.error());
+    }
+    void replacePackage(const std::shared_ptr<const Package>& package) {
+        const Result<Renderer::Replacement> replaced = renderer_->replacePackage(package);
+        ASSERT_TRUE(replaced) << toString(replaced.error());
+        package_ = package;
+    }
+    // Records the edits that wait.
+    Renderer& renderer() {
+        const Status recorded = runOnce(
+            sharedContext().state(), [&](VkCommandBuffer commands) { return editor().record(commands, 0); });
+        EXPECT_TRUE(recorded) << (recorded ? "" : toString(recorded.error()));
+        return *renderer_;
+    }
+    SceneEditor& editor() {
+        return *scene_->editor();
+    }
+
+    gltf::Scene present;
+
+private:
+    std::shared_ptr<const Package> package_;
+    std::unique_ptr<GpuScene> scene_;
+    std::unique_ptr<Renderer> renderer_;
+};
+
+compiler::CompileSettings shadowSettings() {
+    compiler::CompileSettings settings = roomSettings(package::kStrategyUber);
+    settings.tracers = tracerOfDevice();
+    settings.plan.merge = compiler::MergePolicy::All;
+    settings.effects = {false, compiler::builtinEffects({"shadow", "reflection"})};
+    return settings;
+}
+
+// The upload knew of no emissive lights. The texture of one material and what an edit has made of another are
+// lights by the new package, and none by the first.
+TEST_F(ReplacePackageScene, AnEditedSceneGainsAndLosesEmissiveLights) {
+    gltf::Scene lamps = roomScene();
+    materials::Material& lamp = lamps.materials[kGlossy];
+    lamp["emissiveFactor"] = {3.0F, 2.0F, 1.0F};
+    lamp.texture("emissiveTexture").texture = addTexture(lamps, 2, 1, {255, 255, 255, 255, 0, 0, 0, 255});
+    const RendererOptions options = optionsOf(package::kStrategyUber);
+    compiler::CompileSettings dark = shadowSettings();
+    dark.emissiveLights = compiler::EmissiveLights::Off;
+    for (const std::uint32_t samples : {0U, 2U}) {
+        compiler::CompileSettings lit = shadowSettings();
+        lit.emissiveLights = compiler::EmissiveLights::On;
+        lit.lightSamples = samples;
+        const std::shared_ptr<const Package> original = packageOf(lamps, dark);
+        const std::shared_ptr<const Package> withLights = packageOf(lamps, lit);
+        ASSERT_TRUE(original->emission() == nullptr && withLights->emission() != nullptr);
+        EditedRoom room(lamps, original, options);
+        room.present.materials[2] = lamp;
+        room.present.materials[2]["emissiveFactor"] = {0.5F, 1.0F, 4.0F};
+        room.setMaterial(2);
+        const LinearImage before = draw(room.renderer());
+        for (int round = 0; round < 2; ++round) {
+            room.replacePackage(withLights);
+            expectSameImage(draw(room.renderer()),
+                            fresh(room.present, *packageOf(room.present, lit), options), "with lights");
+            room.replacePackage(original);
+            expectEqualImage(draw(room.renderer()), before, "without lights");
+        }
+    }
+}
+
+// What edits have made of materials holds for every policy of alpha and of glass in shadows.
+TEST_F(ReplacePackageScene, EditedMaterialsFollowAnotherPolicyOfAlphaAndGlass) {
+    gltf::Scene panes = roomScene();
+    materials::Material masked = paint(kRed);
+    masked.alphaMode = materials::AlphaMode::Mask;
+    masked.texture("baseColorTexture").texture =
+        addTexture(panes, 2, 1, {255, 255, 255, 255, 255, 255, 255, 100});
+    materials::Material blended = masked;
+    blended.alphaMode = materials::AlphaMode::Blend;
+    materials::Material glass = paint({0.9F, 0.4F, 0.2F}, 0.0F);
+    glass.give("KHR_materials_transmission");
+    glass["transmissionFactor"] = 1.0F;
+    std::vector<std::uint32_t> kinds;
+    float x = -1.5F;
+    for (const materials::Material& material : {masked, blended, glass, paint(kBlue)}) {
+        kinds.push_back(static_cast<std::uint32_t>(addMaterial(panes, material)));
+        addQuad(panes, static_cast<int>(kinds.back()), {x, -0.6F, -2.5F}, {0.7F, 0, 0}, {0, 1.2F, 0.2F});
+        x += 0.8F;
+    }
+    std::vector<std::shared_ptr<const Package>> packages;
+    std::vector<compiler::CompileSettings> policies;
+    for (const auto& [alpha, through] :
+         {std::pair(package::AlphaPolicy::Opaque, package::ShadowThrough::Alpha),
+          std::pair(package::AlphaPolicy::Tested, package::ShadowThrough::Glass),
+          std::pair(package::AlphaPolicy::Stochastic, package::ShadowThrough::Glass),
+          std::pair(package::AlphaPolicy::Stochastic, package::ShadowThrough::Alpha)}) {
+        policies.push_back(shadowSettings());
+        policies.back().plan.keys.alpha = alpha;
+        policies.back().shadowThrough = through;
+        packages.push_back(packageOf(panes, policies.back()));
+    }
+    const RendererOptions options = optionsOf(package::kStrategyUber);
+    EditedRoom room(panes, packages.front(), options);
+    const std::vector<materials::Material> all{masked, blended, glass, paint(kBlue)};
+    for (std::size_t round = 0; round < packages.size() + 1; ++round) {
+        const std::size_t policy = round % packages.size();
+        const std::string what = "policy " + std::to_string(policy);
+        if (round > 0) {
+            room.replacePackage(packages[policy]);
+            expectSameImage(draw(room.renderer()),
+                            fresh(room.present, *packageOf(room.present, policies[policy]), options), what);
+        }
+        // Each pane becomes another one.
+        for (std::size_t i = 0; i < kinds.size(); ++i) {
+            room.present.materials[kinds[i]] = all[(i + round + 1) % all.size()];
+            room.setMaterial(kinds[i]);
+        }
+        expectSameImage(draw(room.renderer()),
+                        fresh(room.present, *packageOf(room.present, policies[policy]), options),
+                        what + ", other panes");
+    }
+}
+
+// A material that an edit has removed, because nothing had it, returns with a package that gives it to a
+// wall.
+TEST_F(ReplacePackageScene, AMaterialReturnsThatAnEditHasRemoved) {
+    const compiler::CompileSettings uber = roomSettings(package::kStrategyUber);
+    gltf::Scene spare = roomScene();
+    const int added = addMaterial(spare, paint({0.9F, 0.8F, 0.1F}));
+    const std::shared_ptr<const Package> original = packageOf(spare, uber);
+    const RendererOptions options = optionsOf(package::kStrategyUber);
+    EditedRoom room(spare, original, options);
+    ASSERT_TRUE(room.editor().removeMaterial(room.editor().material(static_cast<std::uint32_t>(added))));
+    const LinearImage before = draw(room.renderer());
+    room.present.meshes[1].primitives[0].material = added;
+    const std::shared_ptr<const Package> golden = packageOf(room.present, uber);
+    room.replacePackage(golden);
+    expectEqualImage(draw(room.renderer()), fresh(room.present, *golden, options), "it is there again");
+    EXPECT_NE(room.editor().material(static_cast<std::uint32_t>(added)).generation, 0U);
+    room.replacePackage(original);
+    expectEqualImage(draw(room.renderer()), before, "the first package again");
 }
 
 TEST_F(ReplacePackageScene, AllRenderersOfTheSceneSwitch) {

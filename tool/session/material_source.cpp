@@ -34,7 +34,9 @@ materials::PrimitiveInputs inputsOf(const Package& package, const materials::Mat
 MaterialKey keyFor(const Package& package, const materials::Material& material, AttributeMask attributes,
                    materials::FeatureMask keptLobes) {
     const materials::PrimitiveInputs inputs = inputsOf(package, material.model(), attributes);
-    const materials::KeyOptions options{package.alpha(), keptLobes};
+    // The runtime leaves out what the package does not ask for.
+    constexpr package::AlphaPolicy kAlpha = package::AlphaPolicy::Stochastic;
+    const materials::KeyOptions options{kAlpha, keptLobes};
     MaterialKey key;
     key.attributes = attributes;
     const materials::FeatureMask hitKey = compiler::makeKey(material, inputs, options);
@@ -42,10 +44,9 @@ MaterialKey keyFor(const Package& package, const materials::Material& material, 
         material.model().words(compiler::makeKey(material, inputs, compiler::keepAllLobes(options)));
     key.hitFeatures = material.model().words(hitKey);
     key.geometryFlags =
-        compiler::geometryFlags(material, inputs, hitKey, package.alpha(), package.shadowThrough());
-    if (package.emission() != nullptr && compiler::isEmitter(material, inputs)) {
-        key.geometryFlags |= gpu::kGeometryEmitter;
-    }
+        compiler::geometryFlags(material, inputs, hitKey, kAlpha, package::ShadowThrough::Alpha) |
+        (compiler::passesLight(material, inputs) ? gpu::kGeometryPassesLight : 0U) |
+        (compiler::isEmitter(material, inputs) ? gpu::kGeometryEmitter : 0U);
     return key;
 }
 

@@ -186,10 +186,10 @@ double meanOf(const EmitterShape& shape, const EmitterTexture& texture, std::siz
 
 }  // namespace
 
-EmitterShape::EmitterShape(const EmissionEntry& emission, const PrimitiveView& view,
-                           std::span<const std::uint32_t> ordered)
+EmitterShape::EmitterShape(const PrimitiveView& view, std::span<const std::uint32_t> ordered,
+                           bool hasTexCoords)
     : positions(view.positions.begin(), view.positions.end()), indices(ordered.begin(), ordered.end()) {
-    if (emission.texture != EmissionEntry::kNone) {
+    if (hasTexCoords) {
         texCoords[0].assign(view.texCoords0.begin(), view.texCoords0.end());
         texCoords[1].assign(view.texCoords1.begin(), view.texCoords1.end());
     }

@@ -60,9 +60,8 @@ private:
 // for each UV set of a vertex.
 struct EmitterShape {
     // `indices` are the view's, in the order of the triangles on the device. Texture coordinates are left out
-    // if no emission has a texture.
-    EmitterShape(const package::EmissionEntry& emission, const PrimitiveView& view,
-                 std::span<const std::uint32_t> indices);
+    // unless an emission may have a texture.
+    EmitterShape(const PrimitiveView& view, std::span<const std::uint32_t> indices, bool hasTexCoords);
 
     std::vector<std::array<float, 3>> positions;
     std::array<std::vector<std::array<float, 2>>, 2> texCoords;  // by UV set; may be empty

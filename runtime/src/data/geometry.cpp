@@ -290,60 +290,6 @@ PrimitiveRange primitivesOf(std::span<const PrimitiveView> primitives, std::uint
             static_cast<std::uint32_t>(end - primitives.begin())};
 }
 
-namespace {
-
-// Returns one past the last draw of the instance whose draws begin at `first`.
-std::size_t endOfInstance(std::span<const Draw> draws, std::size_t first) {
-    std::size_t end = first + 1;
-    while (end < draws.size() && draws[end].instance == draws[first].instance) {
-        ++end;
-    }
-    return end;
-}
-
-bool isAlike(const Draw& a, const Draw& b) {
-    return a.mesh == b.mesh && a.primitive == b.primitive && a.vertexCount == b.vertexCount &&
-           a.doubleSided == b.doubleSided && a.mirrored == b.mirrored && a.hidden == b.hidden;
-}
-
-}  // namespace
-
-std::vector<DrawBatch> batchDraws(std::span<const Draw> draws) {
-    std::vector<DrawBatch> batches;
-    for (std::size_t first = 0; first < draws.size();) {
-        const std::size_t count = endOfInstance(draws, first) - first;
-        const std::span<const Draw> own = draws.subspan(first, count);
-        std::size_t end = first + count;
-        // Records without a draw may lie between those of two instances.
-        const std::uint32_t stride =
-            end < draws.size() ? draws[end].geometry - own[0].geometry : static_cast<std::uint32_t>(count);
-        const auto continues = [&](std::size_t next) {
-            if (next >= draws.size() || stride < count || endOfInstance(draws, next) - next != count) {
-                return false;
-            }
-            for (std::size_t i = 0; i < count; ++i) {
-                if (draws[next + i].geometry != draws[next + i - count].geometry + stride ||
-                    !isAlike(own[i], draws[next + i])) {
-                    return false;
-                }
-            }
-            return true;
-        };
-        while (continues(end)) {
-            end += count;
-        }
-        const auto instances = static_cast<std::uint32_t>((end - first) / count);
-        for (const Draw& draw : own) {
-            if (!draw.hidden) {
-                batches.push_back({draw.geometry, instances > 1 ? stride : static_cast<std::uint32_t>(count),
-                                   instances, draw.vertexCount, draw.doubleSided, draw.mirrored});
-            }
-        }
-        first = end;
-    }
-    return batches;
-}
-
 VkAccelerationStructureInstanceKHR makePlaced(bool doubleSided, std::uint32_t customIndex,
                                               const std::array<float, 12>& objectToWorld,
                                               VkDeviceAddress blas) {

@@ -138,18 +138,6 @@ struct PartedPrimitive {
 std::vector<MeshPart> partitionMesh(std::span<const PartedPrimitive> primitives,
                                     const BlasCapacity& capacity);
 
-// A draw of the raster pass. It shows one geometry record.
-struct Draw {
-    std::uint32_t geometry = 0;  // GeometryRecord index
-    std::uint32_t vertexCount = 0;
-    bool doubleSided = false;
-    bool mirrored = false;
-    std::uint32_t instance = 0;   // of the scene
-    bool hidden = false;          // the instance is flattened or not visible at present
-    std::uint32_t primitive = 0;  // of the mesh
-    std::uint32_t mesh = 0;       // of the scene
-};
-
 // The primitives of a mesh, as indices [first, end). The primitives are sorted as SceneView::primitives are.
 struct PrimitiveRange {
     std::uint32_t first = 0;
@@ -157,7 +145,7 @@ struct PrimitiveRange {
 };
 PrimitiveRange primitivesOf(std::span<const PrimitiveView> primitives, std::uint32_t mesh);
 
-// Instance i of the batch shows the GeometryRecord geometry + i * stride.
+// A draw of the raster pass. Its instance i shows the GeometryRecord geometry + i * stride.
 struct DrawBatch {
     std::uint32_t geometry = 0;
     std::uint32_t stride = 0;
@@ -166,11 +154,6 @@ struct DrawBatch {
     bool doubleSided = false;
     bool mirrored = false;
 };
-
-// Joins draws into batches whose instances and geometry records follow each other and have the same
-// primitives. Batches are in the order of their first draws. Hidden draws are left out. `draws` come instance
-// by instance, at most one for each geometry record. Pure; O(draws).
-std::vector<DrawBatch> batchDraws(std::span<const Draw> draws);
 
 // Makes an instance of the TLAS. `customIndex` is the index of its first geometry record.
 VkAccelerationStructureInstanceKHR makePlaced(bool doubleSided, std::uint32_t customIndex,

@@ -230,8 +230,6 @@ Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) try
     const bool switches = state_->next && joinReplacement(*state_);
     if (switches) {
         GLINT_TRY_DO(checkOutside(state_->next->size, outsideOf(frame)));
-    } else {
-        GLINT_TRY_DO(checkReplaced(*state_));
     }
     if (state_->history != nullptr) {
         GLINT_TRY_DO(state_->history->makeRoom());
@@ -241,7 +239,6 @@ Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) try
     }
     if (switches) {
         switchPackage(*state_, commands);
-        GLINT_TRY_DO(checkReplaced(*state_));
     }
     beginPicture(*state_, frame.sampleIndex);
     gpu::FrameConstants constants = makeConstants(*state_, frame);

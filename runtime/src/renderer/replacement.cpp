@@ -175,16 +175,16 @@ Status joinPasses(PackageUser& state, NextPackage& next) {
     return okStatus();
 }
 
-// Returns those who replace their package together with this one.
+// Returns all who draw the scene, and so replace their packages together.
 std::vector<PackageUser*> usersWith(const PackageUser& state) {
     const std::lock_guard lock(state.users->mutex);
-    std::vector<PackageUser*> users;
-    for (PackageUser* const user : state.users->all) {
-        if (user->passes() == state.passes()) {
-            users.push_back(user);
-        }
-    }
-    return users;
+    return state.users->all;
+}
+
+// Returns the package that the user needs for a replacement with `state`, or null if it keeps the one it has.
+std::shared_ptr<const Package> packageFor(const PackageUser& user, const PackageUser& state) {
+    const std::unique_ptr<NextPackage>& next = user.passes() == state.passes() ? state.next : user.next;
+    return next ? next->package : nullptr;
 }
 
 // Lets a package wait that was made by makeNext(). The threads make its pipelines first.
@@ -242,8 +242,12 @@ void addLeftovers(PackageUser& state) {
 
 bool isReplacementReady(const PackageUser& state) {
     return std::ranges::all_of(usersWith(state), [&](const PackageUser* user) {
+        const std::shared_ptr<const Package> wanted = packageFor(*user, state);
+        if (!wanted) {
+            return user->records == state.next->fit.records;
+        }
         const auto* const background = user->next ? user->next->pipelines.background.get() : nullptr;
-        return waitsFor(*user, state.next->package) &&
+        return waitsFor(*user, wanted) && user->next->fit.records == state.next->fit.records &&
                (background == nullptr || (user->pipelines.adoptedAtOnce > 0 && background->missing() == 0 &&
                                           !background->progress().error));
     });
@@ -311,6 +315,9 @@ Result<PackageReplacement> beginReplacement(PackageUser& state,
                                             const std::shared_ptr<const Package>& package) {
     std::vector<std::pair<PackageUser*, std::unique_ptr<NextPackage>>> made;
     for (PackageUser* const user : usersWith(state)) {
+        if (user->passes() != state.passes()) {
+            continue;
+        }
         if (user->pipelines.background) {
             GLINT_TRY_DO(adoptPipelines(user->context, user->pipelines));
         }
@@ -339,11 +346,14 @@ PackageProgress progressOf(const PackageUser& state) {
 }
 
 bool joinReplacement(PackageUser& state) {
-    const std::shared_ptr<const Package> package = state.next->package;
     for (PackageUser* const user : usersWith(state)) {
+        const std::shared_ptr<const Package> wanted = packageFor(*user, state);
+        if (!wanted) {
+            continue;
+        }
         // It was made after replacePackage(), or the scene has had other geometries since then.
-        if (!waitsFor(*user, package) || user->next->shaderIdsVersion != user->drawn.shaderIdsVersion) {
-            Result<std::unique_ptr<NextPackage>> next = makeNext(*user, package, true);
+        if (!waitsFor(*user, wanted) || user->next->shaderIdsVersion != user->drawn.shaderIdsVersion) {
+            Result<std::unique_ptr<NextPackage>> next = makeNext(*user, wanted, true);
             if (!next) {
                 refuse(state, next.error());
                 return false;
@@ -361,7 +371,12 @@ bool joinReplacement(PackageUser& state) {
 }
 
 void switchPackage(PackageUser& state, VkCommandBuffer commands) {
-    const std::vector<PackageUser*> users = usersWith(state);
+    std::vector<PackageUser*> users = usersWith(state);
+    // The scene gets the package of a renderer, if there is one, because steps have no emissive lights.
+    const auto renderer = std::ranges::find_if(
+        users, [](const PackageUser* user) { return user->passes() == package::Passes::Frame; });
+    const NextPackage* const leading = (renderer == users.end() ? &state : *renderer)->next.get();
+    std::erase_if(users, [](const PackageUser* user) { return !user->next; });
     for (PackageUser* const user : users) {
         if (Status status = joinPasses(*user, *user->next); !status) {
             refuse(state, status.error());
@@ -372,13 +387,15 @@ void switchPackage(PackageUser& state, VkCommandBuffer commands) {
         addLeftovers(*user);
     }
     const auto left = std::make_shared<RetiredLot>();
-    Result<RetiredLot> scene =
-        state.drawn.recordReplacement(state.next->package, state.next->fit.scene, commands);
-    if (!scene) {
-        refuse(state, scene.error());
-        return;
+    if (leading != nullptr) {
+        Result<RetiredLot> scene =
+            state.drawn.recordReplacement(leading->package, leading->fit.scene, commands);
+        if (!scene) {
+            refuse(state, scene.error());
+            return;
+        }
+        *left = std::move(*scene);
     }
-    *left = std::move(*scene);
     for (PackageUser* const user : users) {
         // The commands that are being recorded read the staging memory.
         takeOver(*user, std::move(user->next), left, user->recordings + (user == &state ? 1 : 0));
@@ -389,8 +406,8 @@ void switchPackage(PackageUser& state, VkCommandBuffer commands) {
 Status checkReplaced(const PackageUser& state) {
     if (state.drawn.records != state.records) {
         return makeError("package-replaced", "",
-                         "the scene's records are those of another package, which has replaced this one",
-                         "give replacePackage() a package of the same compilation");
+                         "EngineScene::update() has given the scene the content of another package",
+                         "give that package to replacePackage()");
     }
     return okStatus();
 }

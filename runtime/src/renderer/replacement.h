@@ -76,9 +76,8 @@ private:
     JobGroup group_;  // its jobs destroy a part of the waste each
 };
 
-// A Renderer or RaySteps. Those of a scene whose packages have the same passes replace their package
-// together. Others get the error "package-replaced" until they have a package that agrees with the scene's
-// records.
+// A Renderer or RaySteps. All of a scene replace their packages together, when those of all agree about the
+// scene's records. Those whose packages have the same passes share one.
 struct PackageUser : PassState {
     PackageUser(Context::State& contextState, DrawnScene& drawnScene, Timer passTimer)
         : PassState(contextState, std::move(passTimer)),
@@ -119,7 +118,8 @@ Status checkUse(package::Passes passes, const Package& package, const DrawnScene
 void enter(PackageUser& user, const Package& package);
 void leave(PackageUser& user);
 
-// Implements replacePackage() for all users of the scene whose packages have the same passes.
+// Implements replacePackage() for all users of the scene whose packages have the same passes. The others may
+// need a package of the same compilation, for which this one waits.
 Result<PackageReplacement> beginReplacement(PackageUser& user, const std::shared_ptr<const Package>& package);
 PackageProgress progressOf(const PackageUser& user);
 // Lets the package wait for users that were made after replacePackage(), too, and returns whether it is
@@ -128,7 +128,7 @@ bool joinReplacement(PackageUser& user);
 // Lets the commands that are recorded from now on use the package that waits, of all users. Requires
 // joinReplacement(). If something can't be made, gives the package up, and nothing else changes.
 void switchPackage(PackageUser& user, VkCommandBuffer commands);
-// Error "package-replaced": the scene's records are those of another package.
+// Error "package-replaced": the host has given an engine's scene the content of another package.
 Status checkReplaced(const PackageUser& user);
 // Makes the shader binding tables for the scene's present geometries, and pipelines that they need. Errors:
 // those of create().

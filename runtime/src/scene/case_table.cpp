@@ -2,11 +2,13 @@
 
 #include "data/scene_checks.h"
 #include "interop/scene.h"
+#include "package/package.h"
 
 #include <glint/internal/package_modules.h>
 
 #include <bit>
 #include <optional>
+#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -30,6 +32,9 @@ constexpr NamedFlag kNamedFlags[] = {{gpu::kGeometryAlphaTested, "alpha that ray
 package::KeyWords without(const package::KeyWords& features, const package::KeyWords& others) {
     return {features.lobes & ~others.lobes, features.inputs & ~others.inputs, 0, 0};
 }
+
+// The name of the feature of materials whose alpha rays test.
+constexpr std::string_view kAlphaTests = "alphaMask";
 
 bool isEmpty(const package::KeyWords& features) {
     return features == package::KeyWords{};
@@ -56,6 +61,11 @@ CaseTable::CaseTable(std::shared_ptr<const Package> package)
             always_.lobes &= entry.key.lobes;
             always_.inputs &= entry.key.inputs;
             flags_ |= entry.geometryFlags;
+        }
+    }
+    for (const package::FeatureEntry& feature : package_->state().features) {
+        if (package_->string(feature.name) == kAlphaTests) {
+            alphaTests_ = feature.feature;
         }
     }
     // With a fallback no shader takes a feature for granted that a case does not.
@@ -109,6 +119,29 @@ Status CaseTable::checkAttributes(const MaterialKey& key, const std::string& whe
             "make the keys by the attributes of primitives");
     }
     return okStatus();
+}
+
+MaterialKey CaseTable::asked(MaterialKey key) const {
+    const bool isBlended = (key.geometryFlags & gpu::kGeometryBlended) != 0;
+    const bool ignoresBlended = isBlended && package_->alpha() != package::AlphaPolicy::Stochastic;
+    if (package_->alpha() == package::AlphaPolicy::Opaque || ignoresBlended) {
+        for (package::KeyWords* const features : {&key.features, &key.hitFeatures}) {
+            features->lobes &= ~alphaTests_.lobes;
+            features->inputs &= ~alphaTests_.inputs;
+        }
+        // The raster pass tests MASK all the same.
+        key.geometryFlags &= ~(gpu::kGeometryAlphaTested | gpu::kGeometryBlended |
+                               (ignoresBlended ? gpu::kGeometryMasked : 0U));
+    }
+    if (package_->shadowThrough() != package::ShadowThrough::Glass) {
+        key.geometryFlags &= ~gpu::kGeometryPassesLight;
+    } else if ((key.geometryFlags & gpu::kGeometryBlended) != 0) {
+        key.geometryFlags |= gpu::kGeometryPassesLight;
+    }
+    if (package_->emission() == nullptr) {
+        key.geometryFlags &= ~gpu::kGeometryEmitter;
+    }
+    return key;
 }
 
 Status CaseTable::checkKnown(const MaterialKey& key, const std::string& where) const {
@@ -168,7 +201,8 @@ Status CaseTable::checkEmitter(const MaterialKey& key, const std::string& where)
     return okStatus();
 }
 
-Result<Shading> CaseTable::find(const MaterialKey& key, const std::string& where) const {
+Result<Shading> CaseTable::find(const MaterialKey& whole, const std::string& where) const {
+    const MaterialKey key = asked(whole);
     GLINT_TRY_DO(checkKnown(key, where));
     GLINT_TRY_DO(checkEmitter(key, where));
     Shading shading{key.features, key.geometryFlags, 0, false};

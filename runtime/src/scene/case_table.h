@@ -31,7 +31,7 @@ public:
     // Finds the shader of a key. `where` is the material, for messages. A key of the package's own scenes has
     // the shader that they have. For others it is the case that has all of the key's features and takes the
     // fewest others into account. Errors: "scene-edit-feature", "scene-edit-case".
-    Result<Shading> find(const MaterialKey& key, const std::string& where) const;
+    Result<Shading> find(const MaterialKey& whole, const std::string& where) const;
     // Checks that the attributes include those that shaders of the key's features read. Error
     // "scene-edit-key".
     Status checkAttributes(const MaterialKey& key, const std::string& where) const;
@@ -44,6 +44,8 @@ public:
     }
 
 private:
+    // Returns the part of the key that the package's rays ask for.
+    MaterialKey asked(MaterialKey key) const;
     Status checkKnown(const MaterialKey& key, const std::string& where) const;
     // Checks that shaders compute the emission of a light with this key.
     Status checkEmitter(const MaterialKey& key, const std::string& where) const;
@@ -58,7 +60,8 @@ private:
     std::map<std::uint32_t, std::uint32_t> knownOwn_;               // features of models of some primitive
     // Shared features of every primitive, which no shader asks for.
     package::KeyWords always_{~0U, ~0U, 0, 0};
-    std::uint32_t flags_ = 0;  // geometry flags of some primitive
+    std::uint32_t flags_ = 0;       // geometry flags of some primitive
+    package::KeyWords alphaTests_;  // the feature of materials whose alpha rays test
 };
 
 }  // namespace glint

@@ -22,6 +22,7 @@ struct PackageUser;
 // The way in which a package draws a scene.
 struct PackageFit {
     std::uint32_t scene = 0;               // its index, or kNoPackageScene
+    std::uint64_t records = 0;             // recordsHash()
     std::vector<std::uint32_t> shaderIds;  // of the shader binding table
     std::vector<EditReport::MissingCase>
         missing{};  // of a scene that is edited: materials that the fallback shades
@@ -51,7 +52,7 @@ struct DrawnScene {
     std::vector<std::uint32_t> shaderIds;
     std::uint32_t shaderIdsVersion = 0;
     // Renderers and RaySteps of the scene, which add and remove themselves, also when the scene is gone. They
-    // replace its package together.
+    // replace its packages together.
     struct Users {
         std::mutex mutex;
         std::vector<PackageUser*> all;

@@ -98,10 +98,9 @@ Result<std::vector<std::uint8_t>> makeRecord(SceneStore& store, const MaterialSo
     return record;
 }
 
-void countUses(SceneStore& store, std::span<const TextureUse> uses, bool adds) {
+void countUses(SceneStore& store, std::uint32_t material, std::span<const TextureUse> uses, bool adds) {
     for (const TextureUse& use : uses) {
-        std::uint32_t& count = store.textures.find(use.texture)->uses;
-        count = adds ? count + 1 : count - 1;
+        countUse(store.textures.find(use.texture)->materials, material, adds);
     }
 }
 
@@ -210,11 +209,15 @@ void addTo(EditReport& report, const CaseTable& cases, MaterialHandle material, 
     }
 }
 
-// A record says which textures it may read. A slot that no key reads names the first texture, too.
+// A record says which textures it may read. A slot that no key reads holds zero.
 std::vector<TextureUse> usesOf(const SceneStore& store, const MaterialTable& table, std::size_t material) {
     std::vector<TextureUse> uses;
     for (std::uint32_t slot = 0; slot < table.textureCount && !store.firstTextures.empty(); ++slot) {
         const gpu::TextureRecord record = textureAt(table, material, slot);
+        if (std::ranges::all_of(std::as_bytes(std::span(&record, 1)),
+                                [](std::byte part) { return part == std::byte{0}; })) {
+            continue;
+        }
         uses.push_back({slot, store.firstTextures[record.textureIndex], store.samplers[record.samplerIndex],
                         record.texCoord});
     }
@@ -255,7 +258,7 @@ Result<TextureHandle> SceneEditor::addTexture(const ImageView& image, bool srgb)
     }
     GLINT_TRY(auto made, makeImage(*store_, image, srgb, next.index));
     const TextureHandle texture =
-        store_->textures.add({image.width, image.height, srgb, 0, emissionTexels(*store_, image, srgb)});
+        store_->textures.add({image.width, image.height, srgb, emissionTexels(image, srgb)});
     scene.textures.resize(std::max<std::size_t>(scene.textures.size(), store_->textures.end()));
     scene.textures[texture.index] = std::move(made);
     store_->setDirty = true;
@@ -265,7 +268,7 @@ GLINT_CATCH
 
 Status SceneEditor::replaceTexture(TextureHandle texture, const ImageView& image) try {
     GLINT_TRY(StoredTexture* const entry, findNamed(store_->textures, texture, "texture"));
-    if (store_->trustsTextures) {
+    if (store_->cases->package().trustTextures()) {
         return makeError("texture-trusted", "", "the shaders of the package rely on what its textures hold",
                          "compile it with --no-trust-textures, or with --fallback");
     }
@@ -277,31 +280,25 @@ Status SceneEditor::replaceTexture(TextureHandle texture, const ImageView& image
     store_->otherTexels = true;
     entry->width = image.width;
     entry->height = image.height;
-    entry->texels = emissionTexels(*store_, image, entry->srgb);
-    replaceEmission(*store_, texture);
+    entry->texels = emissionTexels(image, entry->srgb);
+    replaceEmission(*store_, *entry);
     // Records have the sizes of their textures.
-    store_->materialSlots.forEach([&](MaterialHandle handle, const StoredMaterial& material) {
-        for (const TextureUse& use : material.textures) {
-            if (use.texture == texture) {
-                const std::span<const std::uint8_t> old = store_->materials.at(handle.index);
-                std::vector<std::uint8_t> record(old.begin(), old.end());
-                const MaterialTable table = tableWith(store_->scene.materialLayout, record);
-                gpu::TextureRecord settled = textureAt(table, 0, use.slot);
-                settled.texels = {static_cast<float>(image.width), static_cast<float>(image.height)};
-                std::memcpy(&record[placeOfTexture(table, 0, use.slot)], &settled, sizeof settled);
-                store_->materials.writeBytes(handle.index, record);
-            }
-        }
-    });
+    for (const auto& [material, uses] : entry->materials) {
+        const std::span<const std::uint8_t> old = store_->materials.at(material);
+        std::vector<std::uint8_t> record(old.begin(), old.end());
+        settleTextures(*store_, store_->scene.materialLayout, store_->materialSlots.at(material).textures,
+                       record);
+        store_->materials.writeBytes(material, record);
+    }
     return okStatus();
 }
 GLINT_CATCH
 
 Status SceneEditor::removeTexture(TextureHandle texture) try {
     GLINT_TRY(const StoredTexture* const entry, findNamed(store_->textures, texture, "texture"));
-    if (entry->uses > 0) {
+    if (!entry->materials.empty()) {
         return makeError("scene-edit-used", placeOf("texture", texture.index),
-                         std::to_string(entry->uses) + " materials use the texture",
+                         std::to_string(entry->materials.size()) + " materials use the texture",
                          "remove the materials first, or give them other textures");
     }
     store_->textures.take(texture);
@@ -321,7 +318,7 @@ Result<MaterialHandle> SceneEditor::addMaterial(const MaterialSource& source) tr
     GLINT_TRY(auto record, makeRecord(*store_, source));
     const MaterialHandle material = store_->materialSlots.add(
         {{source.keys.begin(), source.keys.end()}, {source.textures.begin(), source.textures.end()}, true});
-    countUses(*store_, source.textures, true);
+    countUses(*store_, material.index, source.textures, true);
     store_->materials.writeBytes(material.index, record);
     return material;
 }
@@ -341,8 +338,8 @@ Result<EditReport> SceneEditor::setMaterial(MaterialHandle material, const Mater
     }
     GLINT_TRY(auto record, makeRecord(*store_, source));
     // The new textures may be some of the old.
-    countUses(*store_, source.textures, true);
-    countUses(*store_, entry->textures, false);
+    countUses(*store_, material.index, source.textures, true);
+    countUses(*store_, material.index, entry->textures, false);
     entry->keys.assign(source.keys.begin(), source.keys.end());
     entry->textures.assign(source.textures.begin(), source.textures.end());
     entry->isOwn = true;
@@ -385,7 +382,7 @@ Status SceneEditor::removeMaterial(MaterialHandle material) try {
                          "give them other materials first, or remove them");
     }
     const StoredMaterial gone = store_->materialSlots.take(material);
-    countUses(*store_, gone.textures, false);
+    countUses(*store_, material.index, gone.textures, false);
     store_->materials.shrink(store_->materialSlots.end());
     return okStatus();
 }

@@ -76,7 +76,7 @@ public:
         addMaterials();
         GLINT_TRY_DO(fillMaterials());
         addKeys();
-        GLINT_TRY_DO(moveMeshes());
+        moveMeshes();
         countTextures();
         GLINT_TRY_DO(checkShading());
         return std::move(tables_);
@@ -93,11 +93,31 @@ private:
         return records;
     }
 
-    // The package may have more materials than the one before.
+    // The package may have more materials than the one before, and give primitives some that edits have
+    // removed.
     void addMaterials() {
         while (tables_.firstMaterials.size() < known_.materials.size()) {
             tables_.firstMaterials.push_back(tables_.materialSlots.add({}));
         }
+        store_.meshes.forEach([&](MeshHandle /*handle*/, const StoredMesh& mesh) {
+            for (const StoredPrimitive& primitive : mesh.primitives) {
+                const std::optional<std::uint32_t> number = materialOfPackage(primitive);
+                if (number && tables_.materialSlots.find(tables_.firstMaterials[*number]) == nullptr) {
+                    tables_.firstMaterials[*number] = tables_.materialSlots.add({});
+                }
+            }
+        });
+    }
+
+    // Returns the number of the primitive's material in the package, unless an edit has given it another one.
+    std::optional<std::uint32_t> materialOfPackage(const StoredPrimitive& primitive) const {
+        if (primitive.entryIndex == StoredPrimitive::kNoEntry) {
+            return std::nullopt;
+        }
+        const std::uint32_t before = store_.scene.package.entries[primitive.entryIndex].materialIndex;
+        return primitive.material == store_.firstMaterials[before]
+                   ? std::optional(known_.primitives[primitive.entryIndex].materialIndex)
+                   : std::nullopt;
     }
 
     Status fillMaterials() {
@@ -133,12 +153,6 @@ private:
     // An edit has added or replaced the material: it stays as it is.
     Status carryMaterial(std::uint32_t index, StoredMaterial& material) {
         const std::string where = placeOf("material", index);
-        const Package& before = store_.cases->package();
-        if (before.alpha() != package_.alpha() || before.shadowThrough() != package_.shadowThrough()) {
-            return otherContent(where,
-                                "an edit has made the material, and the packages differ in how rays treat "
-                                "alpha or glass, on which its keys depend");
-        }
         const auto modelOf = [&] { return material.keys.empty() ? 0 : material.keys.front().features.model; };
         const std::uint32_t modelBefore = modelOf();
         for (MaterialKey& key : material.keys) {
@@ -218,44 +232,29 @@ private:
         }
     }
 
-    // Gives primitives the material that the package says, unless an edit has given them another one.
-    Status moveMeshes() {
-        Status status = okStatus();
+    // Gives primitives the material that the package says.
+    void moveMeshes() {
         store_.meshes.forEach([&](MeshHandle handle, const StoredMesh& mesh) {
             std::vector<MaterialHandle> materials;
             for (const StoredPrimitive& primitive : mesh.primitives) {
-                materials.push_back(primitive.material);
-                if (primitive.entryIndex == StoredPrimitive::kNoEntry) {
-                    continue;
-                }
-                const std::uint32_t before = store_.scene.package.entries[primitive.entryIndex].materialIndex;
-                const std::uint32_t after = known_.primitives[primitive.entryIndex].materialIndex;
-                const MaterialHandle wanted = tables_.firstMaterials[after];
-                if (primitive.material != store_.firstMaterials[before] || primitive.material == wanted) {
-                    continue;
-                }
-                if (tables_.materialSlots.find(wanted) == nullptr) {
-                    status = otherContent(placeOf("mesh", handle.index),
-                                          "an edit has removed the material that the package gives it");
-                    return;
-                }
+                const std::optional<std::uint32_t> number = materialOfPackage(primitive);
+                materials.push_back(number ? tables_.firstMaterials[*number] : primitive.material);
                 countUse(tables_.materialSlots, primitive.material, &StoredMaterial::meshes, handle.index,
                          false);
-                countUse(tables_.materialSlots, wanted, &StoredMaterial::meshes, handle.index, true);
-                materials.back() = wanted;
+                countUse(tables_.materialSlots, materials.back(), &StoredMaterial::meshes, handle.index,
+                         true);
             }
             if (!mesh.primitives.empty()) {
                 tables_.meshMaterials.emplace(handle.index, std::move(materials));
             }
         });
-        return status;
     }
 
     void countTextures() {
-        tables_.textureUses.resize(store_.textures.end());
-        tables_.materialSlots.forEach([&](MaterialHandle /*handle*/, const StoredMaterial& material) {
+        tables_.textureUsers.resize(store_.textures.end());
+        tables_.materialSlots.forEach([&](MaterialHandle handle, const StoredMaterial& material) {
             for (const TextureUse& use : material.textures) {
-                ++tables_.textureUses[use.texture.index];
+                countUse(tables_.textureUsers[use.texture.index], handle.index, true);
             }
         });
     }
@@ -320,9 +319,8 @@ void exchangeTables(SceneStore& store, EditedTables& tables) {
         }
     }
     store.textures.forEach([&](TextureHandle handle, StoredTexture& texture) {
-        std::swap(texture.uses, tables.textureUses[handle.index]);
+        std::swap(texture.materials, tables.textureUsers[handle.index]);
     });
-    store.trustsTextures = store.cases->package().trustTextures();
 }
 
 }  // namespace glint

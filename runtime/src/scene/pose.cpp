@@ -113,8 +113,8 @@ void poseLights(SceneStore& store, std::span<const LightView> lights) {
 Status recordPose(GpuScene::State& state, VkCommandBuffer commands, const MotionView& view,
                   std::uint64_t frame) {
     SceneStore& store = *state.store;
-    if (!store.moves) {
-        return makeError("scene-still", "", "the scene was uploaded as one that does not move",
+    if (!store.keeps()) {
+        return makeError("scene-still", "", "the scene was uploaded as one that neither moves nor is edited",
                          "set SceneView::moves before the upload");
     }
     GLINT_TRY_DO(checkFrame(store, frame));

@@ -144,21 +144,11 @@ bool isReadAlike(const package::EmissionEntry& a, const package::EmissionEntry& 
 Status checkEmission(const GpuScene::State& scene, const Package& package, const PackageScene& known) {
     const ScenePackage& now = scene.package;
     const package::EmissionEntry* const emission = package.emission();
+    if (scene.store->editable) {
+        return okStatus();
+    }
     if (now.emission.has_value() != (emission != nullptr)) {
         return otherScene(now.scene, "one of the packages takes emissive triangles as lights");
-    }
-    if (package.shadowThrough() == package::ShadowThrough::Glass && scene.store->editable &&
-        !scene.store->passesLight) {
-        return otherScene(
-            now.scene,
-            "light passes through glass, and a ray may meet triangles of the uploaded structures twice");
-    }
-    if (scene.store->editable) {
-        constexpr std::uint32_t kNone = package::EmissionEntry::kNone;
-        const bool gainsTexture =
-            emission != nullptr && emission->texture != kNone && now.emission->texture == kNone;
-        return gainsTexture ? otherScene(now.scene, "emission now has textures, whose texels were not kept")
-                            : okStatus();
     }
     if (emission != nullptr &&
         (!isReadAlike(*now.emission, *emission) || now.emissions != emissionsOf(package, known.materials))) {
@@ -266,6 +256,9 @@ void exchange(SceneStore& store, OtherPackage& other) {
     std::swap(scene.changing, other.changing);
     std::swap(store.emission, other.emission);
     std::swap(store.buildsTree, other.buildsTree);
+    if (!store.emission && other.emission) {
+        forgetEmitters(store);
+    }
     if (other.edited) {
         exchangeTables(store, *other.edited);
         store.emittersDirty = store.emittersDirty || store.emission.has_value();
@@ -367,7 +360,7 @@ Result<PackageFit> GpuScene::State::fit(const std::shared_ptr<const Package>& ot
     GLINT_TRY_DO(checkEmission(*this, *other, known));
     GLINT_TRY_DO(checkDecided(*this, *other, known));
     GLINT_TRY(auto content, otherPackage(*this, other, *index));
-    PackageFit fit{*index, std::move(content.shaderIds)};
+    PackageFit fit{*index, content.records, std::move(content.shaderIds)};
     if (content.edited) {
         fit.missing = std::move(content.edited->report.missing);
     }

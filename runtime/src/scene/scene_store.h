@@ -19,6 +19,7 @@
 #include "data/retired.h"
 #include "data/scene_checks.h"
 #include "scene/case_table.h"
+#include "scene/draw_runs.h"
 #include "scene/gpu_scene_state.h"
 #include "scene/record_store.h"
 #include "scene/scene_upload.h"
@@ -41,17 +42,27 @@
 
 namespace glint {
 
+// How often things use another one, by their index: primitives of a mesh or an instance a material, and
+// materials a texture.
+using Users = std::map<std::uint32_t, std::uint32_t>;
+
+// Counts a use more or less.
+inline void countUse(Users& users, std::uint32_t user, bool adds) {
+    std::uint32_t& count = users[user];
+    count = adds ? count + 1 : count - 1;
+    if (count == 0) {
+        users.erase(user);
+    }
+}
+
 // A texture of a scene that is edited. Its image is GpuScene::State::textures at the handle's index.
 struct StoredTexture {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     bool srgb = false;
-    std::uint32_t uses = 0;                          // by materials
-    std::shared_ptr<const EmissionTexels> texels{};  // of a colour, if emission may have textures
+    std::shared_ptr<const EmissionTexels> texels{};  // of a colour
+    Users materials{};
 };
-
-// How many primitives have a material, by the index of their mesh or instance.
-using MaterialUsers = std::map<std::uint32_t, std::uint32_t>;
 
 // A material of a scene that is edited. Its record is in SceneStore::materials at the handle's index.
 struct StoredMaterial {
@@ -59,8 +70,8 @@ struct StoredMaterial {
     std::vector<TextureUse> textures;
     bool isOwn = false;         // an edit has added or replaced it; else keys and textures are the package's
     bool hasOwnValues = false;  // an edit or the host has given its values
-    MaterialUsers meshes{};
-    MaterialUsers instances{};  // that have it in the place of their mesh's own
+    Users meshes{};
+    Users instances{};  // that have it in the place of their mesh's own
 };
 
 // A part and its BLAS, which instances that keep their shape share.
@@ -81,7 +92,7 @@ struct StoredPrimitive {
     MaterialHandle material{};                    // of a scene that is edited
     package::PrimitiveEntry entry{};              // of a sealed scene
     std::uint32_t entryIndex = kNoEntry;          // in PackageScene::primitives, if it was uploaded
-    std::shared_ptr<const EmitterShape> shape{};  // in packages with emissive lights
+    std::shared_ptr<const EmitterShape> shape{};  // of a light, or in a scene that is edited
     const DeviceMicromap* micromap = nullptr;     // of a sealed scene
     DeformSource source{};
 };
@@ -151,7 +162,6 @@ struct SceneStore {
     LeafOrder leafOrder = nullptr;  // null: structures get their input as it is
     VertexForm vertices = VertexForm::Compact;
     bool dataAccess = false;                         // BLASes let shaders read positions
-    bool passesLight = false;                        // a ray meets each triangle at most once
     bool buildsTree = false;                         // the package chooses lights by a hierarchy
     std::optional<package::EmissionEntry> emission;  // none without emissive lights
     std::vector<package::SamplerEntry> samplers;     // of GpuScene::State::samplers
@@ -159,8 +169,7 @@ struct SceneStore {
 
     // Scenes that are edited.
     std::optional<CaseTable> cases;
-    bool trustsTextures = false;  // Package::trustTextures()
-    bool otherTexels = false;     // an edit has replaced the image of a texture
+    bool otherTexels = false;  // an edit has replaced the image of a texture
     Slots<StoredTexture, TextureHandle> textures;
     Slots<StoredMaterial, MaterialHandle> materialSlots;
 
@@ -191,6 +200,7 @@ struct SceneStore {
     RunAllocator poseRuns;
     RunAllocator deformRuns;
     TopLevel topLevel;
+    DrawRuns draws;
     Buffer poseBuffer;
     Buffer deformBuffer;
     Buffer placedBuffer;  // TopLevel::records() on the device
@@ -213,7 +223,7 @@ struct SceneStore {
     std::unique_ptr<Uploader> ownUploader;  // null in the upload, which has one of its own
     Uploader* uploader = nullptr;
     std::vector<BlasBuild> builds;  // of BLASes that instances share, with their destinations
-    bool drawsDirty = true;
+    bool drawsDirty = false;
     bool lightsDirty = true;     // other lights
     bool lightsMoved = false;    // the same lights with other values
     bool emittersDirty = false;  // other emissive triangles
@@ -288,9 +298,9 @@ Status poseInstance(SceneStore& store, const Package* package, InstanceHandle ha
 // The joints and weights of an instance. The spans hold until the store changes.
 InstanceView poseOf(const SceneStore& store, const StoredInstance& instance);
 
-// Counts a use of the material more or less.
+// Counts a use of the material, if it names one, more or less.
 void countUse(Slots<StoredMaterial, MaterialHandle>& materials, MaterialHandle material,
-              MaterialUsers StoredMaterial::*users, std::uint32_t user, bool adds);
+              Users StoredMaterial::*users, std::uint32_t user, bool adds);
 // Error "scene-geometries".
 Diagnostic tooManyGeometries(const std::string& where);
 
@@ -303,8 +313,8 @@ package::PrimitiveEntry entryOf(const SceneStore& store, const StoredInstance& i
 void placeParts(SceneStore& store, const StoredInstance& instance);
 // Writes where deformed vertices and poses are, after one of the arrays has moved to these addresses.
 void writeDeforms(SceneStore& store, std::uint32_t instance, VkDeviceAddress poses);
-// The draws of all instances.
-std::vector<Draw> drawsOf(SceneStore& store);
+// Notes what the raster pass draws of an instance, if it is shown.
+void placeDraws(SceneStore& store, InstanceHandle handle, const StoredInstance& instance);
 
 // Calls visit(index, geometry) for the parts of an instance, with their first geometry records.
 template <typename Visit>
@@ -363,7 +373,7 @@ struct EditedTables {
     std::vector<MaterialHandle> firstMaterials;
     RecordStore materials;
     std::map<std::uint32_t, std::vector<MaterialHandle>> meshMaterials;  // of meshes that were uploaded
-    std::vector<std::uint32_t> textureUses;                              // by index
+    std::vector<Users> textureUsers;                                     // by index
     EditReport report;                                                   // materials without a case
 };
 // Gives a material of the package the key of one of its primitives.
@@ -377,9 +387,10 @@ void exchangeTables(SceneStore& store, EditedTables& tables);
 
 // --- Lights and emissive triangles (store_lights.cpp) ---
 
-// Returns the texels of a texture that may be an emission, or null.
-std::shared_ptr<const EmissionTexels> emissionTexels(const SceneStore& store, const ImageView& image,
-                                                     bool srgb);
+// Returns whether the emission of a material may have a texture. Requires emissive lights.
+bool hasEmissionTexture(const SceneStore& store);
+// Returns the texels of a texture that may be an emission, by this or by another package, or null.
+std::shared_ptr<const EmissionTexels> emissionTexels(const ImageView& image, bool srgb);
 LightHandle addLight(SceneStore& store, const LightView& light);
 void setLight(SceneStore& store, LightHandle handle, const LightView& light);
 void removeLight(SceneStore& store, LightHandle handle);
@@ -388,7 +399,9 @@ void noteEmitters(SceneStore& store, InstanceHandle handle, const StoredInstance
 // Notes that an instance has moved, or was shown or hidden (`changes`), or `removed`.
 void moveEmitters(SceneStore& store, InstanceHandle handle, bool changes, bool removed = false);
 // Notes that a texture has another image.
-void replaceEmission(SceneStore& store, TextureHandle texture);
+void replaceEmission(SceneStore& store, const StoredTexture& texture);
+// Forgets which triangles are lights, for a package without emissive lights.
+void forgetEmitters(SceneStore& store);
 // Brings records of emissive triangles and the hierarchy of lights up to date.
 void settleLights(SceneStore& store);
 

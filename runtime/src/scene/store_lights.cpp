@@ -23,10 +23,6 @@ bool emitsLight(const SceneStore& store, const StoredInstance& instance) {
     return false;
 }
 
-bool hasTexture(const SceneStore& store) {
-    return store.emission->texture != package::EmissionEntry::kNone;
-}
-
 // The material's texture in the emission's slot. Requires that records have one.
 gpu::TextureRecord emissionRecord(const SceneStore& store, std::span<const std::uint8_t> record) {
     return textureAt(tableWith(store.scene.materialLayout, record), 0, store.emission->texture);
@@ -75,7 +71,7 @@ void addParts(SceneStore& store, const StoredInstance& instance, std::uint32_t n
             if (instance.shape != nullptr && instance.shape->vertices[range.primitive].positions != 0) {
                 part.motion = mesh.bounds;
             }
-            if (hasTexture(store)) {
+            if (hasEmissionTexture(store)) {
                 const gpu::TextureRecord texture = emissionRecord(store, values);
                 const bool isRead = (record.featureInputs & store.emission->textureInput) != 0;
                 std::optional<EmitterTexture> emission =
@@ -116,14 +112,14 @@ void gatherEmitters(SceneStore& store) {
 
 }  // namespace
 
-std::shared_ptr<const EmissionTexels> emissionTexels(const SceneStore& store, const ImageView& image,
-                                                     bool srgb) {
+bool hasEmissionTexture(const SceneStore& store) {
+    return store.emission->texture != package::EmissionEntry::kNone;
+}
+
+std::shared_ptr<const EmissionTexels> emissionTexels(const ImageView& image, bool srgb) {
     const std::uint64_t wanted = bytesOfLevel(TexelFormat::Rgba8, image.width, image.height, 0);
     const bool readable = !isBlockFormat(image.format) || image.decoded.size() == wanted;
-    if (!store.emission || !hasTexture(store) || !srgb || !readable) {
-        return nullptr;
-    }
-    return std::make_shared<EmissionTexels>(image, srgb);
+    return srgb && readable ? std::make_shared<EmissionTexels>(image, srgb) : nullptr;
 }
 
 namespace {
@@ -193,17 +189,28 @@ void moveEmitters(SceneStore& store, InstanceHandle handle, bool changes, bool r
     }
 }
 
-void replaceEmission(SceneStore& store, TextureHandle texture) {
-    if (!store.emission || !hasTexture(store)) {
+void replaceEmission(SceneStore& store, const StoredTexture& texture) {
+    if (!store.emission || !hasEmissionTexture(store)) {
         return;
     }
-    store.materialSlots.forEach([&](MaterialHandle handle, const StoredMaterial& material) {
-        const auto use = std::ranges::find(material.textures, store.emission->texture, &TextureUse::slot);
-        if (use != material.textures.end() && use->texture == texture &&
-            store.emissiveMaterials.contains(handle.index)) {
-            store.emittersDirty = true;
-        }
-    });
+    for (const auto& [material, uses] : texture.materials) {
+        const std::vector<TextureUse>& slots = store.materialSlots.at(material).textures;
+        const auto use = std::ranges::find(slots, store.emission->texture, &TextureUse::slot);
+        store.emittersDirty =
+            store.emittersDirty || (use != slots.end() && store.textures.find(use->texture) == &texture &&
+                                    store.emissiveMaterials.contains(material));
+    }
+}
+
+void forgetEmitters(SceneStore& store) {
+    store.emissiveInstances.clear();
+    store.emissiveMaterials.clear();
+    store.emitterMeans = {};
+    store.scene.emitters = {};
+    store.emitters.shrink(0);
+    store.firstEmitters.shrink(0);
+    store.emittersDirty = store.emittersMoved = false;
+    store.lightsDirty = true;
 }
 
 void writeMaterial(SceneStore& store, std::uint32_t material, std::span<const std::uint8_t> record) {
@@ -213,7 +220,7 @@ void writeMaterial(SceneStore& store, std::uint32_t material, std::span<const st
             emittedLuminance(old, *store.emission) != emittedLuminance(record, *store.emission);
         if (store.editable) {
             bool changes = brightens;
-            if (hasTexture(store)) {
+            if (hasEmissionTexture(store)) {
                 const gpu::TextureRecord before = emissionRecord(store, old);
                 const gpu::TextureRecord after = emissionRecord(store, record);
                 changes = changes || !std::ranges::equal(std::as_bytes(std::span(&before, 1)),

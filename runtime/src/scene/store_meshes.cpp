@@ -26,8 +26,8 @@ BlasInput inputOf(const SceneStore& store, const StoredMesh& mesh, const MeshPar
             geometry.positions = shape->vertices[range.primitive].positions;
         }
         if (store.editable) {
-            // The TLAS says whether the material is opaque.
-            geometry.once = store.passesLight;
+            // The TLAS says whether the material is opaque. Light may pass any material of another package.
+            geometry.once = true;
             continue;
         }
         const std::uint32_t flags = primitive.entry.geometryFlags;
@@ -90,8 +90,9 @@ Status makePrimitive(SceneStore& store, const Package& package, const MeshConten
     if (store.editable) {
         made.attributes = attributesOf(package, view);
     }
-    if (store.emission && (store.editable || (made.entry.geometryFlags & gpu::kGeometryEmitter) != 0)) {
-        made.shape = std::make_shared<EmitterShape>(*store.emission, view, indices);
+    if (store.editable || (made.entry.geometryFlags & gpu::kGeometryEmitter) != 0) {
+        made.shape =
+            std::make_shared<EmitterShape>(view, indices, store.editable || hasEmissionTexture(store));
     }
     return okStatus();
 }
@@ -275,15 +276,9 @@ void retireMesh(SceneStore& store, MeshHandle handle) {
 }
 
 void countUse(Slots<StoredMaterial, MaterialHandle>& materials, MaterialHandle material,
-              MaterialUsers StoredMaterial::*users, std::uint32_t user, bool adds) {
-    StoredMaterial* const entry = materials.find(material);
-    if (entry == nullptr) {
-        return;
-    }
-    std::uint32_t& count = (entry->*users)[user];
-    count = adds ? count + 1 : count - 1;
-    if (count == 0) {
-        (entry->*users).erase(user);
+              Users StoredMaterial::*users, std::uint32_t user, bool adds) {
+    if (StoredMaterial* const entry = materials.find(material); entry != nullptr) {
+        countUse(entry->*users, user, adds);
     }
 }
 
@@ -294,6 +289,21 @@ Diagnostic tooManyGeometries(const std::string& where) {
 }
 
 namespace {
+
+// Counts the records and the triangles of an instance, once more or once less.
+void countRecords(SceneStore& store, const StoredInstance& instance, bool adds) {
+    GpuScene::Statistics& statistics = store.scene.statistics;
+    forEachGeometry(*store.meshes.find(instance.mesh), instance,
+                    [&](const TriangleRange& range, const StoredPrimitive&, std::uint32_t) {
+                        if (adds) {
+                            ++statistics.geometries;
+                            statistics.triangles += range.drawn;
+                        } else {
+                            --statistics.geometries;
+                            statistics.triangles -= range.drawn;
+                        }
+                    });
+}
 
 // Links the instance to its mesh and its materials, and gives it geometry records.
 void link(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
@@ -306,6 +316,7 @@ void link(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
     for (const MaterialHandle material : instance.materials) {
         countUse(store.materialSlots, material, &StoredMaterial::instances, index, true);
     }
+    countRecords(store, instance, true);
 }
 
 void releaseShape(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
@@ -327,6 +338,9 @@ void unlink(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
     StoredMesh& mesh = *store.meshes.find(instance.mesh);
     forEachPart(mesh, instance,
                 [&](std::size_t /*part*/, std::uint32_t geometry) { store.topLevel.remove(geometry); });
+    countRecords(store, instance, false);
+    store.draws.set(index, {});
+    store.drawsDirty = true;
     store.geometryRuns.release(instance.firstGeometry, instance.geometryCount);
     const std::uint32_t last = mesh.instances.back();
     mesh.instances[instance.placeInMesh] = last;
@@ -338,7 +352,6 @@ void unlink(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
         countUse(store.materialSlots, material, &StoredMaterial::instances, index, false);
     }
     releaseShape(store, index, instance);
-    store.drawsDirty = true;
 }
 
 void shrinkRecords(SceneStore& store) {
@@ -492,16 +505,20 @@ package::PrimitiveEntry entryOf(const SceneStore& store, const StoredInstance& i
 
 void writeGeometries(SceneStore& store, InstanceHandle handle, const StoredInstance& instance) {
     const StoredMesh& mesh = *store.meshes.find(instance.mesh);
+    bool turns = false;
     forEachGeometry(
         mesh, instance,
         [&](const TriangleRange& range, const StoredPrimitive& primitive, std::uint32_t index) {
             const gpu::GeometryRecord record = recordAt(store, instance, handle.index, range, primitive);
             const std::uint32_t before = index < store.geometries.count()
                                              ? store.geometries.read<gpu::GeometryRecord>(index).flags
-                                             : ~record.flags;
-            store.drawsDirty = store.drawsDirty || ((before ^ record.flags) & gpu::kGeometryDoubleSided) != 0;
+                                             : record.flags;
+            turns = turns || ((before ^ record.flags) & gpu::kGeometryDoubleSided) != 0;
             store.geometries.write(index, record);
         });
+    if (turns) {
+        placeDraws(store, handle, instance);
+    }
     noteEmitters(store, handle, instance);
     placeParts(store, instance);
     ++store.shapeVersion;
@@ -571,8 +588,8 @@ Result<InstanceHandle> placeInstance(SceneStore& store, const Package* package, 
         takeShape(store, handle.index, placed, std::move(shape), pose);
     }
     store.instances.write(handle.index, makeInstanceRecord(placed.objectToWorld));
-    store.drawsDirty = true;
     writeGeometries(store, handle, placed);
+    placeDraws(store, handle, placed);
     return handle;
 }
 
@@ -596,7 +613,9 @@ void moveInstance(SceneStore& store, InstanceHandle handle, const Rows& objectTo
     const bool shows = wasShown != instance.isShown();
     moveEmitters(store, handle, shows);
     placeParts(store, instance);
-    store.drawsDirty = store.drawsDirty || turned || shows;
+    if (turned || shows) {
+        placeDraws(store, handle, instance);
+    }
 }
 
 void exchangeMesh(SceneStore& store, InstanceHandle handle, MeshHandle mesh,
@@ -607,6 +626,7 @@ void exchangeMesh(SceneStore& store, InstanceHandle handle, MeshHandle mesh,
     instance.materials.assign(materials.begin(), materials.end());
     link(store, handle.index, instance);
     writeGeometries(store, handle, instance);
+    placeDraws(store, handle, instance);
     shrinkRecords(store);
 }
 
@@ -651,30 +671,23 @@ Status poseInstance(SceneStore& store, const Package* package, InstanceHandle ha
     return okStatus();
 }
 
-std::vector<Draw> drawsOf(SceneStore& store) {
+void placeDraws(SceneStore& store, InstanceHandle handle, const StoredInstance& instance) {
     std::vector<Draw> draws;
-    std::uint64_t triangles = 0;
-    std::uint32_t geometries = 0;
-    store.instanceSlots.forEach([&](InstanceHandle handle, const StoredInstance& instance) {
-        const bool mirrored =
-            (store.instances.read<gpu::InstanceRecord>(handle.index).flags & gpu::kInstanceMirrored) != 0;
-        const bool isHidden = !instance.isShown();
-        forEachGeometry(
-            *store.meshes.find(instance.mesh), instance,
-            [&](const TriangleRange& range, const StoredPrimitive&, std::uint32_t geometry) {
-                ++geometries;
-                if (range.drawn == 0) {
-                    return;
-                }
-                const auto record = store.geometries.read<gpu::GeometryRecord>(geometry);
-                draws.push_back({geometry, 3 * range.drawn, (record.flags & gpu::kGeometryDoubleSided) != 0,
-                                 mirrored, handle.index, isHidden, range.primitive, instance.mesh.index});
-                triangles += range.drawn;
-            });
-    });
-    store.scene.statistics.triangles = triangles;
-    store.scene.statistics.geometries = geometries;
-    return draws;
+    if (instance.isShown()) {
+        const std::uint32_t flags = store.instances.read<gpu::InstanceRecord>(handle.index).flags;
+        forEachGeometry(*store.meshes.find(instance.mesh), instance,
+                        [&](const TriangleRange& range, const StoredPrimitive&, std::uint32_t geometry) {
+                            const auto record = store.geometries.read<gpu::GeometryRecord>(geometry);
+                            if (range.drawn > 0) {
+                                draws.push_back({geometry, 3 * range.drawn,
+                                                 (record.flags & gpu::kGeometryDoubleSided) != 0,
+                                                 (flags & gpu::kInstanceMirrored) != 0, range.primitive,
+                                                 instance.mesh.index});
+                            }
+                        });
+    }
+    store.draws.set(handle.index, std::move(draws));
+    store.drawsDirty = true;
 }
 
 }  // namespace glint

@@ -67,7 +67,7 @@ public:
             GLINT_TRY_DO((this->*step)());
         }
         if (store_.drawsDirty) {
-            scene_.batches = batchDraws(drawsOf(store_));
+            scene_.batches = store_.draws.batches();
         }
         recordAll();
         finish();

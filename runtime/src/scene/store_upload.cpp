@@ -20,9 +20,7 @@ SceneStore::SceneStore(GpuScene::State& owner, const Package& package, const Sce
       leafOrder(leafOrderFor(owner.context, view.traversalOrder)),
       vertices(view.vertices),
       dataAccess(package.positionFetch()),
-      passesLight(package.shadowThrough() == package::ShadowThrough::Glass),
       buildsTree(package.lightSamples() > 0),
-      trustsTextures(package.trustTextures()),
       materials(package.scene(0).materials.recordBytes),
       topLevel(view.moves, leafOrder),
       emittersDirty(package.emission() != nullptr),
@@ -122,8 +120,8 @@ private:
             GLINT_TRY(auto made, uploadSceneTexture(scene_, *store_.uploader, number, image, srgb));
             scene_.textures.push_back(std::move(made));
             if (store_.editable) {
-                store_.firstTextures.push_back(store_.textures.add(
-                    {image.width, image.height, srgb, 0, emissionTexels(store_, image, srgb)}));
+                store_.firstTextures.push_back(
+                    store_.textures.add({image.width, image.height, srgb, emissionTexels(image, srgb)}));
             }
         }
         if (store_.editable || scene_.textures.empty()) {
@@ -151,7 +149,7 @@ private:
                 material.hasOwnValues = std::ranges::find(scene_.changing, i, &ChangingMaterial::material) !=
                                         scene_.changing.end();
                 for (const TextureUse& use : material.textures) {
-                    ++store_.textures.find(use.texture)->uses;
+                    countUse(store_.textures.find(use.texture)->materials, i, true);
                 }
                 store_.firstMaterials.push_back(store_.materialSlots.add(std::move(material)));
             }
@@ -308,6 +306,7 @@ private:
             const std::uint32_t count = store_.meshes.find(instance.mesh)->decidedCount;
             if (count > 0 && instance.geometryCount > 0) {
                 instance.firstDecided = store_.geometryRuns.allocate(count);
+                scene_.statistics.geometries += count;
                 writeGeometries(store_, handle, instance);
             }
         }

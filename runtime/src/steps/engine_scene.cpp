@@ -404,7 +404,7 @@ Result<PackageFit> EngineScene::State::fit(const std::shared_ptr<const Package>&
                          "compile the package from the scene that is traced");
     }
     GLINT_TRY(auto content, contentBy(*this, *package, *index));
-    return PackageFit{*index, std::move(content.shaderIds)};
+    return PackageFit{*index, content.records, std::move(content.shaderIds)};
 }
 
 Result<RetiredLot> EngineScene::State::recordReplacement(const std::shared_ptr<const Package>& package,

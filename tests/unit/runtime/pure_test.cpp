@@ -1,12 +1,12 @@
 // Tests what the runtime computes without a device: cameras, transforms, lights, requirements, names of bits.
 #include "context/context.h"
 #include "context/vulkan_table.h"
-#include "data/geometry.h"
 #include "data/instance_math.h"
 #include "data/materials.h"
 #include "data/scene_checks.h"
 #include "frame/frame_constants.h"
 #include "materials/material_model.h"
+#include "scene/draw_runs.h"
 #include "support/features.h"
 #include "support/must.h"
 #include "unit/runtime/package_builder.h"
@@ -21,10 +21,9 @@
 namespace glint {
 namespace {
 
-Draw makeDraw(std::uint32_t geometry, std::uint32_t instance, std::uint32_t primitive) {
+Draw makeDraw(std::uint32_t geometry, std::uint32_t primitive) {
     Draw draw;
     draw.geometry = geometry;
-    draw.instance = instance;
     draw.primitive = primitive;
     draw.vertexCount = 3 * (primitive + 1);
     return draw;
@@ -32,14 +31,20 @@ Draw makeDraw(std::uint32_t geometry, std::uint32_t instance, std::uint32_t prim
 
 // Instances of the same primitives are one call each primitive, whose records are as far apart as an instance
 // has draws.
-TEST(DrawBatchTest, InstancesThatFollowEachOtherAreJoined) {
-    std::vector<Draw> draws;
-    for (std::uint32_t i = 0; i < 5; ++i) {
-        draws.push_back(makeDraw(2 * i, i, 0));
-        draws.push_back(makeDraw(2 * i + 1, i, 1));
+TEST(DrawRunsTest, InstancesThatFollowEachOtherAreJoined) {
+    DrawRuns runs;
+    EXPECT_TRUE(runs.batches().empty());
+    const auto show = [&](std::uint32_t instance, bool mirrored = false) {
+        std::vector<Draw> draws{makeDraw(2 * instance, 0), makeDraw(2 * instance + 1, 1)};
+        draws[0].mirrored = draws[1].mirrored = mirrored;
+        runs.set(instance, draws);
+    };
+    // Whatever the order is in which they come.
+    for (const std::uint32_t instance : {3U, 0U, 4U, 1U, 2U}) {
+        show(instance);
     }
-    draws.push_back(makeDraw(10, 5, 0));
-    const std::vector<DrawBatch> joined = batchDraws(draws);
+    runs.set(5, {makeDraw(10, 0)});
+    const std::vector<DrawBatch> joined = runs.batches();
     ASSERT_EQ(joined.size(), 3U);
     EXPECT_EQ(joined[0].geometry, 0U);
     EXPECT_EQ(joined[1].geometry, 1U);
@@ -48,10 +53,10 @@ TEST(DrawBatchTest, InstancesThatFollowEachOtherAreJoined) {
     EXPECT_EQ(joined[1].vertexCount, 6U);
     EXPECT_EQ(joined[2].geometry, 10U);
     EXPECT_EQ(joined[2].count, 1U);
-    // A mirrored instance, or one that is not drawn, ends a row.
-    draws[4].hidden = draws[5].hidden = true;
-    draws[8].mirrored = draws[9].mirrored = true;
-    const std::vector<DrawBatch> cut = batchDraws(draws);
+    // A mirrored instance, or one that is not drawn, ends a run.
+    runs.set(2, {});
+    show(4, true);
+    const std::vector<DrawBatch> cut = runs.batches();
     ASSERT_EQ(cut.size(), 7U);
     std::uint32_t drawn = 0;
     for (const DrawBatch& batch : cut) {
@@ -59,8 +64,11 @@ TEST(DrawBatchTest, InstancesThatFollowEachOtherAreJoined) {
         EXPECT_NE(batch.geometry, 4U);
     }
     EXPECT_EQ(drawn, 9U);
+    EXPECT_EQ(cut[2].geometry, 6U);
     EXPECT_TRUE(cut[4].mirrored);
-    EXPECT_TRUE(batchDraws({}).empty());
+    show(2);
+    show(4);
+    EXPECT_EQ(runs.batches().size(), 3U);
 }
 
 // Textures and samplers are the package's, whatever the host's record says.
