@@ -274,7 +274,6 @@ private:
 
 // In a key, marks the number of an ID that only its function has.
 constexpr std::uint32_t kOwnId = 0x8000'0000U;
-constexpr std::size_t kVersionWord = 1;  // words of a module's header
 
 // A function in which its own IDs are numbers with kOwnId, 0 for itself, in the order of their appearance.
 struct NumberedFunction {
@@ -294,7 +293,7 @@ public:
         std::vector<Member> members;
         for (const std::span<const std::uint32_t> words : modules) {
             GLINT_TRY(auto parsed, parseModule(words, shader_));
-            if (!members.empty() && words[kVersionWord] != modules.front()[kVersionWord]) {
+            if (!members.empty() && words[kSpirvVersionWord] != modules.front()[kSpirvVersionWord]) {
                 return refuse("two parts have different versions of SPIR-V");
             }
             GLINT_TRY_DO(addSettings(parsed, members.empty()));

@@ -21,7 +21,6 @@ namespace {
 
 constexpr std::string_view kLineStart = "#pragma glint_spirv ";
 constexpr std::size_t kDigits = 8;  // of a word
-constexpr std::size_t kVersionWord = 1;
 
 // --- GLSL ---
 
@@ -245,7 +244,7 @@ private:
 
     SpirvWords write() const {
         SpirvWords preamble(library_.words.begin(), library_.words.begin() + kSpirvHeaderWords);
-        preamble[kVersionWord] = caller_.words[kVersionWord];
+        preamble[kSpirvVersionWord] = caller_.words[kSpirvVersionWord];
         preamble[kSpirvBoundWord] = bound_;
         SpirvWords decorations;
         SpirvWords rest;

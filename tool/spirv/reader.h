@@ -23,6 +23,7 @@ using SpirvWords = std::vector<std::uint32_t>;
 
 // Words before the first instruction.
 inline constexpr std::size_t kSpirvHeaderWords = 5;
+inline constexpr std::size_t kSpirvVersionWord = 1;
 // The word of the header that is above all IDs.
 inline constexpr std::size_t kSpirvBoundWord = 3;
 
