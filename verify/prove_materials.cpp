@@ -51,18 +51,6 @@ constexpr double kFarValue = 1000.0;
 // The ranges that shares and lengths may have, as for the check "range" on the device.
 constexpr double kShareSlack = 1e-3;
 
-std::string macroOf(const std::string& name) {
-    std::string macro;
-    for (const char c : name) {
-        const auto letter = static_cast<unsigned char>(c);
-        if (std::isupper(letter) != 0 && !macro.empty()) {
-            macro += '_';
-        }
-        macro += static_cast<char>(std::toupper(letter));
-    }
-    return macro;
-}
-
 double endOf(double value, double fallback) {
     const bool isEnd = std::abs(value) < kLargestSingle;
     return isEnd ? value : std::copysign(std::max(kFarValue, kFarValue * std::abs(fallback)), value);
@@ -125,7 +113,7 @@ std::string claimParameters(const materials::MaterialModel& model, int feature, 
             values += fmt::format("{}glintGiven[{}]", channel == 0 ? "" : ", ", next++);
         }
         macros += fmt::format("#undef GLINT_MATERIAL_{0}\n#define GLINT_MATERIAL_{0}(hit) {1}({2})\n",
-                              macroOf(own.name), own.type, values);
+                              materials::fieldMacro(own.name), own.type, values);
     }
     return macros;
 }
@@ -300,7 +288,7 @@ Result<FeatureProof> compileFeatureProof(const compiler::Build& build, const mat
     context.set("lobes", std::to_string(key.lobes));
     context.set("inputBits", std::to_string(key.inputs));
     context.set("modelWord", fmt::format("{:#x}u", key.model));
-    context.set("ownWord", fmt::format("{:#x}u", key.own));
+    context.set("ownWord", compiler::ownLiteral(key.own));
     GLINT_TRY(const auto text, compiler::renderTemplate(sources, kProofTemplate, context));
     GLINT_TRY(const auto glsl,
               compiler::flatten(kProofName, text, sources.lookup(), compiler::FlattenSide::Glsl));

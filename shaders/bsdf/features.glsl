@@ -3,31 +3,62 @@
 #include "interop/models.h"
 
 // The features that a case knows about its keys. Those that every model may have stand in two words, `lobes` and
-// `inputs`; those of a model that a pack declares in `own`, numbered in the model. What begins with `always`, `sometimes`
+// `inputs`; those of a model that a pack declares in `own`, numbered in the model, in as many words as some model needs. What begins with `always`, `sometimes`
 // and `case` are literals of the case; the others are the key of the geometry at hand. The functions are written so that
 // SPIRV-Tools folds every decided bit: a feature that no key of the case has leaves no code, and one that every key has
 // leaves no branch.
+#if GLINT_OWN_WORDS == 1
+#define OwnWords uint
+#define GLINT_OWN(a, b, c, d) (a)
+#define GLINT_OWN_OF(words) (words).x
+#define GLINT_OWN_WORD(own, word) (own)
+#elif GLINT_OWN_WORDS == 2
+#define OwnWords uvec2
+#define GLINT_OWN(a, b, c, d) uvec2(a, b)
+#define GLINT_OWN_OF(words) (words).xy
+#define GLINT_OWN_WORD(own, word) (own)[word]
+#elif GLINT_OWN_WORDS == 3
+#define OwnWords uvec3
+#define GLINT_OWN(a, b, c, d) uvec3(a, b, c)
+#define GLINT_OWN_OF(words) (words).xyz
+#define GLINT_OWN_WORD(own, word) (own)[word]
+#else
+#define OwnWords uvec4
+#define GLINT_OWN(a, b, c, d) uvec4(a, b, c, d)
+#define GLINT_OWN_OF(words) (words)
+#define GLINT_OWN_WORD(own, word) (own)[word]
+#endif
+
 struct Features {
     uint alwaysLobes;
     uint alwaysInputs;
     uint sometimesLobes;
     uint sometimesInputs;
     uint caseModel;  // interop/models.h
-    uint alwaysOwn;
-    uint sometimesOwn;
+    OwnWords alwaysOwn;
+    OwnWords sometimesOwn;
     uint lobes;
     uint inputs;
     uint model;
-    uint own;
+    OwnWords own;
 };
 
 // The members of Features that are the key of a geometry.
 #if GLINT_USES_MODELS
 #define GLINT_KEY(geometry)                                                                                     \
-    (geometry).featureLobes, (geometry).featureInputs, (geometry).featureModel, (geometry).featureOwn
+    (geometry).featureLobes, (geometry).featureInputs, (geometry).featureModel, GLINT_OWN_OF((geometry).featureOwn)
 #else
-#define GLINT_KEY(geometry) (geometry).featureLobes, (geometry).featureInputs, 0u, 0u
+#define GLINT_KEY(geometry) (geometry).featureLobes, (geometry).featureInputs, 0u, GLINT_OWN(0u, 0u, 0u, 0u)
 #endif
+
+// Whether the records of keys with that word of a model have glTF's base colour, and its alpha, which is 1 without one.
+#if GLINT_USES_MODELS
+#define GLINT_FILLS_BASE_COLOR(model) ((model) == 0u || ((model) & kModelBaseColor) != 0u)
+#else
+#define GLINT_FILLS_BASE_COLOR(model) true
+#endif
+#define GLINT_BASE_ALPHA(record, model)                                                                         \
+    (GLINT_FILLS_BASE_COLOR(model) ? GLINT_RECORD_BASE_COLOR_FACTOR(record).a : 1.0)
 
 bool lobeOfKey(Features features, uint bit) {
     return (features.alwaysLobes & bit) != 0u ||
@@ -41,19 +72,23 @@ bool inputOfKey(Features features, uint bit) {
 
 // The features of a case and a key without such a model.
 #define GLINT_FEATURES_OF_GLTF(alwaysLobes, alwaysInputs, sometimesLobes, sometimesInputs, lobes, inputs)       \
-    Features(alwaysLobes, alwaysInputs, sometimesLobes, sometimesInputs, 0u, 0u, 0u, lobes, inputs, 0u, 0u)
+    Features(alwaysLobes, alwaysInputs, sometimesLobes, sometimesInputs, 0u, GLINT_OWN(0u, 0u, 0u, 0u),         \
+             GLINT_OWN(0u, 0u, 0u, 0u), lobes, inputs, 0u, GLINT_OWN(0u, 0u, 0u, 0u))
 
 // Returns the word of the key's model.
 uint modelOfKey(Features features) {
     return features.caseModel != kAnyModel ? features.caseModel : features.model;
 }
 
-// Returns whether the key is of the model of that number, and has one of its features; without bits, the model alone.
-bool ownOfKey(Features features, uint model, uint bits) {
+// Returns whether the key is of the model of that number, and has one of its features, which are in one word; without
+// bits, the model alone.
+bool isOwnOfKey(Features features, uint model, uint always, uint sometimes, uint own, uint bits) {
     return (modelOfKey(features) & kModelNumber) == model &&
-           (bits == 0u || (features.alwaysOwn & bits) != 0u ||
-            ((features.sometimesOwn & bits) != 0u && (features.own & bits) != 0u));
+           (bits == 0u || (always & bits) != 0u || ((sometimes & bits) != 0u && (own & bits) != 0u));
 }
+#define ownOfKey(features, model, word, bits)                                                                   \
+    isOwnOfKey(features, model, GLINT_OWN_WORD((features).alwaysOwn, word),                                     \
+               GLINT_OWN_WORD((features).sometimesOwn, word), GLINT_OWN_WORD((features).own, word), bits)
 
 // The features that all cases of the module have, and those that any has. A module that defines them before it includes
 // this file compiles several times faster, because code of decided features is removed before functions are inlined.
@@ -92,7 +127,8 @@ bool ownOfKey(Features features, uint model, uint bits) {
 #define GLINT_MAY_BE_MODEL(number)                                                                              \
     (GLINT_MODULE_MODEL == kAnyModel || GLINT_DECIDED_MODEL == kAnyModel ||                                     \
      (GLINT_MODULE_MODEL & kModelNumber) == (number) || (GLINT_DECIDED_MODEL & kModelNumber) == (number))
-#define hasOwn(features, model, bits) (GLINT_MAY_BE_MODEL(model) && ownOfKey(features, model, bits))
+#define hasOwn(features, model, word, bits)                                                                     \
+    (GLINT_MAY_BE_MODEL(model) && ownOfKey(features, model, word, bits))
 
 // The word of the key's model.
 #define GLINT_MODEL_OF(features)                                                                                \

@@ -27,7 +27,7 @@ vec2 alphaAndCutoff(HostGeometry geometry, uint primitive, vec2 barycentrics) {
     MaterialRecord material = hostMaterials().data[geometry.materialIndex];
     SurfacePoint point = surfacePoint(geometry, primitive, barycentrics, features);
     runMaskCoordinates(point, features);
-    float alpha = material.baseColorFactor.a;
+    float alpha = GLINT_BASE_ALPHA(material, features.model);
     if (inputOfKey(features, GLINT_BASE_COLOR_TEXTURE)) {
         alpha *= samplePoint(point, kBaseColorTexture, features).a;
     }
@@ -35,7 +35,7 @@ vec2 alphaAndCutoff(HostGeometry geometry, uint primitive, vec2 barycentrics) {
         alpha *= vertexAlpha(geometry, primitive, barycentrics);
     }
     runMaskOpacity(point, features, alpha);
-    return vec2(alpha, material.alphaCutoff);
+    return vec2(alpha, GLINT_RECORD_ALPHA_CUTOFF(material));
 }
 
 // Returns whether the ray stops at the candidate: the alpha test of glTF 2.0, section 3.9.4, or with alphaMode BLEND a

@@ -13,6 +13,7 @@ GLINT_CONSTANT(kModelBothSides, 0x02000000u);     // it lets light through to th
 GLINT_CONSTANT(kModelOwnCode, 0x04000000u);       // its GLSL stands in place of glTF's base (bsdf/model.glsl)
 GLINT_CONSTANT(kModelSampled, 0x08000000u);       // it samples directions itself
 GLINT_CONSTANT(kModelChangesAlpha, 0x10000000u);  // it has code that changes coordinates or opacity
+GLINT_CONSTANT(kModelBaseColor, 0x20000000u);     // its records have glTF's base colour, whose alpha counts
 // Stands for the models of a case whose keys have several, and which knows nothing about the features of each.
 GLINT_CONSTANT(kAnyModel, 0xFFFFFFFFu);
 

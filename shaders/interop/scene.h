@@ -45,9 +45,10 @@ struct GeometryRecord {
     uint featureLobes;   // the key: features that every model may have, lobes
     uint featureInputs;  // and inputs
     uint featureModel;   // the model of a pack, as interop/models.h has it; 0: one of glTF's
-    uint featureOwn;     // and its own features
+    uvec4 featureOwn;    // and its own features
     uint instanceIndex;  // index into FrameConstants::instances
     uint flags;          // kGeometry*
+    uint pad;
     GLINT_ADDRESS(Uint) indices;     // 3 for each triangle
     GLINT_ADDRESS(Vec3) positions;   // object space
     GLINT_ADDRESS(Vec3) normals;     // object space, unit vectors

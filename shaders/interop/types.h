@@ -22,6 +22,9 @@ struct vec4 {
 struct uvec2 {
     std::uint32_t x, y;
 };
+struct uvec4 {
+    std::uint32_t x, y, z, w;
+};
 // NOLINTEND(readability-identifier-naming)
 }  // namespace glint::gpu
 

@@ -28,7 +28,7 @@ struct GlintSurface {
     uint featureLobes;
     uint featureInputs;
     uint featureModel;
-    uint featureOwn;
+    uvec4 featureOwn;
     uint number;
     float clearance;
     Surface inner;
@@ -184,7 +184,7 @@ GlintSurface unknownSurface(GlintHit given, HostGeometry geometry) {
     result.featureLobes = 0u;
     result.featureInputs = 0u;
     result.featureModel = 0u;
-    result.featureOwn = 0u;
+    result.featureOwn = uvec4(0u);
     result.number = given.number;
     result.clearance = 0.0;
     return result;

@@ -4,15 +4,15 @@
 #ifndef GLINT_HOST
 #define GLINT_HOST
 
-// The host's data about a geometry of an instance. The shader ID and the key of a primitive, which has four words, are
-// in tables.bin.
+// The host's data about a geometry of an instance. The shader ID and the key of a primitive are in
+// tables.bin.
 struct GlintGeometry {
     uint shaderId;       // the case that shades it
     uint material;       // the number of its record, from glintHostMaterials()
     uint featureLobes;   // its key: lobes
     uint featureInputs;  // inputs
     uint featureModel;   // the model of a pack; 0: one of glTF's
-    uint featureOwn;     // the model's own features
+    uvec4 featureOwn;    // the model's own features
 };
 
 // A light at a point, without shadows.

@@ -39,7 +39,7 @@ vec3 lightAfter(LightPassage passage, float distance) {
 
 // The surface's colour with its coverage: base colour, texture and vertices.
 vec4 pointColor(HostGeometry geometry, SurfacePoint point, PassageCandidate candidate, Features features) {
-    vec4 color = GLINT_MATERIAL_BASE_COLOR_FACTOR(point);
+    vec4 color = GLINT_FILLS_BASE_COLOR(features.model) ? GLINT_MATERIAL_BASE_COLOR_FACTOR(point) : vec4(1.0);
     if (inputOfKey(features, GLINT_BASE_COLOR_TEXTURE)) {
         color *= samplePoint(point, kBaseColorTexture, features);
     }

@@ -39,7 +39,7 @@ void main() {
     HostGeometry geometry = hostGeometry(geometryIndex);
     if ((geometry.flags & kGeometryMasked) != 0u) {
         MaterialRecord material = hostMaterials().data[geometry.materialIndex];
-        float alpha = material.baseColorFactor.a;
+        float alpha = GLINT_BASE_ALPHA(material, geometry.featureModel);
         vec2 uv = vec2(0.0);
 #if GLINT_MASK_STAGES
         Features features = GLINT_PRIMARY_FEATURES(geometry);
@@ -69,7 +69,7 @@ void main() {
             }
         } else
 #endif
-        if (alpha < material.alphaCutoff) {
+        if (alpha < GLINT_RECORD_ALPHA_CUTOFF(material)) {
             discard;
         }
     }

@@ -59,9 +59,14 @@ std::string commentText(std::string_view text) {
     return text.size() > kMaxNameLength ? line + "..." : line;
 }
 
+std::string ownLiteral(const package::OwnWords& own) {
+    return fmt::format("GLINT_OWN({:#x}u)", fmt::join(own.words, "u, "));
+}
+
 std::string caseFeatures(const package::KeyWords& always, const package::KeyWords& sometimes) {
-    return fmt::format("{:#x}u, {:#x}u, {:#x}u, {:#x}u, {:#x}u, {:#x}u, {:#x}u", always.lobes, always.inputs,
-                       sometimes.lobes, sometimes.inputs, always.model, always.own, sometimes.own);
+    return fmt::format("{:#x}u, {:#x}u, {:#x}u, {:#x}u, {:#x}u, {}, {}", always.lobes, always.inputs,
+                       sometimes.lobes, sometimes.inputs, always.model, ownLiteral(always.own),
+                       ownLiteral(sometimes.own));
 }
 
 void addCase(mustache::data& context, const gltf::SceneList& scenes, const materials::MaterialModel& model,

@@ -41,6 +41,8 @@ std::string commentText(std::string_view text);
 kainjow::mustache::data makeContext(const gltf::SceneList& scenes, const Plan& plan,
                                     const PlanOptions& options);
 
+// Returns a value of the members of Features that hold own features of a model, as GLSL.
+std::string ownLiteral(const package::OwnWords& own);
 // Returns the first members of Features (shaders/bsdf/features.glsl), as GLSL.
 std::string caseFeatures(const package::KeyWords& always, const package::KeyWords& sometimes);
 

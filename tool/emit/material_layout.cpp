@@ -1,11 +1,15 @@
 #include "emit/material_layout.h"
 
+#include "materials/declarations.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <interop/scene.h>
+#include <numeric>
 
 namespace glint::compiler {
 
@@ -15,23 +19,16 @@ constexpr std::uint32_t kFloatBytes = 4;
 // Frames of features without a texture are those of its coordinates.
 constexpr std::string_view kFrameTexture = "normalTexture";
 
-bool isUsed(const materials::MaterialModel& model, int feature, materials::FeatureMask used) {
+bool has(const std::vector<int>& models, int model) {
+    return std::ranges::find(models, model) != models.end();
+}
+
+bool isUsed(const materials::MaterialModel& model, int feature, const materials::FeatureMask& used) {
     return feature < 0 || used.has(model.features[static_cast<std::size_t>(feature)].bit);
 }
 
 std::string noteOf(const std::string& unit, const std::string& about) {
     return unit.empty() || about.empty() ? unit + about : unit + "; " + about;
-}
-
-// "clearcoatRoughnessFactor" becomes "CLEARCOAT_ROUGHNESS_FACTOR".
-std::string upperSnake(std::string_view name) {
-    std::string text;
-    for (const char c : name) {
-        const bool isUpper = c >= 'A' && c <= 'Z';
-        text += isUpper ? "_" : "";
-        text += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
-    }
-    return text;
 }
 
 std::string textureConstant(std::string_view name) {
@@ -63,7 +60,7 @@ double derivedValue(const materials::MaterialFacts& facts, const materials::Deri
 
 // The macros that read a field of a record, and of the record of a hit's material.
 std::string fieldMacros(std::string_view name, std::string_view value) {
-    const std::string macro = upperSnake(name);
+    const std::string macro = materials::fieldMacro(name);
     return fmt::format(
         "#define GLINT_RECORD_{0}(record) {1}\n#define GLINT_MATERIAL_{0}(hit) "
         "GLINT_RECORD_{0}(GLINT_MATERIAL(hit))\n",
@@ -78,12 +75,16 @@ std::string literalOf(const std::string& type, std::span<const float> values) {
     return text + (type == "float" ? "" : ")");
 }
 
-// The expression that reads a field. Those of models lie over each other, as floats.
+std::uint32_t ownIndex(const MaterialLayout& layout, const RecordField& field) {
+    return (field.offset - layout.ownOffset) / kFloatBytes;
+}
+
+// The expression that reads a field. Those that only some models have lie over each other, as floats.
 std::string readOf(const MaterialLayout& layout, const RecordField& field) {
-    if (field.model < 0) {
+    if (layout.isShared(field)) {
         return fmt::format("(record).{}", field.name);
     }
-    const std::uint32_t first = (field.offset - layout.ownOffset) / kFloatBytes;
+    const std::uint32_t first = ownIndex(layout, field);
     std::string text = field.channels == 1 ? "" : field.type + "(";
     for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(field.channels); ++i) {
         text += fmt::format("{}(record).own[{}]", i == 0 ? "" : ", ", first + i);
@@ -92,13 +93,126 @@ std::string readOf(const MaterialLayout& layout, const RecordField& field) {
 }
 
 // Whether a frame may be that of a texture's coordinates though no key reads the texture.
-bool takesFrameOf(const materials::MaterialModel& model, int texture, materials::FeatureMask used) {
+bool takesFrameOf(const materials::MaterialModel& model, int texture, const materials::FeatureMask& used) {
     const materials::FeatureMask sets = model.mask("texCoord0") | model.mask("texCoord1");
     const bool matters = (used & sets) == sets || (used & model.mask("turnedFrames")) != 0;
     return matters && model.textures[static_cast<std::size_t>(texture)].name == kFrameTexture &&
            std::ranges::any_of(model.features, [&](const materials::Feature& feature) {
                return feature.needsTangents && feature.texture < 0 && used.has(feature.bit);
            });
+}
+
+// Decides which fields and textures the records of each use have.
+class RecordNeeds {
+public:
+    RecordNeeds(const materials::MaterialModel& model, std::span<const RecordUse> uses)
+        : model_(model),
+          uses_(uses),
+          emission_(model.mask("modelEmission")),
+          strength_(model.mask("emissiveStrength")) {
+        hasStrength_ =
+            std::ranges::any_of(uses, [this](const RecordUse& use) { return (use.used & strength_) != 0; });
+    }
+
+    // Each returns which of the uses have it.
+    std::vector<bool> ofParameter(int parameter) const {
+        return which([&](const RecordUse& use) { return hasParameter(use, parameter); });
+    }
+    std::vector<bool> ofDerived(const materials::DerivedField& field) const {
+        return which([&](const RecordUse& use) { return isUsed(model_, field.feature, use.used); });
+    }
+    std::vector<bool> ofTexture(int texture) const {
+        const int feature = model_.textures[static_cast<std::size_t>(texture)].feature;
+        return which([&](const RecordUse& use) {
+            return isUsed(model_, feature, use.used) || takesFrameOf(model_, texture, use.used);
+        });
+    }
+
+private:
+    template <typename Has>
+    std::vector<bool> which(const Has& has) const {
+        std::vector<bool> uses;
+        for (const RecordUse& use : uses_) {
+            uses.push_back(has(use));
+        }
+        return uses;
+    }
+
+    bool hasParameter(const RecordUse& use, int index) const {
+        const materials::Parameter& parameter = model_.parameters[static_cast<std::size_t>(index)];
+        const bool isOfGltf = use.models.front() < 0;
+        if (parameter.feature >= 0) {
+            // The runtime reads the strength of whatever emits.
+            const bool emits = !isOfGltf && (use.used & emission_) != 0;
+            return isUsed(model_, parameter.feature, use.used) ||
+                   (emits && hasStrength_ && parameter.name == "emissiveStrength");
+        }
+        if (isOfGltf) {
+            return true;
+        }
+        if (parameter.name == "emissiveFactor") {
+            return (use.used & emission_) != 0;
+        }
+        if (parameter.name == "alphaCutoff") {
+            return use.masks;
+        }
+        return std::ranges::any_of(use.models, [&](int one) { return model_.hasParameter(one, index); });
+    }
+
+    const materials::MaterialModel& model_;
+    std::span<const RecordUse> uses_;
+    materials::FeatureMask emission_;
+    materials::FeatureMask strength_;
+    bool hasStrength_ = false;
+};
+
+// Gives places to what only some uses have. Two things that one use has lie in different places.
+class Overlay {
+public:
+    explicit Overlay(std::size_t uses) : taken_(uses) {}
+
+    // Returns the first place with `count` units that are free in all of `uses`.
+    std::size_t place(const std::vector<bool>& uses, std::size_t count) {
+        std::size_t first = 0;
+        for (std::size_t end = first; end < first + count; ++end) {
+            first = isTaken(uses, end) ? end + 1 : first;
+        }
+        for (std::size_t use = 0; use < uses.size(); ++use) {
+            if (uses[use]) {
+                taken_[use].resize(std::max(taken_[use].size(), first + count));
+                std::fill_n(taken_[use].begin() + static_cast<std::ptrdiff_t>(first), count, true);
+            }
+        }
+        end_ = std::max(end_, first + count);
+        return first;
+    }
+    std::size_t end() const {
+        return end_;
+    }
+
+private:
+    bool isTaken(const std::vector<bool>& uses, std::size_t unit) const {
+        for (std::size_t use = 0; use < uses.size(); ++use) {
+            if (uses[use] && unit < taken_[use].size() && taken_[use][unit]) {
+                return true;
+            }
+        }
+        return false;
+    }
+
+    std::vector<std::vector<bool>> taken_;  // by use, then by unit
+    std::size_t end_ = 0;
+};
+
+std::vector<int> modelsOf(std::span<const RecordUse> uses, const std::vector<bool>& which) {
+    std::vector<int> models;
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+        if (which[i]) {
+            models.insert(models.end(), uses[i].models.begin(), uses[i].models.end());
+        }
+    }
+    std::ranges::sort(models);
+    return models;
 }
 
 }  // namespace
@@ -108,76 +222,80 @@ int MaterialLayout::slotOf(int texture) const {
     return found == textures.end() ? -1 : found->slot;
 }
 
-MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, materials::FeatureMask used) {
+int MaterialLayout::slotOf(int texture, int ofModel) const {
+    const auto found = std::ranges::find(textures, texture, &TextureSlot::texture);
+    return found == textures.end() || !has(found->models, ofModel) ? -1 : found->slot;
+}
+
+MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, std::span<const RecordUse> uses) {
     MaterialLayout layout;
     layout.model = &model;
-    layout.turnsFrames = (used & model.mask("turnedFrames")) != 0;
-    const auto modelOf = [&](int feature) {
-        return feature < 0 ? -1 : model.features[static_cast<std::size_t>(feature)].model;
-    };
-    // What all models may have comes first. The fields of each model follow, all of them in the same place.
-    const auto addFields = [&](int owner) {
-        std::uint32_t end = layout.ownOffset;
-        const auto append = [&](RecordField field, int feature) {
-            if (isUsed(model, feature, used) && modelOf(feature) == owner) {
-                field.model = owner;
-                field.offset = end;
-                end += kFloatBytes * static_cast<std::uint32_t>(field.channels);
-                layout.fields.push_back(std::move(field));
-            }
-        };
-        for (std::size_t i = 0; i < model.parameters.size(); ++i) {
-            const materials::Parameter& parameter = model.parameters[i];
-            if (parameter.inRecord) {
-                append({parameter.name, parameter.type, noteOf(parameter.unit, parameter.about),
-                        parameter.channels, 0, static_cast<int>(i), -1},
-                       parameter.feature);
-            }
+    const RecordNeeds needs(model, uses);
+    std::vector<std::vector<bool>> usesOfField;
+    const auto add = [&](RecordField field, std::vector<bool> which) {
+        field.models = modelsOf(uses, which);
+        if (!field.models.empty()) {
+            layout.fields.push_back(std::move(field));
+            usesOfField.push_back(std::move(which));
         }
-        for (std::size_t i = 0; i < model.derived.size(); ++i) {
-            const materials::DerivedField& field = model.derived[i];
-            append({field.name, field.type, noteOf(field.unit, field.about), field.count, 0, -1,
-                    static_cast<int>(i)},
-                   field.feature);
-        }
-        return end;
     };
-    int slots = 0;
-    const auto addTextures = [&](int owner) {
-        int slot = layout.sharedTextures;
-        for (std::size_t i = 0; i < model.textures.size(); ++i) {
-            const int feature = model.textures[i].feature;
-            if (modelOf(feature) == owner &&
-                (isUsed(model, feature, used) || takesFrameOf(model, static_cast<int>(i), used))) {
-                layout.textures.push_back({static_cast<int>(i), slot++, owner});
-            }
+    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+        const materials::Parameter& parameter = model.parameters[i];
+        if (parameter.inRecord) {
+            add({parameter.name, parameter.type, noteOf(parameter.unit, parameter.about), parameter.channels,
+                 0, static_cast<int>(i), -1},
+                needs.ofParameter(static_cast<int>(i)));
         }
-        slots = std::max(slots, slot);
-        return slot;
-    };
-    layout.ownOffset = addFields(-1);
-    layout.sharedTextures = addTextures(-1);
-    layout.textureOffset = layout.ownOffset;
-    for (int owner = 0; owner < static_cast<int>(model.models.size()); ++owner) {
-        layout.textureOffset = std::max(layout.textureOffset, addFields(owner));
-        addTextures(owner);
     }
-    layout.textureCount = static_cast<std::uint32_t>(slots);
+    for (std::size_t i = 0; i < model.derived.size(); ++i) {
+        const materials::DerivedField& field = model.derived[i];
+        add({field.name, field.type, noteOf(field.unit, field.about), field.count, 0, -1,
+             static_cast<int>(i)},
+            needs.ofDerived(field));
+    }
+    std::vector<std::vector<bool>> usesOfTexture;
+    for (std::size_t i = 0; i < model.textures.size(); ++i) {
+        std::vector<bool> which = needs.ofTexture(static_cast<int>(i));
+        std::vector<int> models = modelsOf(uses, which);
+        if (!models.empty()) {
+            layout.textures.push_back({static_cast<int>(i), 0, std::move(models)});
+            usesOfTexture.push_back(std::move(which));
+        }
+    }
+    for (const RecordUse& use : uses) {
+        layout.modelCount += use.models.size();
+        layout.turnsFrames = layout.turnsFrames || (use.used & model.mask("turnedFrames")) != 0;
+    }
+    // What all have comes first, then what most have, so that little room is lost between the rest.
+    const auto byUses = [](const std::vector<std::vector<bool>>& which) {
+        std::vector<std::size_t> order(which.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::ranges::stable_sort(order, std::ranges::greater(),
+                                 [&](std::size_t i) { return std::ranges::count(which[i], true); });
+        return order;
+    };
+    Overlay floats(uses.size());
+    for (const std::size_t i : byUses(usesOfField)) {
+        RecordField& field = layout.fields[i];
+        field.offset = kFloatBytes * static_cast<std::uint32_t>(floats.place(
+                                         usesOfField[i], static_cast<std::size_t>(field.channels)));
+        if (layout.isShared(field)) {
+            layout.ownOffset = kFloatBytes * static_cast<std::uint32_t>(floats.end());
+        }
+    }
+    Overlay slots(uses.size());
+    for (const std::size_t i : byUses(usesOfTexture)) {
+        layout.textures[i].slot = static_cast<int>(slots.place(usesOfTexture[i], 1));
+    }
+    layout.textureOffset = kFloatBytes * static_cast<std::uint32_t>(floats.end());
+    layout.textureCount = static_cast<std::uint32_t>(slots.end());
     layout.bytes =
         layout.textureOffset + layout.textureCount * static_cast<std::uint32_t>(sizeof(gpu::TextureRecord));
     return layout;
 }
 
 MaterialLayout materialLayoutOf(const Plan& plan) {
-    return makeMaterialLayout(*plan.model, plan.primaryAlways | plan.primarySometimes);
-}
-
-bool isOfModel(const materials::Material& material, int model) {
-    const materials::MaterialModel& all = material.model();
-    return model < 0 ||
-           material.reads(
-               all.features[static_cast<std::size_t>(all.models[static_cast<std::size_t>(model)].feature)]
-                   .object);
+    return makeMaterialLayout(*plan.model, plan.records);
 }
 
 std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material,
@@ -190,8 +308,9 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
     const materials::FeatureMask key = 0;
     const materials::MaterialFacts facts(plain, primitive, options, key,
                                          materials::MaterialFacts::Textures::Ignored);
+    const int model = modelOf(material);
     for (const RecordField& field : layout.fields) {
-        if (!isOfModel(material, field.model)) {
+        if (!has(field.models, model)) {
             continue;
         }
         const float* const values =
@@ -212,7 +331,7 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
     for (const TextureSlot& row : layout.textures) {
         const auto index = static_cast<std::size_t>(row.texture);
         const materials::TextureInfo& info = material.textures[index];
-        if (isOfModel(material, row.model) &&
+        if (has(row.models, model) &&
             (info.texture >= 0 ||
              (layout.turnsFrames && layout.model->textures[index].name == kFrameTexture))) {
             const gpu::TextureRecord texture = transformed(info.transform);
@@ -226,14 +345,20 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
 std::string recordStruct(const MaterialLayout& layout, std::string_view scope) {
     std::string text = "struct MaterialRecord {\n";
     for (const RecordField& field : layout.fields) {
-        if (field.model < 0) {
+        if (layout.isShared(field)) {
             text += fmt::format("    {}{} {};{}{}\n", field.channels == 1 ? "" : scope, field.type,
                                 field.name, field.note.empty() ? "" : "  // ", field.note);
         }
     }
     if (layout.ownFloats() > 0) {
-        text +=
-            fmt::format("    float own[{}];  // the fields of the material's model\n", layout.ownFloats());
+        text += fmt::format("    float own[{}];  // the fields that only some models have:\n",
+                            layout.ownFloats());
+        for (const RecordField& field : layout.fields) {
+            if (!layout.isShared(field)) {
+                text +=
+                    fmt::format("    //   own[{}]: {} {}\n", ownIndex(layout, field), field.type, field.name);
+            }
+        }
     }
     if (layout.textureCount > 0) {
         text += fmt::format("    {}TextureRecord textures[{}];\n", scope, layout.textureCount);

@@ -1,10 +1,12 @@
 // The record of a material on the device: which fields it has, and where. A package's records have the fields
-// that some key of its scenes needs.
+// that some key of its scenes needs. Fields of different models lie over each other, because a material has
+// one model.
 #pragma once
 
 #include "plan/plan.h"
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,45 +18,47 @@ struct RecordField {
     std::string type;  // in GLSL
     std::string note;  // unit and meaning, for comments
     int channels = 1;
-    std::uint32_t offset = 0;  // bytes
-    int parameter = -1;        // index into MaterialModel::parameters, or
-    int derived = -1;          // into MaterialModel::derived
-    int model = -1;            // into MaterialModel::models; -1: the records of all materials have it
+    std::uint32_t offset = 0;   // bytes
+    int parameter = -1;         // index into MaterialModel::parameters, or
+    int derived = -1;           // into MaterialModel::derived
+    std::vector<int> models{};  // whose records have it, as RecordUse::models
 };
 
 // A texture of records.
 struct TextureSlot {
-    int texture = 0;  // index into MaterialModel::textures
-    int slot = 0;     // that textures of different models share
-    int model = -1;   // as RecordField::model
+    int texture = 0;            // index into MaterialModel::textures
+    int slot = 0;               // that textures of different models share
+    std::vector<int> models{};  // as RecordField::models
 };
 
 struct MaterialLayout {
     const materials::MaterialModel* model = nullptr;
+    std::size_t modelCount = 0;  // of the materials of the package
     std::vector<RecordField> fields;
     std::vector<TextureSlot> textures;
-    std::uint32_t ownOffset = 0;  // bytes: where the fields of a model begin, which lie over those of others
+    std::uint32_t ownOffset = 0;  // bytes: where the fields begin that only some models have
     std::uint32_t textureOffset = 0;
     std::uint32_t textureCount = 0;
-    int sharedTextures = 0;  // the first slots
     std::uint32_t bytes = 0;
     bool turnsFrames = false;  // Some key has turnedFrames.
 
     std::uint32_t ownFloats() const {
         return (textureOffset - ownOffset) / 4;
     }
+    // Returns whether the records of all models have the field.
+    bool isShared(const RecordField& field) const {
+        return field.models.size() == modelCount;
+    }
     // Returns the place of a texture in the record, or -1.
     int slotOf(int texture) const;
+    // Returns that place, or -1 if records of the model lack the texture.
+    int slotOf(int texture, int model) const;
 };
 
-// `used` is the union of all keys, with all lobes.
-MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, materials::FeatureMask used);
+MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, std::span<const RecordUse> uses);
 
 // The layout of a plan's package.
 MaterialLayout materialLayoutOf(const Plan& plan);
-
-// Returns whether the records of a material have what belongs to a model (RecordField::model).
-bool isOfModel(const materials::Material& material, int model);
 
 // Returns the bytes of a record: the values of the material and the transforms of its textures. Which
 // textures these are is for makeMaterialTables() to settle.
@@ -62,7 +66,7 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
                                              const MaterialLayout& layout);
 
 // Returns the GLSL of the record: the struct MaterialRecord, a constant for each texture, and for each
-// declared field a macro GLINT_MATERIAL_<FIELD>(hit), which is a constant where records lack the field. Of
+// declared field a macro GLINT_MATERIAL_<FIELD>(hit), which is a constant where no record has the field. Of
 // what belongs to models of packs, it has that of the models of `used`.
 std::string recordDeclarations(const MaterialLayout& layout, const materials::FeatureMask& used);
 // Returns the struct alone. `scope` stands before the names of vector types: empty in GLSL, "gpu::" in C++.

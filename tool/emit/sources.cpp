@@ -114,8 +114,9 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     // Shadow rays that pass glass read what glass is made of, whatever hits keep.
     defineFeatures(text, "GLINT_ALPHA", *plan.model, passesGlass ? plan.primaryAlways : plan.always & alpha,
                    passesGlass ? plan.primarySometimes : plan.sometimes & alpha);
-    text += "// Some key is of a model that a pack declares.\n";
+    text += "// Some key is of a model that a pack declares. Features of such models take so many words.\n";
     text += fmt::format("#define GLINT_USES_MODELS {}\n", flag(used != used.shared()));
+    text += fmt::format("#define GLINT_OWN_WORDS {}\n", plan.model->ownWordCount(used));
     text += "// Settings\n";
     text += fmt::format("#define GLINT_ALPHA_TESTED {}\n", flag(alphaPolicy != package::AlphaPolicy::Opaque));
     text += fmt::format("#define GLINT_BLENDED {}\n", flag(hasBlended));

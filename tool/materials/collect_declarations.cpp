@@ -131,8 +131,8 @@ void ModelBuilder::collect(File& file) {
         Feature feature;
         feature.name = newName(further);
         feature.stage = further.has("stage") ? choose(kStages, further, "stage", further.text("stage")).stage
-                        : stage == Stage::Layer ? Stage::Surface
-                                                : stage;
+                        : stage == Stage::Layer || stage == Stage::Base ? Stage::Surface
+                                                                        : stage;
         feature.gltf = further.text("gltf");
         addFeature(further, std::move(feature), Light::Front);
     }

@@ -354,6 +354,15 @@ int ModelBuilder::featureNamed(const std::string& name, const std::string& where
     return found;
 }
 
+std::string fieldMacro(std::string_view name) {
+    std::string text;
+    for (const char c : name) {
+        text += std::isupper(static_cast<unsigned char>(c)) != 0 ? "_" : "";
+        text += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    }
+    return text;
+}
+
 Result<MaterialModel> readDeclarations(std::span<const DeclarationFile> files) {
     try {
         return ModelBuilder(files).build();

@@ -22,6 +22,9 @@ namespace glint::materials {
 // place is file#/json/pointer.
 Result<MaterialModel> readDeclarations(std::span<const DeclarationFile> files);
 
+// Returns a field's part of the names of macros: "CLEARCOAT_ROUGHNESS_FACTOR" of "clearcoatRoughnessFactor".
+std::string fieldMacro(std::string_view name);
+
 // --- Packs: material features of a user's own, beside those that Glint has ---
 
 // Returns the files of the packs in `folders`: each folder's own declarations (.json) and GLSL (.glsl), and
@@ -32,7 +35,8 @@ Result<std::vector<std::filesystem::path>> packFiles(std::span<const std::string
 // Returns the model of Glint's own features together with those of the packs. It lives as long as the
 // program, as materials refer to it. Without folders it is builtinMaterialModel(). Has the errors of
 // packFiles(), readFile() and readDeclarations(), and "materials-glsl" if a file that a declaration names is
-// not there, or reads a texture without asking whether the key has it.
+// not there, or reads a texture without asking whether the key has it, or a value that records of its model
+// lack.
 Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> folders);
 
 }  // namespace glint::materials

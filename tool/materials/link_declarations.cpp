@@ -100,7 +100,12 @@ void ModelBuilder::orderByDependence() {
                 needs[i].insert(exclusion.by);
             }
         }
-        if (asksForOpacity(feature)) {
+        if (asksFor(feature, Fact::ModelOfPack)) {
+            for (const BaseModel& model : model_.models) {
+                needs[i].insert(model.feature);
+            }
+        }
+        if (asksFor(feature, Fact::ChangesOpacity)) {
             for (const FeatureCode& code : model_.code) {
                 if (!code.opacity.empty() && code.feature != static_cast<int>(i)) {
                     needs[i].insert(code.feature);
@@ -192,10 +197,10 @@ void ModelBuilder::keepPlacesOfUnlit() {
     }
 }
 
-bool ModelBuilder::asksForOpacity(const Feature& feature) const {
+bool ModelBuilder::asksFor(const Feature& feature, Fact fact) const {
     return std::ranges::any_of(feature.neutral, [&](const NeutralReason& reason) {
         const auto& symbols = reason.when.symbols();
-        return std::ranges::find(symbols, model_.symbolOf(Fact::ChangesOpacity)) != symbols.end();
+        return std::ranges::find(symbols, model_.symbolOf(fact)) != symbols.end();
     });
 }
 
@@ -244,6 +249,7 @@ constexpr struct {
     {"derived", "tangents", Fact::DerivesTangents, false},
     {"turned", "tangents", Fact::TurnsTangents, false},
     {"", "changesOpacity", Fact::ChangesOpacity, false},
+    {"", "modelOfPack", Fact::ModelOfPack, false},
 };
 
 }  // namespace

@@ -144,6 +144,19 @@ bool Material::reads(int object) const {
     return row.replaces >= 0 ? !unlit && chosen(row.replaces) == object : unlit || chosen(object) < 0;
 }
 
+int modelOf(const Material& material) {
+    const MaterialModel& model = material.model();
+    for (const Feature& feature : model.features) {
+        const bool isBase = feature.object >= 0 && feature.stage == Stage::Base &&
+                            material.given[static_cast<std::size_t>(feature.object)] != 0;
+        const bool isChosen = isBase && (model.unlit.has(feature.bit) || material.reads(feature.object));
+        if (isChosen) {
+            return feature.model;
+        }
+    }
+    return -1;
+}
+
 bool isReadable(const Material& material, const PrimitiveInputs& primitive, int texture) {
     const TextureInfo& info = material.textures[static_cast<std::size_t>(texture)];
     const MaterialModel& model = material.model();
@@ -405,6 +418,8 @@ Certainty MaterialFacts::fact(Fact fact) const {
             return certain(turnsTangents());
         case Fact::ChangesOpacity:
             return certain((key_ & model.opacityFeatures()) != 0);
+        case Fact::ModelOfPack:
+            return certain(model.modelOf(key_) >= 0);
         case Fact::Color:
         case Fact::Count:
             break;

@@ -165,6 +165,10 @@ private:
     const MaterialModel* model_;
 };
 
+// Returns the model of a pack whose base the material names, as an index into MaterialModel::models, or -1:
+// one of glTF's. The keys of a material may lack a base that they have a reason to leave out.
+int modelOf(const Material& material);
+
 enum class ColorContent : std::uint8_t {
     None,   // no COLOR_0
     White,  // COLOR_0 is (1, 1, 1, 1) everywhere, so it changes nothing.

@@ -119,6 +119,40 @@ FeatureMask MaterialModel::baseModels() const {
     return mask;
 }
 
+int MaterialModel::modelOf(const FeatureMask& key) const {
+    const auto found =
+        std::ranges::find_if(models, [&](const BaseModel& row) { return key.has(row.firstBit - 1); });
+    return found == models.end() ? -1 : static_cast<int>(found - models.begin());
+}
+
+FeatureMask MaterialModel::featuresOf(int model) const {
+    FeatureMask mask = FeatureMask(~std::uint64_t{0});
+    if (model < 0) {
+        return mask;
+    }
+    const BaseModel& row = models[static_cast<std::size_t>(model)];
+    for (const Exclusion& exclusion : exclusions) {
+        mask &= exclusion.by == row.feature ? ~exclusion.excluded : kAllFeatures;
+    }
+    for (int bit = row.firstBit - 1; bit < row.firstBit + row.bits; ++bit) {
+        mask |= FeatureMask::ofBit(bit);
+    }
+    return mask;
+}
+
+bool MaterialModel::hasParameter(int model, int parameter) const {
+    if (model < 0) {
+        return true;
+    }
+    const int base = models[static_cast<std::size_t>(model)].feature;
+    const int object = features[static_cast<std::size_t>(base)].object;
+    const bool isFilled = std::ranges::any_of(parameters, [&](const Parameter& other) {
+        return other.aliasOf == parameter && other.object == object;
+    });
+    return isFilled || objects[static_cast<std::size_t>(object)].replaces !=
+                           parameters[static_cast<std::size_t>(parameter)].object;
+}
+
 std::uint32_t MaterialModel::modelWord(int model) const {
     const BaseModel& row = models[static_cast<std::size_t>(model)];
     const int base = features[static_cast<std::size_t>(row.feature)].bit;
@@ -126,6 +160,8 @@ std::uint32_t MaterialModel::modelWord(int model) const {
     word |= unlit.has(base) ? gpu::kModelUnlit : 0U;
     word |= bothSides.has(base) ? gpu::kModelBothSides : 0U;
     word |= ownModels.has(base) ? gpu::kModelOwnCode : 0U;
+    const int color = findParameter("baseColorFactor");
+    word |= color >= 0 && hasParameter(model, color) ? gpu::kModelBaseColor : 0U;
     for (const FeatureCode& one : code) {
         const bool isOfModel =
             one.feature >= 0 && features[static_cast<std::size_t>(one.feature)].model == model;
@@ -137,7 +173,7 @@ std::uint32_t MaterialModel::modelWord(int model) const {
 
 package::KeyWords MaterialModel::words(const FeatureMask& mask) const {
     package::KeyWords words{static_cast<std::uint32_t>(mask.shared()),
-                            static_cast<std::uint32_t>(mask.shared() >> 32U), 0, 0};
+                            static_cast<std::uint32_t>(mask.shared() >> 32U)};
     mask.forEach([&](int bit) {
         const auto model = std::ranges::find_if(models, [bit](const BaseModel& row) {
             return bit >= row.firstBit - 1 && bit < row.firstBit + row.bits;
@@ -145,11 +181,11 @@ package::KeyWords MaterialModel::words(const FeatureMask& mask) const {
         if (bit < kFirstOfModels || model == models.end()) {
             return;
         }
-        const std::uint32_t word = modelWord(static_cast<int>(model - models.begin()));
-        const bool isOther = words.model != 0 && words.model != word;
-        words.model = isOther ? gpu::kAnyModel : word;
-        words.own |= bit < model->firstBit ? 0U : 1U << static_cast<unsigned>(bit - model->firstBit);
-        words.own = isOther ? ~0U : words.own;
+        package::KeyWords one{0, 0, modelWord(static_cast<int>(model - models.begin()))};
+        if (bit >= model->firstBit) {
+            one.own.add(bit - model->firstBit);
+        }
+        words |= one;
     });
     return words;
 }
@@ -161,8 +197,7 @@ FeatureMask MaterialModel::maskOf(const package::KeyWords& words) const {
         const BaseModel& model = models[number - 1];
         mask |= FeatureMask::ofBit(model.firstBit - 1);
         for (int i = 0; i < model.bits; ++i) {
-            const bool has = (words.own >> static_cast<unsigned>(i) & 1U) != 0;
-            mask |= has ? FeatureMask::ofBit(model.firstBit + i) : FeatureMask();
+            mask |= words.own.has(i) ? FeatureMask::ofBit(model.firstBit + i) : FeatureMask();
         }
     }
     return mask;
@@ -174,12 +209,20 @@ std::pair<package::KeyWords, package::KeyWords> MaterialModel::caseWords(const F
     package::KeyWords some = words(sometimes);
     const std::uint32_t any = words(always | sometimes).model;
     const bool isKnown = any == 0 || (any != gpu::kAnyModel && (always & baseModels()) != 0 &&
-                                      maskOf({0, 0, any, 0}) == (maskOf({0, 0, any, 0}) & always));
+                                      maskOf({0, 0, any}) == (maskOf({0, 0, any}) & always));
     least.model = isKnown ? any : gpu::kAnyModel;
-    least.own = isKnown ? least.own : 0U;
+    least.own = isKnown ? least.own : package::OwnWords{};
     some.model = least.model;
-    some.own = isKnown ? some.own : ~0U;
+    some.own = isKnown ? some.own : package::OwnWords::all();
     return {least, some};
+}
+
+int MaterialModel::ownWordCount(const FeatureMask& used) const {
+    int bits = 1;
+    for (const BaseModel& model : models) {
+        bits = used.has(model.firstBit - 1) ? std::max(bits, model.bits) : bits;
+    }
+    return (bits + 31) / 32;
 }
 
 std::string Feature::macroEnd() const {
@@ -194,8 +237,10 @@ std::string MaterialModel::featureDefines(const FeatureMask& used) const {
     for (const Feature& feature : features) {
         const std::string name = feature.macroEnd();
         if (feature.model >= 0) {
-            const package::KeyWords word = words(feature.mask());
-            const std::string rest = fmt::format("{}u, 0x{:x}u)", word.model & gpu::kModelNumber, word.own);
+            const int bit = feature.bit - models[static_cast<std::size_t>(feature.model)].firstBit;
+            const std::string rest =
+                fmt::format("{}u, {}, 0x{:x}u)", feature.model + 1, std::max(bit, 0) / 32,
+                            bit < 0 ? 0U : 1U << static_cast<unsigned>(bit % 32));
             text += used.has(features[static_cast<std::size_t>(baseOf(feature))].bit)
                         ? fmt::format(
                               "#define GLINT_HAS_{0}(features) hasOwn(features, {1}\n"

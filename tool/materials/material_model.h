@@ -188,7 +188,7 @@ std::string toHex(const FeatureMask& mask);
 inline constexpr FeatureMask kAllFeatures = ~FeatureMask();
 inline constexpr int kFirstInput = 32;
 inline constexpr int kFirstOfModels = 64;
-inline constexpr int kOwnFeatures = 32;  // of a model, at most
+inline constexpr int kOwnFeatures = package::OwnWords::kBits;  // of a model, at most
 
 // The stage at which a feature's GLSL runs.
 enum class Stage : std::uint8_t {
@@ -380,13 +380,13 @@ struct FeatureCode {
     std::string gains{};          // why more light may leave the surface than reaches it; empty: none may
 };
 
-// A base model that a pack declares. Of keys, shaders see it and its features in two words of their own, in
-// which each model numbers its features anew (package::KeyWords).
+// A base model that a pack declares. Of keys, shaders see it and its features in words of their own, in which
+// each model numbers its features anew (package::KeyWords).
 struct BaseModel {
     std::string name;  // of the declaration
     int feature = -1;  // index into MaterialModel::features: the base itself
     int firstBit = 0;  // of its further features, which follow each other
-    int bits = 0;      // how many these are, at most 32
+    int bits = 0;      // how many these are, at most kOwnFeatures
 };
 
 // The effects of a material on light, by which effects are chosen.
@@ -423,6 +423,7 @@ enum class Fact : std::uint8_t {
     DerivesTangents,  // the primitive's tangents are those that shading derives
     TurnsTangents,    // a frame that the key derives is of UVs that a transform turns or mirrors
     ChangesOpacity,   // a feature of the key has GLSL at the stage opacity
+    ModelOfPack,      // the base of the key is a model that a pack declares
     Count
 };
 
@@ -471,6 +472,13 @@ public:
     }
     // Returns the base models. Every hit needs one.
     FeatureMask baseModels() const;
+    // Returns the model of a pack that a key has, as an index into `models`, or -1: one of glTF's bases.
+    int modelOf(const FeatureMask& key) const;
+    // Returns the features that keys of a model may have; -1: of glTF's bases.
+    FeatureMask featuresOf(int model) const;
+    // Returns whether materials of a model have a value of a parameter that belongs to no feature. They have
+    // none of an object that the model replaces, unless a parameter of the model fills it.
+    bool hasParameter(int model, int parameter) const;
     // Returns the set with the base of each feature of a model.
     FeatureMask withBases(FeatureMask mask) const;
     // Returns the features that have GLSL at the stage opacity.
@@ -483,6 +491,8 @@ public:
     // about the features of each.
     std::pair<package::KeyWords, package::KeyWords> caseWords(const FeatureMask& always,
                                                               const FeatureMask& sometimes) const;
+    // Returns how many words shaders need for the own features of the models of `used`: at least 1.
+    int ownWordCount(const FeatureMask& used) const;
     // Returns the word by which shaders know the base of index `model`: its number and what it does.
     std::uint32_t modelWord(int model) const;
     // Returns "#define GLINT_BASE_COLOR_TEXTURE 0x1u" for every feature that all models share; lobes and

@@ -90,7 +90,8 @@ private:
     void excludeFromModels();
     // Unlit surfaces read a texture and have an opacity, so packs may change both.
     void keepPlacesOfUnlit();
-    bool asksForOpacity(const Feature& feature) const;
+    // Whether a reason that leaves the feature out reads the fact.
+    bool asksFor(const Feature& feature, Fact fact) const;
     const std::vector<int>& indices(std::size_t count);
     void addNeeds(const Expression& expression, std::set<int>& needs) const;
 

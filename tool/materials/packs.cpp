@@ -135,6 +135,40 @@ Status checkReads(const MaterialModel& model) {
     return okStatus();
 }
 
+// Refuses a read of a value of the replaced base that no parameter of the model fills: records of the model
+// have another value in its place.
+Status checkValues(const MaterialModel& model) {
+    for (const FeatureCode& code : model.code) {
+        const int owner =
+            code.feature < 0 ? -1 : model.features[static_cast<std::size_t>(code.feature)].model;
+        for (const ModelSource& source : model.sources) {
+            const bool isOfCode = source.name == code.surface || source.name == code.bsdf ||
+                                  source.name == code.model || source.name == code.emission ||
+                                  source.name == code.opacity || source.name == code.coordinates;
+            for (std::size_t i = 0; owner >= 0 && isOfCode && i < model.parameters.size(); ++i) {
+                const Parameter& parameter = model.parameters[i];
+                if (parameter.feature >= 0 || !parameter.inRecord ||
+                    model.hasParameter(owner, static_cast<int>(i))) {
+                    continue;
+                }
+                const std::string macro = fmt::format("GLINT_MATERIAL_{}(", fieldMacro(parameter.name));
+                const std::size_t found = source.text.find(macro);
+                if (found != std::string::npos) {
+                    const auto line =
+                        1 + std::count(source.text.begin(),
+                                       source.text.begin() + static_cast<std::ptrdiff_t>(found), '\n');
+                    return makeError(
+                        "materials-glsl", fmt::format("{}:{}", source.name, line),
+                        fmt::format("reads {}, which the records of {} do not have", parameter.name,
+                                    model.models[static_cast<std::size_t>(owner)].name),
+                        fmt::format("declare a parameter with \"is\": \"{}\"", parameter.name));
+                }
+            }
+        }
+    }
+    return okStatus();
+}
+
 // Keeps a model for as long as the program runs.
 const MaterialModel& keep(MaterialModel model) {
     static std::mutex mutex;
@@ -181,6 +215,7 @@ Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> fold
     model.sources = std::move(sources);
     GLINT_TRY_DO(checkCode(model));
     GLINT_TRY_DO(checkReads(model));
+    GLINT_TRY_DO(checkValues(model));
     return &keep(std::move(model));
 }
 

@@ -58,6 +58,80 @@ void collectKeys(std::span<const materials::Material> materials,
     }
 }
 
+bool mayLeaveOut(const materials::MaterialModel& model, int base) {
+    const materials::Feature& feature =
+        model.features[static_cast<std::size_t>(model.models[static_cast<std::size_t>(base)].feature)];
+    const int index = model.models[static_cast<std::size_t>(base)].feature;
+    return !feature.neutral.empty() || feature.given || feature.needsTexCoord >= 0 ||
+           std::ranges::any_of(model.attributes, [&](const materials::VertexAttribute& attribute) {
+               return attribute.feature == index && !attribute.fallback;
+           });
+}
+
+// Groups the models of materials. A material with keys of several models puts these into one group.
+std::vector<RecordUse> recordUses(std::span<const materials::Material> materials,
+                                  std::span<const materials::PrimitiveInputs> primitives, const Plan& plan) {
+    const materials::MaterialModel& model = *plan.model;
+    std::vector<RecordUse> uses;
+    const auto join = [&uses](RecordUse use) {
+        const auto shares = [&use](const RecordUse& other) {
+            return std::ranges::any_of(other.models, [&](int one) {
+                return std::ranges::find(use.models, one) != use.models.end();
+            });
+        };
+        for (const RecordUse& other : uses) {
+            if (shares(other)) {
+                appendUnique(use.models, other.models);
+                use.used |= other.used;
+                use.masks = use.masks || other.masks;
+            }
+        }
+        std::erase_if(uses, shares);
+        uses.push_back(std::move(use));
+    };
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+        const materials::Material& material = materials[static_cast<std::size_t>(primitives[i].material)];
+        const materials::FeatureMask& key = plan.primaryMaskOfPrimitive[i];
+        RecordUse use{{}, key, material.alphaMode != materials::AlphaMode::Opaque};
+        const int named = modelOf(material);
+        appendUnique(use.models, {model.modelOf(key), named});
+        if (named >= 0 && mayLeaveOut(model, named)) {
+            appendUnique(use.models, {-1});
+        }
+        join(std::move(use));
+    }
+    if (uses.empty()) {
+        uses.push_back({{-1}, 0, false});
+    }
+    std::ranges::sort(uses, {}, &RecordUse::models);
+    return uses;
+}
+
+// Adds the features of materials that edits choose: those of a case whose keys are of the model, those that
+// hits do not keep, and with a fallback those of all keys.
+void addFeaturesOfEdits(const Plan& plan, bool fallback, std::vector<RecordUse>& uses) {
+    const materials::MaterialModel& model = *plan.model;
+    const materials::FeatureMask primary = plan.primaryAlways | plan.primarySometimes;
+    const materials::FeatureMask dropped = primary & ~(plan.always | plan.sometimes);
+    const bool masks = std::ranges::any_of(uses, &RecordUse::masks);
+    for (RecordUse& use : uses) {
+        materials::FeatureMask more = fallback ? primary : dropped;
+        for (const Case& shaderCase : plan.cases) {
+            const bool isOfUse = std::ranges::any_of(shaderCase.keys, [&](int key) {
+                const int one = model.modelOf(plan.keys[static_cast<std::size_t>(key)].mask);
+                return std::ranges::find(use.models, one) != use.models.end();
+            });
+            more |= isOfUse ? shaderCase.always | shaderCase.sometimes : materials::FeatureMask();
+        }
+        materials::FeatureMask possible = 0;
+        for (const int one : use.models) {
+            possible |= model.featuresOf(one);
+        }
+        use.used |= more & possible;
+        use.masks = use.masks || (fallback && masks);
+    }
+}
+
 struct FeatureSpread {
     materials::FeatureMask always = 0;     // features that all masks have
     materials::FeatureMask sometimes = 0;  // features that only some masks have
@@ -200,6 +274,7 @@ Plan planKeys(std::span<const materials::Material> materials,
     for (auto& [what, materialSet] : droppedBy) {
         plan.dropped.push_back({what.first, what.second, {materialSet.begin(), materialSet.end()}});
     }
+    plan.records = recordUses(materials, primitives, plan);
     return plan;
 }
 
@@ -232,6 +307,7 @@ Plan planCases(Plan plan, std::span<const materials::PrimitiveInputs> primitives
     plan.sometimes = hits.sometimes;
     plan.primaryAlways = primary.always;
     plan.primarySometimes = primary.sometimes;
+    addFeaturesOfEdits(plan, options.fallback, plan.records);
     plan.keysPossible = plan.keys.empty() ? 0.0 : std::exp2((hits.always | hits.sometimes).count());
     return plan;
 }

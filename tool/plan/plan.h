@@ -80,6 +80,14 @@ struct EmitterFeatures {
     bool coveredByLayers = false;
 };
 
+// Materials whose records have the same fields: those of one base model, and of others where a material has
+// keys of several.
+struct RecordUse {
+    std::vector<int> models;          // ascending indices into MaterialModel::models; -1: glTF's bases
+    materials::FeatureMask used = 0;  // features that their keys may have
+    bool masks = false;               // alphaMode of some is not OPAQUE
+};
+
 // The keys and cases are those of hits. Primary surfaces keep every lobe (KeyOptions::keptLobes): the key of
 // a primitive's hits is part of its primary mask, and equals it if hits keep all lobes.
 struct Plan {
@@ -93,6 +101,7 @@ struct Plan {
     materials::FeatureMask sometimes = 0;  // features that only some keys have
     materials::FeatureMask primaryAlways = 0;
     materials::FeatureMask primarySometimes = 0;
+    std::vector<RecordUse> records{{{-1}, 0, false}};  // of all materials of primitives; never empty
     double keysPossible = 0.0;                  // 2^n, where n is the number of features that occur in keys
     EffectPlan effects;                         // resolve() fills this in, and the next two.
     std::vector<package::LayerEntry> layers{};  // by the index of their images

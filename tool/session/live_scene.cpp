@@ -110,7 +110,7 @@ Result<MaterialSourceData> LiveScene::sourceOf(const gltf::Scene& scene, int ind
     std::vector<EditedTextures> textures(scene.textures.size());
     for (std::size_t i = 0; i < material.textures.size(); ++i) {
         const int texture = material.textures[i].texture;
-        if (texture < 0 || data_.materialLayout.slotOf(static_cast<int>(i)) < 0) {
+        if (texture < 0 || data_.materialLayout.slotOf(static_cast<int>(i), modelOf(material)) < 0) {
             continue;
         }
         const bool srgb = material.isColor(static_cast<int>(i));

@@ -264,13 +264,54 @@ void poseMaterials(const gltf::Scene& scene, SceneViewData& data) {
 }  // namespace
 
 compiler::MaterialLayout recordLayoutOf(const Package& package, const materials::MaterialModel& model) {
-    materials::FeatureMask used = 0;
+    const MaterialTable table = package.scene(0).materials;
+    compiler::MaterialLayout layout;
+    layout.model = &model;
+    layout.bytes = table.recordBytes;
+    layout.textureOffset = table.textureOffset;
+    layout.textureCount = table.textureCount;
+    const auto indexIn = [](const auto& rows, std::string_view name) {
+        const auto found = std::ranges::find_if(rows, [&](const auto& row) { return row.name == name; });
+        return found == rows.end() ? -1 : static_cast<int>(found - rows.begin());
+    };
+    // A field has an entry for each model whose records have it.
+    const auto addOwner = [](auto& rows, const auto& value, auto member, int owner) {
+        const auto known = std::ranges::find(rows, value, member);
+        if (known != rows.end()) {
+            known->models.push_back(owner);
+        }
+        return known != rows.end();
+    };
+    for (const package::FieldEntry& entry : package.fields()) {
+        const int owner = static_cast<int>(entry.model & gpu::kModelNumber) - 1;
+        const std::string_view name = package.string(entry.name);
+        if (entry.offset >= table.textureOffset) {
+            const auto slot = (entry.offset - table.textureOffset) / sizeof(gpu::TextureRecord);
+            const int texture = model.findTexture(name);
+            if (!addOwner(layout.textures, texture, &compiler::TextureSlot::texture, owner)) {
+                layout.textures.push_back({texture, static_cast<int>(slot), {owner}});
+            }
+            continue;
+        }
+        if (addOwner(layout.fields, std::string(name), &compiler::RecordField::name, owner)) {
+            continue;
+        }
+        compiler::RecordField field;
+        field.name = name;
+        field.channels = static_cast<int>(entry.bytes / sizeof(float));
+        field.offset = entry.offset;
+        field.parameter = model.findParameter(name);
+        field.derived = indexIn(model.derived, name);
+        field.models = {owner};
+        layout.fields.push_back(std::move(field));
+    }
     for (std::uint32_t i = 0; i < package.sceneCount(); ++i) {
         for (const package::PrimitiveEntry& entry : package.scene(i).primitives) {
-            used |= model.maskOf(entry.key);
+            layout.turnsFrames =
+                layout.turnsFrames || (model.maskOf(entry.key) & model.mask("turnedFrames")) != 0;
         }
     }
-    return compiler::makeMaterialLayout(model, used);
+    return layout;
 }
 
 void useLayoutOf(const Package& package, const gltf::Scene& scene, SceneViewData& data) {

@@ -13,7 +13,7 @@ struct EngineGeometry {
     uint featureLobes;
     uint featureInputs;
     uint featureModel;
-    uint featureOwn;
+    uvec4 featureOwn;
     uint instance;
     uint pad;
 };

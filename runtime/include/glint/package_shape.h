@@ -5,10 +5,14 @@
 #include <glint/result.h>
 
 #include <array>
+#include <bit>
+#include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <iterator>
 #include <span>
 #include <string_view>
+#include <type_traits>
 
 namespace glint::package {
 
@@ -162,23 +166,79 @@ struct StringRef {
     std::uint32_t length;
 };
 
+// A set of the features that a base model of a pack has for itself.
+struct OwnWords {
+    static constexpr std::size_t kWords = 4;
+    static constexpr int kBits = 32 * static_cast<int>(kWords);
+
+    std::array<std::uint32_t, kWords> words{};
+
+    static constexpr OwnWords all() {
+        return ~OwnWords{};
+    }
+    constexpr void add(int bit) {
+        words[static_cast<std::size_t>(bit) / 32] |= 1U << static_cast<unsigned>(bit % 32);
+    }
+    constexpr bool has(int bit) const {
+        return (words[static_cast<std::size_t>(bit) / 32] >> static_cast<unsigned>(bit % 32) & 1U) != 0;
+    }
+    constexpr bool isEmpty() const {
+        return *this == OwnWords{};
+    }
+    constexpr int count() const {
+        int sum = 0;
+        for (const std::uint32_t word : words) {
+            sum += std::popcount(word);
+        }
+        return sum;
+    }
+    constexpr OwnWords operator~() const {
+        OwnWords result;
+        for (std::size_t i = 0; i < kWords; ++i) {
+            result.words[i] = ~words[i];
+        }
+        return result;
+    }
+    friend constexpr OwnWords operator&(OwnWords a, const OwnWords& b) {
+        for (std::size_t i = 0; i < kWords; ++i) {
+            a.words[i] &= b.words[i];
+        }
+        return a;
+    }
+    friend constexpr OwnWords operator|(const OwnWords& a, const OwnWords& b) {
+        return ~(~a & ~b);
+    }
+    auto operator<=>(const OwnWords&) const = default;
+};
+
 // A set of the features of a material: those that every base model may have in two words, and those of a base
-// model that a pack declares in two more.
+// model that a pack declares in words of the model.
 struct KeyWords {
+    static constexpr std::uint32_t kAnyModel = 0xFFFFFFFF;
+
     std::uint32_t lobes = 0;   // what light does at the surface
     std::uint32_t inputs = 0;  // where its values are read from
     // The model, as shaders/interop/models.h describes it; 0: one of glTF's. A set of the features of several
     // models has kAnyModel, and all bits of `own`.
     std::uint32_t model = 0;
-    std::uint32_t own = 0;  // the model's own features, which it numbers by itself
+    OwnWords own{};  // the model's own features, which it numbers by itself
 
     bool operator==(const KeyWords&) const = default;
+    // Adds the features of another set. A set without a model takes that of the other.
+    constexpr KeyWords& operator|=(const KeyWords& other) {
+        const bool isMixed = model != 0 && other.model != 0 && model != other.model;
+        lobes |= other.lobes;
+        inputs |= other.inputs;
+        own = isMixed ? OwnWords::all() : own | other.own;
+        model = isMixed ? kAnyModel : model | other.model;
+        return *this;
+    }
     // Returns whether the set has one of `features`, which are of one model at most. Those of a model without
     // bits in `own` are the model itself.
     constexpr bool hasAny(const KeyWords& features) const {
-        const bool isOfModel = features.model != 0 && (features.model == model || model == ~std::uint32_t{0});
+        const bool isOfModel = features.model != 0 && (features.model == model || model == kAnyModel);
         return ((lobes & features.lobes) | (inputs & features.inputs)) != 0 ||
-               (isOfModel && (features.own == 0 || (own & features.own) != 0));
+               (isOfModel && (features.own.isEmpty() || !(own & features.own).isEmpty()));
     }
 };
 
@@ -192,12 +252,13 @@ struct CaseEntry {
 
     // Returns whether the case's shaders compute all features of the key.
     constexpr bool fits(const KeyWords& key) const {
-        const auto within = [](std::uint32_t least, std::uint32_t some, std::uint32_t bits) {
-            return (least & ~bits) == 0 && (bits & ~(least | some)) == 0;
+        const auto within = [](const auto& least, const auto& some, const auto& bits) {
+            using Set = std::remove_cvref_t<decltype(bits)>;
+            return (least & ~bits) == Set{} && (bits & ~(least | some)) == Set{};
         };
         return within(always.lobes, sometimes.lobes, key.lobes) &&
                within(always.inputs, sometimes.inputs, key.inputs) &&
-               (always.model == key.model || always.model == ~std::uint32_t{0}) &&
+               (always.model == key.model || always.model == KeyWords::kAnyModel) &&
                within(always.own, sometimes.own, key.own);
     }
 };

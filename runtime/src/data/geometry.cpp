@@ -167,8 +167,13 @@ void takeEntry(const package::PrimitiveEntry& entry, gpu::GeometryRecord& record
     record.featureLobes = entry.key.lobes;
     record.featureInputs = entry.key.inputs;
     record.featureModel = entry.key.model;
-    record.featureOwn = entry.key.own;
+    record.featureOwn = std::bit_cast<gpu::uvec4>(entry.key.own);
     record.flags = (record.flags & ~kEntryFlags) | entry.geometryFlags;
+}
+
+package::KeyWords keyOf(const gpu::GeometryRecord& record) {
+    return {record.featureLobes, record.featureInputs, record.featureModel,
+            std::bit_cast<package::OwnWords>(record.featureOwn)};
 }
 
 gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, const GpuPrimitive& primitive,

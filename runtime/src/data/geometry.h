@@ -79,6 +79,7 @@ Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, 
 
 // Gives a record of a geometry what a package says of its primitive.
 void takeEntry(const package::PrimitiveEntry& entry, gpu::GeometryRecord& record);
+package::KeyWords keyOf(const gpu::GeometryRecord& record);
 
 // Makes the record of a geometry whose addresses `source` has: a primitive, or the view of a host's geometry.
 template <typename Source>

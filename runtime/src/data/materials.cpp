@@ -232,10 +232,14 @@ Diagnostic fault(const MaterialView& view, const char* what) {
 }  // namespace
 
 const RecordField* RecordFields::find(std::string_view name, std::uint32_t model) const {
-    const auto found = std::ranges::find_if(list, [&](const RecordField& field) {
-        return field.name == name && (field.model == 0 || field.model == model);
-    });
+    const auto found = std::ranges::find_if(
+        list, [&](const RecordField& field) { return field.name == name && field.model == model; });
     return found == list.end() ? nullptr : &*found;
+}
+
+bool RecordFields::hasAt(std::size_t offset, std::uint32_t model) const {
+    return std::ranges::any_of(
+        list, [&](const RecordField& field) { return field.offset == offset && field.model == model; });
 }
 
 RecordFields recordFields(const Package& package, const PackageScene& known) {
@@ -254,8 +258,7 @@ RecordFields recordFields(const Package& package, const PackageScene& known) {
 void carryFields(const RecordFields& from, std::uint32_t modelBefore, std::span<const std::uint8_t> values,
                  const RecordFields& to, std::uint32_t model, std::span<std::uint8_t> record) {
     for (const RecordField& field : to.list) {
-        const RecordField* const same =
-            field.model == 0 || field.model == model ? from.find(field.name, modelBefore) : nullptr;
+        const RecordField* const same = field.model == model ? from.find(field.name, modelBefore) : nullptr;
         if (same != nullptr && same->bytes == field.bytes) {
             std::memcpy(&record[field.offset], &values[same->offset], field.bytes);
         }

@@ -80,7 +80,7 @@ struct RecordField {
     std::string name;
     std::uint32_t offset = 0;  // bytes
     std::uint32_t bytes = 0;
-    std::uint32_t model = 0;  // whose records have it; 0: all
+    std::uint32_t model = 0;  // whose records have it, as in keys
 };
 // The fields of a scene's records, which the package need not outlive.
 struct RecordFields {
@@ -92,6 +92,8 @@ struct RecordFields {
     }
     // Returns the field of that name in records of the model, or null.
     const RecordField* find(std::string_view name, std::uint32_t model) const;
+    // Returns whether records of the model have a field or a texture there.
+    bool hasAt(std::size_t offset, std::uint32_t model) const;
 };
 RecordFields recordFields(const Package& package, const PackageScene& known);
 

@@ -158,11 +158,15 @@ private:
         return moved || (scene_.streamsTextures && readsTexture(opacity_, entry));
     }
 
+    // The alpha of a model with code of its own, or without glTF's base colour.
+    static bool isUnknown(std::uint32_t model) {
+        return model != 0 && ((model & gpu::kModelChangesAlpha) != 0 || (model & gpu::kModelBaseColor) == 0);
+    }
+
     bool isDecidable(const PrimitiveView& view, const package::PrimitiveEntry& entry) const {
         constexpr std::uint32_t kOther =
             gpu::kGeometryBlended | gpu::kGeometryPassesLight | gpu::kGeometryEmitter;
-        const bool hasCode =
-            entry.key.hasAny(opacity_.code) || (entry.key.model & gpu::kModelChangesAlpha) != 0;
+        const bool hasCode = entry.key.hasAny(opacity_.code) || isUnknown(entry.key.model);
         const std::size_t triangles = view.indices.size() / 3;
         return (entry.geometryFlags & gpu::kGeometryAlphaTested) != 0 &&
                (entry.geometryFlags & kOther) == 0 && !hasCode && triangles > 0 &&
@@ -336,7 +340,7 @@ std::vector<std::uint8_t> alphaInputs(const package::OpacityEntry& opacity, cons
     appendBytes(bytes, entry.key.inputs & inputs);
     appendBytes(bytes, entry.key.lobes & opacity.code.lobes);
     appendBytes(bytes, entry.key.inputs & opacity.code.inputs);
-    appendBytes(bytes, entry.key.model & gpu::kModelChangesAlpha);
+    appendBytes(bytes, entry.key.model & (gpu::kModelChangesAlpha | gpu::kModelBaseColor));
     appendBytes(bytes, floatAt(materials, entry.materialIndex, opacity.factor));
     appendBytes(bytes, floatAt(materials, entry.materialIndex, opacity.cutoff));
     if (opacity.texture != kNone && readsTexture(opacity, entry)) {

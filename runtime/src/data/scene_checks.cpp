@@ -174,9 +174,12 @@ Status checkEmission(const Package& package, const PackageScene& known, std::spa
     if (emission == nullptr || emission->texture == package::EmissionEntry::kNone) {
         return okStatus();
     }
+    const RecordFields fields = recordFields(package, known);
     for (std::size_t i = 0; i < known.materials.size(); ++i) {
         const std::uint32_t texture = textureAt(known.materials, i, emission->texture).textureIndex;
-        if (texture >= known.textures.size()) {
+        const bool isOfModel = fields.hasAt(placeOfTexture(known.materials, 0, emission->texture),
+                                            fields.modelOf(static_cast<std::uint32_t>(i)));
+        if (texture >= known.textures.size() || !isOfModel) {
             continue;
         }
         const ImageView& image = images[known.textures[texture].image];

@@ -168,9 +168,8 @@ Status checkCases(const Package::State& state, const std::string& where) {
         }
         const package::KeyWords& always = entry.always;
         const package::KeyWords& sometimes = entry.sometimes;
-        if (((always.lobes & sometimes.lobes) | (always.inputs & sometimes.inputs) |
-             (always.own & sometimes.own)) != 0 ||
-            always.model != sometimes.model) {
+        if (((always.lobes & sometimes.lobes) | (always.inputs & sometimes.inputs)) != 0 ||
+            !(always.own & sometimes.own).isEmpty() || always.model != sometimes.model) {
             return altered(where, "a case has a feature both always and sometimes");
         }
     }
@@ -198,9 +197,8 @@ Status checkPrimitive(const Package::State& state, const package::SceneEntry& sc
     // keep.
     const package::KeyWords& always = shadedBy.always;
     const bool isOfModel = always.model == entry.key.model || always.model == gpu::kAnyModel;
-    if (((always.lobes & ~entry.key.lobes) | (always.inputs & ~entry.key.inputs) |
-         (always.own & ~entry.key.own)) != 0 ||
-        !isOfModel) {
+    if (((always.lobes & ~entry.key.lobes) | (always.inputs & ~entry.key.inputs)) != 0 ||
+        !(always.own & ~entry.key.own).isEmpty() || !isOfModel) {
         return altered(where, name + " lacks features that its case takes for granted");
     }
     if ((entry.geometryFlags & ~kEntryFlags) != 0 || entry.alphaMode > kLastAlphaMode) {
@@ -310,10 +308,12 @@ Status checkSamplers(const Package::State& state, const std::string& where) {
     return okStatus();
 }
 
+static_assert(package::KeyWords::kAnyModel == gpu::kAnyModel);
+
 // A model alone is a feature, too.
 bool isOneFeature(const package::KeyWords& features) {
     const int shared = std::popcount(features.lobes) + std::popcount(features.inputs);
-    const int own = std::popcount(features.own);
+    const int own = features.own.count();
     return features.model == 0 ? shared == 1 && own == 0 : shared == 0 && own <= 1;
 }
 

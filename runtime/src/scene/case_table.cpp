@@ -30,7 +30,7 @@ constexpr NamedFlag kNamedFlags[] = {{gpu::kGeometryAlphaTested, "alpha that ray
 
 // The features of a key, of which there may be too many.
 package::KeyWords without(const package::KeyWords& features, const package::KeyWords& others) {
-    return {features.lobes & ~others.lobes, features.inputs & ~others.inputs, 0, 0};
+    return {features.lobes & ~others.lobes, features.inputs & ~others.inputs};
 }
 
 // The name of the feature of materials whose alpha rays test.
@@ -41,7 +41,7 @@ bool isEmpty(const package::KeyWords& features) {
 }
 
 int countOf(const package::KeyWords& features) {
-    return std::popcount(features.lobes) + std::popcount(features.inputs) + std::popcount(features.own);
+    return std::popcount(features.lobes) + std::popcount(features.inputs) + features.own.count();
 }
 
 }  // namespace
@@ -57,7 +57,9 @@ CaseTable::CaseTable(std::shared_ptr<const Package> package)
             shaderOfKey_.emplace(entry.key, entry.shaderId);
             known_.lobes |= entry.key.lobes;
             known_.inputs |= entry.key.inputs;
-            knownOwn_[entry.key.model] |= entry.key.own;
+            KnownModel& model = knownModels_[entry.key.model];
+            model.own = model.own | entry.key.own;
+            model.flags |= entry.geometryFlags;
             always_.lobes &= entry.key.lobes;
             always_.inputs &= entry.key.inputs;
             flags_ |= entry.geometryFlags;
@@ -108,8 +110,7 @@ Status CaseTable::checkAttributes(const MaterialKey& key, const std::string& whe
     for (const package::AttributeEntry& row : package_->attributes()) {
         const bool given = (key.attributes >> bit++ & 1U) != 0 || row.hasFallback != 0;
         if (!given && key.features.hasAny(row.feature)) {
-            lacking = {lacking.lobes | row.feature.lobes, lacking.inputs | row.feature.inputs,
-                       lacking.model | row.feature.model, lacking.own | row.feature.own};
+            lacking |= row.feature;
         }
     }
     if (!isEmpty(lacking)) {
@@ -145,21 +146,29 @@ MaterialKey CaseTable::asked(MaterialKey key) const {
 }
 
 Status CaseTable::checkKnown(const MaterialKey& key, const std::string& where) const {
-    const package::KeyWords all{key.features.lobes | key.hitFeatures.lobes,
-                                key.features.inputs | key.hitFeatures.inputs, key.features.model,
-                                key.features.own | key.hitFeatures.own};
+    package::KeyWords all = key.features;
+    all |= key.hitFeatures;
+    const auto found = knownModels_.find(all.model);
+    const bool isKnown = found != knownModels_.end();
+    if (all.model == 0 && !isKnown && !knownModels_.empty()) {
+        return makeError("scene-edit-feature", where, "no material of the package has a base of glTF",
+                         kCompileAgain);
+    }
     package::KeyWords unknown = without(all, known_);
-    const auto own = knownOwn_.find(all.model);
-    if (own == knownOwn_.end() || (all.own & ~own->second) != 0) {
+    const KnownModel known = isKnown ? found->second : KnownModel{};
+    if (!isKnown || !(all.own & ~known.own).isEmpty()) {
         unknown.model = all.model;
-        unknown.own = all.own & ~(own == knownOwn_.end() ? 0 : own->second);
+        unknown.own = all.own & ~known.own;
     }
     if (!isEmpty(unknown)) {
         return makeError("scene-edit-feature", where,
                          "no material of the package has these features: " + namesOf(unknown), kCompileAgain);
     }
+    // The records of a model have a cutoff if some of its materials need one.
+    const std::uint32_t flags =
+        fallback_ ? flags_ : (flags_ & ~gpu::kGeometryMasked) | (known.flags & gpu::kGeometryMasked);
     for (const NamedFlag& named : kNamedFlags) {
-        if ((key.geometryFlags & ~flags_ & named.flag) != 0) {
+        if ((key.geometryFlags & ~flags & named.flag) != 0) {
             return makeError("scene-edit-feature", where,
                              std::string("no material of the package has ") + named.what, kCompileAgain);
         }
@@ -180,17 +189,16 @@ Status CaseTable::checkEmitter(const MaterialKey& key, const std::string& where)
     }
     const package::KeyWords& always = emission->always;
     const package::KeyWords& sometimes = emission->sometimes;
-    const auto unlike = [](std::uint32_t has, std::uint32_t reads, std::uint32_t least, std::uint32_t some) {
+    const auto unlike = [](const auto& has, const auto& reads, const auto& least, const auto& some) {
         return (least & ~has) | (has & reads & ~(least | some));
     };
     package::KeyWords differing{unlike(key.features.lobes, read.lobes, always.lobes, sometimes.lobes),
-                                unlike(key.features.inputs, read.inputs, always.inputs, sometimes.inputs), 0,
-                                0};
+                                unlike(key.features.inputs, read.inputs, always.inputs, sometimes.inputs)};
     if (read.model != 0 && always.model != gpu::kAnyModel) {
         const bool isOther = always.model != key.features.model;
-        const std::uint32_t own = unlike(key.features.own, read.own, always.own, sometimes.own);
-        differing.model = isOther || own != 0 ? key.features.model : 0;
-        differing.own = isOther ? 0 : own;
+        const package::OwnWords own = unlike(key.features.own, read.own, always.own, sometimes.own);
+        differing.model = isOther || !own.isEmpty() ? key.features.model : 0;
+        differing.own = isOther ? package::OwnWords{} : own;
     }
     if (!isEmpty(differing)) {
         return makeError("scene-edit-case", where,

@@ -57,9 +57,14 @@ private:
     };
     std::map<package::KeyWords, std::uint32_t, Less> shaderOfKey_;  // of the package's primitives
     package::KeyWords known_;                                       // shared features of some primitive
-    std::map<std::uint32_t, std::uint32_t> knownOwn_;               // features of models of some primitive
+    // What primitives of a model have, by its word in keys.
+    struct KnownModel {
+        package::OwnWords own;
+        std::uint32_t flags = 0;  // of geometries
+    };
+    std::map<std::uint32_t, KnownModel> knownModels_;
     // Shared features of every primitive, which no shader asks for.
-    package::KeyWords always_{~0U, ~0U, 0, 0};
+    package::KeyWords always_{~0U, ~0U};
     std::uint32_t flags_ = 0;       // geometry flags of some primitive
     package::KeyWords alphaTests_;  // the feature of materials whose alpha rays test
 };

@@ -37,8 +37,7 @@ public:
                 unknown += (unknown.empty() ? "" : ", ") + std::string(name);
                 continue;
             }
-            found = {found.lobes | same->feature.lobes, found.inputs | same->feature.inputs,
-                     found.model | same->feature.model, found.own | same->feature.own};
+            found |= same->feature;
         }
         if (!unknown.empty()) {
             return makeError("scene-edit-feature", where,
@@ -211,7 +210,7 @@ private:
             static_cast<std::uint32_t>(before.textureOffset + slot * sizeof(gpu::TextureRecord));
         const std::vector<RecordField>& fields = store_.scene.package.fields.list;
         const auto old = std::ranges::find_if(fields, [&](const RecordField& field) {
-            return field.offset == offset && (field.model == 0 || field.model == modelBefore);
+            return field.offset == offset && field.model == modelBefore;
         });
         const RecordField* const field = old == fields.end() ? nullptr : fields_.find(old->name, model);
         if (field == nullptr || field->offset < layout_.textureOffset) {

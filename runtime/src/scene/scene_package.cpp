@@ -40,19 +40,23 @@ std::vector<ScenePackage::Attribute> attributesOf(const Package& package) {
     return attributes;
 }
 
-std::vector<ScenePackage::Emission> emissionsOf(const Package& package, const MaterialTable& materials) {
+std::vector<ScenePackage::Emission> emissionsOf(const Package& package, const PackageScene& known) {
+    const MaterialTable& materials = known.materials;
+    const RecordFields fields = recordFields(package, known);
     std::vector<ScenePackage::Emission> emissions;
     const package::EmissionEntry* const entry = package.emission();
     for (std::size_t i = 0; entry != nullptr && i < materials.size(); ++i) {
         ScenePackage::Emission emission;
         const std::uint8_t* const record = &materials.bytes[i * materials.recordBytes];
-        if (entry->factor != package::EmissionEntry::kNone) {
+        const std::uint32_t model = fields.modelOf(static_cast<std::uint32_t>(i));
+        if (fields.hasAt(entry->factor, model)) {
             std::memcpy(emission.factor.data(), record + entry->factor, sizeof emission.factor);
         }
-        if (entry->strength != package::EmissionEntry::kNone) {
+        if (fields.hasAt(entry->strength, model)) {
             std::memcpy(&emission.strength, record + entry->strength, sizeof emission.strength);
         }
-        if (entry->texture != package::EmissionEntry::kNone) {
+        if (entry->texture != package::EmissionEntry::kNone &&
+            fields.hasAt(placeOfTexture(materials, 0, entry->texture), model)) {
             emission.texture = textureAt(materials, i, entry->texture).textureIndex;
         }
         emissions.push_back(emission);
@@ -68,7 +72,7 @@ void takeTables(const Package& package, const PackageScene& known, ScenePackage&
     if (package.emission() != nullptr) {
         described.emission = *package.emission();
     }
-    described.emissions = emissionsOf(package, known.materials);
+    described.emissions = emissionsOf(package, known);
 }
 
 // Checks that the attributes that the package's key reads were uploaded.
@@ -151,7 +155,7 @@ Status checkEmission(const GpuScene::State& scene, const Package& package, const
         return otherScene(now.scene, "one of the packages takes emissive triangles as lights");
     }
     if (emission != nullptr &&
-        (!isReadAlike(*now.emission, *emission) || now.emissions != emissionsOf(package, known.materials))) {
+        (!isReadAlike(*now.emission, *emission) || now.emissions != emissionsOf(package, known))) {
         return otherScene(now.scene, "a material's emission changed, and emissive triangles are lights");
     }
     if (package.lightSamples() > 0 && !now.lightTree && !scene.store->keeps()) {
@@ -202,10 +206,8 @@ Status checkDecided(const GpuScene::State& scene, const Package& package, const 
 // Writes the geometry records that differ from what the package says.
 void writeEntries(SceneStore& store) {
     const auto isSame = [](const gpu::GeometryRecord& record, const package::PrimitiveEntry& entry) {
-        const package::KeyWords key{record.featureLobes, record.featureInputs, record.featureModel,
-                                    record.featureOwn};
         return record.shaderId == entry.shaderId && record.materialIndex == entry.materialIndex &&
-               key == entry.key;
+               keyOf(record) == entry.key;
     };
     store.instanceSlots.forEach([&](InstanceHandle handle, const StoredInstance& instance) {
         const StoredMesh& mesh = *store.meshes.find(instance.mesh);

@@ -6,7 +6,7 @@ struct HostGeometry {
     uint featureLobes;
     uint featureInputs;
     uint featureModel;
-    uint featureOwn;
+    uvec4 featureOwn;
     uint number;
 };
 

@@ -58,10 +58,15 @@ private:
     std::map<SectionKind, package::PackageSection> sections_;
 };
 
+// The layout of records of glTF's bases whose keys have those features.
+compiler::MaterialLayout layoutWith(const materials::FeatureMask& used) {
+    const compiler::RecordUse use{{-1}, used, true};
+    return compiler::makeMaterialLayout(materials::builtinMaterialModel(), {&use, 1});
+}
+
 // A layout with every field and texture.
 const compiler::MaterialLayout& wholeLayout() {
-    static const compiler::MaterialLayout kLayout =
-        compiler::makeMaterialLayout(materials::builtinMaterialModel(), ~materials::FeatureMask{0});
+    static const compiler::MaterialLayout kLayout = layoutWith(~materials::FeatureMask{0});
     return kLayout;
 }
 
@@ -99,13 +104,12 @@ TEST(MaterialLayout, HasTheFieldsOfTheFeaturesThatAreUsed) {
     const auto has = [](const compiler::MaterialLayout& layout, std::string_view field) {
         return std::ranges::find(layout.fields, field, &compiler::RecordField::name) != layout.fields.end();
     };
-    const compiler::MaterialLayout plain = compiler::makeMaterialLayout(model, 0);
+    const compiler::MaterialLayout plain = layoutWith(0);
     EXPECT_TRUE(has(plain, "baseColorFactor"));
     EXPECT_FALSE(has(plain, "clearcoatFactor"));
     EXPECT_TRUE(plain.textures.empty());
     EXPECT_EQ(plain.bytes, plain.textureOffset);
-    const compiler::MaterialLayout coated =
-        compiler::makeMaterialLayout(model, model.mask("clearcoat") | model.mask("normalTexture"));
+    const compiler::MaterialLayout coated = layoutWith(model.mask("clearcoat") | model.mask("normalTexture"));
     EXPECT_TRUE(has(coated, "clearcoatFactor"));
     EXPECT_TRUE(has(coated, "normalScale"));
     EXPECT_FALSE(has(coated, "clearcoatNormalScale"));
@@ -121,11 +125,10 @@ TEST(MaterialLayout, HasTheTransformsOfFrames) {
     const materials::MaterialModel& model = materials::builtinMaterialModel();
     const int normal = model.findTexture("normalTexture");
     const materials::FeatureMask grooves = model.mask("anisotropy") | model.mask("texCoord0");
-    EXPECT_EQ(compiler::makeMaterialLayout(model, grooves).slotOf(normal), -1);
-    EXPECT_EQ(compiler::makeMaterialLayout(model, grooves | model.mask("texCoord1")).slotOf(normal), 0);
-    EXPECT_EQ(compiler::makeMaterialLayout(model, model.mask("turnedFrames")).slotOf(normal), -1);
-    const compiler::MaterialLayout layout =
-        compiler::makeMaterialLayout(model, grooves | model.mask("turnedFrames"));
+    EXPECT_EQ(layoutWith(grooves).slotOf(normal), -1);
+    EXPECT_EQ(layoutWith(grooves | model.mask("texCoord1")).slotOf(normal), 0);
+    EXPECT_EQ(layoutWith(model.mask("turnedFrames")).slotOf(normal), -1);
+    const compiler::MaterialLayout layout = layoutWith(grooves | model.mask("turnedFrames"));
     ASSERT_EQ(layout.slotOf(normal), 0);
     const std::vector<std::uint8_t> record = makeMaterialRecord(materials::Material(), layout);
     gpu::TextureRecord texture{};

@@ -44,7 +44,7 @@ std::string refusal(const std::string& text) {
 
 TEST(Declarations, OfGlintAreComplete) {
     const materials::MaterialModel& model = materials::builtinMaterialModel();
-    EXPECT_EQ(model.features.size(), 44U);
+    EXPECT_EQ(model.features.size(), 45U);
     EXPECT_EQ(model.order.size(), model.features.size());
     std::set<std::string> shortNames;
     for (const materials::Feature& feature : model.features) {
@@ -229,7 +229,7 @@ TEST(Declarations, ModelsReplaceABase) {
     EXPECT_EQ(model->ownModels, model->mask("wet"));
     EXPECT_NE(model->bothSides & model->mask("wet"), 0U);
     EXPECT_EQ(model->modelWord(0), 1U | gpu::kModelOwnCode | gpu::kModelBothSides | gpu::kModelSampled);
-    EXPECT_NE(model->featureDefines().find("#define GLINT_HAS_WET(features) hasOwn(features, 1u, 0x0u)\n"),
+    EXPECT_NE(model->featureDefines().find("#define GLINT_HAS_WET(features) hasOwn(features, 1u, 0, 0x0u)\n"),
               std::string::npos);
     EXPECT_NE(refusal(declared("layer", R"("extension": "EXT_wet", )", files))
                   .find("#/glsl/model: needs a declaration whose"),

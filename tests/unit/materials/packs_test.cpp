@@ -1,5 +1,6 @@
 // Packs: material features of a user's own.
 #include "base/files.h"
+#include "emit/material_layout.h"
 #include "materials/declarations.h"
 #include "materials/material.h"
 #include "plan/plan.h"
@@ -9,7 +10,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cstring>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -215,7 +218,163 @@ TEST_F(MaterialPacks, TheBaseComesFirstOfItsModel) {
     const materials::BaseModel& zinc = model->models[0];
     EXPECT_EQ(zinc.name, "zinc");
     EXPECT_EQ(model->mask("zinc"), materials::FeatureMask::ofBit(zinc.firstBit - 1));
-    EXPECT_EQ(model->words(model->mask("alloy")).own, 1U);
+    EXPECT_EQ(model->words(model->mask("alloy")).own.words[0], 1U);
+}
+
+// Declares a model with so many features beside its base.
+std::string zincWith(int features) {
+    std::string text = R"({"name": "zinc", "extension": "EXT_zinc", "stage": "base",
+        "replaces": {"object": "pbrMetallicRoughness"}, "features": [)";
+    for (int i = 0; i < features; ++i) {
+        text += fmt::format(R"json({}{{"name": "alloy{:03}", "gltf": "alloy", "given": "has(zinc)",
+            "neutral": [{{"when": "not has(zinc)", "because": "there is no zinc"}}]}})json",
+                            i == 0 ? "" : ", ", i);
+    }
+    return text + "]}";
+}
+
+TEST_F(MaterialPacks, AModelHas128FeaturesOfItsOwn) {
+    write("zinc.json", zincWith(128));
+    const materials::MaterialModel* model = must(load());
+    EXPECT_EQ(model->ownWordCount(model->mask("zinc")), 4);
+    EXPECT_EQ(model->ownWordCount(0), 1);
+    materials::Material material(*model);
+    material.give("EXT_zinc");
+    const materials::FeatureMask key = compiler::makeKey(material, {}, {});
+    EXPECT_EQ((key & ~materials::FeatureMask(~std::uint64_t{0})).count(), 129);
+    EXPECT_EQ(model->words(key).own, package::OwnWords::all());
+    EXPECT_EQ(model->maskOf(model->words(key)), key);
+    const package::KeyWords last = model->words(model->mask("alloy127"));
+    EXPECT_EQ(last.own.words, (std::array<std::uint32_t, 4>{0, 0, 0, 1U << 31}));
+    EXPECT_EQ(model->maskOf(last), model->mask("zinc") | model->mask("alloy127"));
+    EXPECT_NE(
+        model->featureDefines().find("GLINT_HAS_ALLOY_127(features) hasOwn(features, 1u, 3, 0x80000000u)"),
+        std::string::npos);
+    write("zinc.json", zincWith(129));
+    expectError("declaration", "zinc.json#/features/128", "zinc has more than 128 features of its own");
+}
+
+TEST(KeyWords, UnionsOfSeveralModelsKnowNothingAboutTheFeaturesOfEach) {
+    package::KeyWords set{1, 2};
+    package::KeyWords zinc{4, 0, 7};
+    zinc.own.add(100);
+    set |= zinc;
+    EXPECT_EQ(set.lobes, 5U);
+    EXPECT_EQ(set.inputs, 2U);
+    EXPECT_EQ(set.model, 7U);
+    EXPECT_EQ(set.own, zinc.own);
+    set |= package::KeyWords{8};
+    EXPECT_EQ(set.model, 7U);
+    set |= package::KeyWords{0, 0, 6};
+    EXPECT_EQ(set.model, package::KeyWords::kAnyModel);
+    EXPECT_EQ(set.own, package::OwnWords::all());
+    EXPECT_TRUE(set.hasAny(zinc));
+    EXPECT_FALSE((package::KeyWords{0, 0, 6}).hasAny({0, 0, 7}));
+}
+
+constexpr std::string_view kZinc = R"json({"name": "zinc", "extension": "EXT_zinc", "stage": "base",
+    "replaces": {"object": "pbrMetallicRoughness"},
+    "parameters": [{"name": "zincBloom", "type": "color", "default": [1, 1, 1]},
+                   {"name": "zincGrain", "type": "float", "default": 2}],
+    "textures": [{"name": "zincTexture"}]})json";
+constexpr std::string_view kTin = R"json({"name": "tin", "extension": "EXT_tin", "stage": "base",
+    "replaces": {"object": "pbrMetallicRoughness"},
+    "parameters": [{"name": "tinColor", "is": "baseColorFactor", "default": [1, 1, 1, 1]},
+                   {"name": "tinPest", "type": "float", "default": 5}]})json";
+
+// The layout of a package of materials that each have a primitive.
+compiler::MaterialLayout layoutOf(const std::vector<materials::Material>& list,
+                                  const compiler::PlanOptions& options = {}) {
+    std::vector<materials::PrimitiveInputs> primitives(list.size());
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        primitives[i].material = static_cast<int>(i);
+    }
+    return compiler::materialLayoutOf(compiler::makePlan(list, primitives, options));
+}
+
+float valueAt(const materials::Material& material, const compiler::MaterialLayout& layout,
+              std::string_view field) {
+    const auto found = std::ranges::find(layout.fields, field, &compiler::RecordField::name);
+    const std::vector<std::uint8_t> record = compiler::makeMaterialRecord(material, layout);
+    float value = 0.0F;
+    std::memcpy(&value, &record.at(found->offset), sizeof value);
+    return value;
+}
+
+TEST_F(MaterialPacks, RecordsHaveTheFieldsOfTheirModelAlone) {
+    write("zinc.json", kZinc);
+    write("tin.json", kTin);
+    const materials::MaterialModel* model = must(load());
+    const materials::Material gltf(*model);
+    materials::Material zinc(*model);
+    zinc.give("EXT_zinc");
+    materials::Material tin(*model);
+    tin.give("EXT_tin");
+    EXPECT_EQ(layoutOf({gltf}).bytes, 40U);
+    EXPECT_EQ(layoutOf({zinc}).bytes, 16U);  // a colour and a number of its own
+    EXPECT_EQ(layoutOf({tin}).bytes, 20U);   // the base colour, which it fills, and a number
+    EXPECT_EQ(layoutOf({zinc, tin}).bytes, 20U);
+    const compiler::MaterialLayout mixed = layoutOf({gltf, zinc, tin});
+    EXPECT_EQ(mixed.bytes, 40U);
+    EXPECT_EQ(valueAt(gltf, mixed, "roughnessFactor"), 1.0F);
+    EXPECT_EQ(valueAt(zinc, mixed, "zincGrain"), 2.0F);
+    EXPECT_EQ(valueAt(tin, mixed, "tinPest"), 5.0F);
+    EXPECT_EQ(valueAt(tin, mixed, "baseColorFactor"), 1.0F);
+    EXPECT_EQ(compiler::makeMaterialRecord(zinc, mixed).size(), 40U);
+    // Masks and emission take room where a material has them.
+    materials::Material masked = zinc;
+    masked.alphaMode = materials::AlphaMode::Mask;
+    EXPECT_EQ(layoutOf({masked}).bytes, 20U);
+    materials::Material lamp = zinc;
+    lamp["emissiveFactor"] = 0.5F;
+    const compiler::MaterialLayout lit = layoutOf({lamp, tin});
+    EXPECT_EQ(lit.bytes, 28U);
+    EXPECT_EQ(valueAt(lamp, lit, "emissiveFactor"), 0.5F);
+    // A layer takes room in the records of the model whose materials have it.
+    materials::Material coated = tin;
+    coated["clearcoatFactor"] = 1.0F;
+    EXPECT_EQ(layoutOf({coated}).bytes, 28U);
+    EXPECT_EQ(layoutOf({coated, zinc}).bytes, 28U);
+    EXPECT_EQ(layoutOf({coated, gltf}).bytes, 40U);
+    // With a fallback an edit may give it to any of them.
+    compiler::PlanOptions options;
+    options.fallback = true;
+    EXPECT_EQ(layoutOf({coated, gltf}, options).bytes, 48U);
+}
+
+TEST_F(MaterialPacks, CodeOfAModelReadsWhatItsRecordsHave) {
+    std::string text(kTin);
+    text.insert(text.find("\"parameters\""), R"("glsl": {"surface": "tin.glsl"}, )");
+    write("tin.json", text);
+    write("tin.glsl", "vec4 tin(Hit hit) {\n    return GLINT_MATERIAL_BASE_COLOR_FACTOR(hit);\n}\n");
+    must(load());
+    write("tin.glsl", "float tin(Hit hit) {\n    return GLINT_MATERIAL_METALLIC_FACTOR(hit);\n}\n");
+    expectError("materials-glsl", "tin.glsl:2", "reads metallicFactor, which the records of tin do not have");
+}
+
+// The keys of such a material are of glTF's base without the amount, so its records have the fields of both.
+TEST_F(MaterialPacks, RecordsHaveRoomForABaseThatIsLeftOut) {
+    std::string text(kZinc);
+    text.insert(text.find("\"parameters\""),
+                R"("neutral": [{"when": "zincGrain == 0", "because": "none"}], )");
+    write("zinc.json", text);
+    const materials::MaterialModel* model = must(load());
+    materials::Material zinc(*model);
+    zinc.give("EXT_zinc");
+    EXPECT_EQ(layoutOf({zinc}).bytes, 56U);
+}
+
+// Textures of different models lie in the same slots.
+TEST_F(MaterialPacks, TexturesOfModelsShareSlots) {
+    write("zinc.json", kZinc);
+    const materials::MaterialModel* model = must(load());
+    const compiler::RecordUse uses[] = {{{-1}, model->mask("occlusionTexture"), false},
+                                        {{0}, model->mask("zincTexture"), false}};
+    const compiler::MaterialLayout layout = compiler::makeMaterialLayout(*model, uses);
+    EXPECT_EQ(layout.textureCount, 1U);
+    EXPECT_EQ(layout.slotOf(model->findTexture("zincTexture"), 0), 0);
+    EXPECT_EQ(layout.slotOf(model->findTexture("occlusionTexture"), -1), 0);
+    EXPECT_EQ(layout.slotOf(model->findTexture("occlusionTexture"), 0), -1);
 }
 
 // Inputs that find no place among the inputs take bits of the lobes' word, and there is an end to these, too.

@@ -51,7 +51,8 @@ TEST(Key, HasEveryFeatureThatMatters) {
     const materials::FeatureMask key = compiler::makeKey(fullMaterial(), fullPrimitive(), kTested, &dropped);
     for (const materials::Feature& info : materials::builtinMaterialModel().features) {
         const bool excluded = info.name == "unlit" || info.name == "specularGlossiness" ||
-                              info.name == "clearcoatSharesNormal" || info.name == "turnedFrames";
+                              info.name == "clearcoatSharesNormal" || info.name == "turnedFrames" ||
+                              info.name == "modelEmission";
         EXPECT_EQ((key & info.mask()) != 0, !excluded) << info.name;
     }
     EXPECT_TRUE(dropped.empty());

@@ -20,7 +20,7 @@ namespace {
 
 // Lobes are in the low half, inputs in the high one.
 package::KeyWords wordsOf(std::uint64_t features) {
-    return {static_cast<std::uint32_t>(features), static_cast<std::uint32_t>(features >> 32U), 0, 0};
+    return {static_cast<std::uint32_t>(features), static_cast<std::uint32_t>(features >> 32U)};
 }
 
 struct NamedRole {

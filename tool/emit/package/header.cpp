@@ -26,8 +26,8 @@ struct TypeSize {
     std::uint32_t alignment;
 };
 
-constexpr TypeSize kTypes[] = {{"uint", 4, 4},  {"float", 4, 4}, {"vec2", 8, 4},
-                               {"vec3", 12, 4}, {"vec4", 16, 4}, {"uvec2", 8, 4}};
+constexpr TypeSize kTypes[] = {{"uint", 4, 4},  {"float", 4, 4}, {"vec2", 8, 4},  {"vec3", 12, 4},
+                               {"vec4", 16, 4}, {"uvec2", 8, 4}, {"uvec4", 16, 4}};
 constexpr TypeSize kAddress{"GLINT_ADDRESS(", 8, 8};
 
 const TypeSize* findType(std::string_view name) {
@@ -155,7 +155,9 @@ mustache::data caseMasks(const Plan& plan) {
         const auto [always, sometimes] = plan.model->caseWords(shaderCase.always, shaderCase.sometimes);
         entry.set("always", fmt::format("{:#x}ULL", shaderCase.always.shared()));
         entry.set("sometimes", fmt::format("{:#x}ULL", shaderCase.sometimes.shared()));
-        entry.set("own", fmt::format("{:#x}U, {:#x}U, {:#x}U", always.model, always.own, sometimes.own));
+        entry.set("own",
+                  fmt::format("{:#x}U, {{{:#x}U}}, {{{:#x}U}}", always.model,
+                              fmt::join(always.own.words, "U, "), fmt::join(sometimes.own.words, "U, ")));
         list.push_back(entry);
     }
     return list;
@@ -196,7 +198,7 @@ mustache::data materialMembers(const MaterialLayout& layout) {
         members.push_back(entry);
     };
     for (const RecordField& field : layout.fields) {
-        if (field.model < 0) {
+        if (layout.isShared(field)) {
             add(field.name, field.offset);
         }
     }

@@ -141,18 +141,21 @@ std::vector<FeatureEntry> makeFeatures(const materials::MaterialModel& model, St
 
 std::vector<FieldEntry> makeFields(const MaterialLayout& layout, StringTable& strings) {
     std::vector<FieldEntry> entries;
-    const auto wordOf = [&](int model) { return model < 0 ? 0U : layout.model->modelWord(model); };
+    const auto add = [&](const std::string& name, std::uint32_t offset, std::uint32_t bytes,
+                         const std::vector<int>& models) {
+        const package::StringRef text = strings.add(name);
+        for (const int model : models) {
+            entries.push_back({text, offset, bytes, model < 0 ? 0U : layout.model->modelWord(model)});
+        }
+    };
     for (const RecordField& field : layout.fields) {
-        entries.push_back({strings.add(field.name), field.offset,
-                           static_cast<std::uint32_t>(field.channels * sizeof(float)), wordOf(field.model)});
+        add(field.name, field.offset, static_cast<std::uint32_t>(field.channels * sizeof(float)),
+            field.models);
     }
+    constexpr auto kBytes = static_cast<std::uint32_t>(sizeof(gpu::TextureRecord));
     for (const TextureSlot& row : layout.textures) {
-        const std::string& name = layout.model->textures[static_cast<std::size_t>(row.texture)].name;
-        const auto slot = static_cast<std::uint32_t>(row.slot);
-        entries.push_back(
-            {strings.add(name),
-             layout.textureOffset + slot * static_cast<std::uint32_t>(sizeof(gpu::TextureRecord)),
-             sizeof(gpu::TextureRecord), wordOf(row.model)});
+        add(layout.model->textures[static_cast<std::size_t>(row.texture)].name,
+            layout.textureOffset + static_cast<std::uint32_t>(row.slot) * kBytes, kBytes, row.models);
     }
     std::ranges::stable_sort(entries, {}, [](const FieldEntry& entry) {
         return std::pair(entry.model & gpu::kModelNumber, entry.offset);
@@ -413,11 +416,8 @@ MaterialTables makeMaterialTables(const gltf::Scene& scene, const MaterialLayout
             if (isNew) {
                 tables.textures.push_back(entry);
             }
-            const int slot = layout.slotOf(static_cast<int>(i));
-            const int model = material.model()
-                                  .features[static_cast<std::size_t>(material.model().textures[i].feature)]
-                                  .model;
-            if (slot < 0 || !isOfModel(material, model)) {
+            const int slot = layout.slotOf(static_cast<int>(i), modelOf(material));
+            if (slot < 0) {
                 continue;
             }
             std::uint8_t* const target =

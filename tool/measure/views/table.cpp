@@ -169,7 +169,7 @@ void showKeys(const ViewInput& input, ViewValues& values) {
         }
         const auto place = std::ranges::lower_bound(ordered, set) - ordered.begin();
         filler.category(i, static_cast<std::uint32_t>(place), [&] {
-            return fmt::format("{}", fmt::join(input.package->featureNames({set, 0, 0, 0}), " "));
+            return fmt::format("{}", fmt::join(input.package->featureNames({set}), " "));
         });
     });
 }

@@ -80,7 +80,7 @@ constexpr void forEachEffect(std::uint32_t effects, const Visit& visit) {
 // --- The file ---
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 24;
+inline constexpr std::uint32_t kVersion = 25;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -139,7 +139,7 @@ enum class SectionKind : std::uint32_t {
     Features = 12,   // FeatureEntry: every feature of materials that the compiler knew, by ascending bits
     Opacity = 13,    // one OpacityEntry, in packages that test alpha by Glint's own code
     Layers = 14,     // LayerEntry (glint/layers.h), by the index of their images, in packages with layers
-    Fields = 15,     // FieldEntry: every field and every texture of a material's record, by ascending offsets
+    Fields = 15,     // FieldEntry: the fields and textures of records, by model and ascending offsets
 };
 
 struct PackageSection {
@@ -249,7 +249,7 @@ struct OpacityEntry {
     std::uint32_t transformInput;
     std::uint32_t vertexColorInput;
     // Features whose code changes UVs or opacity. The alpha of a key that has one is unknown, as is that of a
-    // model with kModelChangesAlpha.
+    // model with kModelChangesAlpha or without kModelBaseColor.
     KeyWords code;
 };
 
@@ -259,30 +259,30 @@ struct FeatureEntry {
     StringRef name;    // in the manifest: "baseColorTexture"
 };
 
-// A field of the records of materials, or one of their textures, by which values find their place in the
-// records of another package.
+// A field of the records of a model's materials, or one of their textures, by which values find their place
+// in the records of another package.
 struct FieldEntry {
     StringRef name;        // of the parameter or the texture: "clearcoatFactor"
     std::uint32_t offset;  // in a record, bytes
     std::uint32_t bytes;
-    // The model whose records have it, as in keys; 0: all have it. Fields of different models share their
-    // places.
+    // The model whose records have it, as in keys; 0: glTF's bases. Several models have it by an entry each.
+    // Fields of different models share their places.
     std::uint32_t model;
 };
 
 static_assert(sizeof(PackageHeader) == 160);
 static_assert(sizeof(PackageSection) == 24);
 static_assert(sizeof(ModuleEntry) == 40);
-static_assert(sizeof(CaseEntry) == 44);
+static_assert(sizeof(CaseEntry) == 68);
 static_assert(sizeof(SceneEntry) == 40);
-static_assert(sizeof(PrimitiveEntry) == 40);
+static_assert(sizeof(PrimitiveEntry) == 52);
 static_assert(sizeof(TextureEntry) == 8);
 static_assert(sizeof(SamplerEntry) == 24);
-static_assert(sizeof(AttributeEntry) == 48);
+static_assert(sizeof(AttributeEntry) == 60);
 static_assert(sizeof(EffectEntry) == 24);
-static_assert(sizeof(EmissionEntry) == 72);
-static_assert(sizeof(FeatureEntry) == 24);
+static_assert(sizeof(EmissionEntry) == 108);
+static_assert(sizeof(FeatureEntry) == 36);
 static_assert(sizeof(FieldEntry) == 20);
-static_assert(sizeof(OpacityEntry) == 48);
+static_assert(sizeof(OpacityEntry) == 60);
 
 }  // namespace glint::package
