@@ -415,6 +415,9 @@ TEST(RayStepsReplacement, ARendererOfTheSceneSwitchesTogetherWithThem) {
     otherFrames.plan.merge = settings.plan.merge;
     const std::array ofSteps{packageOf(room, roomSteps()), packageOf(changed, settings)};
     const std::array ofFrames{packageOf(room, frames), packageOf(changed, otherFrames)};
+    gltf::Scene painted = room;
+    painted.materials[kGlossy]["baseColorFactor"] = {0.1F, 0.8F, 0.9F, 1.0F};
+    const std::shared_ptr<const Package> repainted = packageOf(painted, roomSteps());
     const Content after = contentOf(*ofSteps[1], changed, keepAll);
     for (const bool editable : {false, true}) {
         const auto scene = uploadScene(*ofSteps[0], room, [&](SceneView& view) { view.editable = editable; });
@@ -466,9 +469,17 @@ TEST(RayStepsReplacement, ARendererOfTheSceneSwitchesTogetherWithThem) {
         ASSERT_TRUE(renderer->replacePackage(ofFrames[0]));
         EXPECT_FALSE(differ(drawn(*renderer, frame), before));
         go(0);
-        engine.drain();
         EXPECT_EQ(renderer->replacementProgress().inUse, 2U);
         EXPECT_EQ(steps->replacementProgress().inUse, 2U);
+        // Other values of materials alone are those of both at once.
+        ASSERT_TRUE(steps->replacePackage(repainted));
+        EXPECT_TRUE(steps->replacementProgress().ready);
+        engine.begin();
+        ASSERT_TRUE(engine.ask(*steps, *scene));
+        engine.submit();
+        engine.drain();
+        EXPECT_TRUE(differ(drawn(*renderer, frame), before));
+        EXPECT_NE(engine.answers(order.size()), wanted[0]);
         for (std::size_t i = 0; i < order.size(); ++i) {
             EXPECT_EQ(engine.answers(i), wanted[order[i]]) << "batch " << i;
         }

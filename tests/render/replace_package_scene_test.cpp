@@ -9,6 +9,7 @@
 #include <glint/session/material_source.h>
 #include <glint/session/scene_view.h>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -351,6 +352,33 @@ TEST_F(ReplacePackageScene, EditedMaterialsFollowAnotherPolicyOfAlphaAndGlass) {
                         fresh(room.present, *packageOf(room.present, policies[policy]), options),
                         what + ", other panes");
     }
+}
+
+// Materials exchange their textures, one is read by another sampler, and one no longer.
+TEST_F(ReplacePackageScene, AnEditedSceneTakesOtherTexturesOfTheUpload) {
+    const compiler::CompileSettings uber = roomSettings(package::kStrategyUber);
+    gltf::Scene pictures = roomScene();
+    std::vector<int> textures;
+    for (const std::uint8_t shade : std::array<std::uint8_t, 3>{20, 120, 220}) {
+        textures.push_back(addTexture(pictures, 2, 1, {255, shade, 40, 255, 40, shade, 255, 255}));
+        pictures.materials[textures.size()].texture("baseColorTexture").texture = textures.back();
+    }
+    const std::shared_ptr<const Package> original = packageOf(pictures, uber);
+    const RendererOptions options = optionsOf(package::kStrategyUber);
+    EditedRoom room(pictures, original, options);
+    const LinearImage before = draw(room.renderer());
+    room.present.materials[1].texture("baseColorTexture").texture = textures[2];
+    room.present.materials[3].texture("baseColorTexture").texture = textures[0];
+    room.present.materials[2].texture("baseColorTexture").texture = textures[0];
+    room.present.samplers[static_cast<std::size_t>(room.present.textures[2].sampler)] = gltf::Sampler{};
+    const std::shared_ptr<const Package> exchanged = packageOf(room.present, uber);
+    ASSERT_LT(exchanged->scene(0).textures.size(), original->scene(0).textures.size());
+    room.replacePackage(exchanged);
+    const LinearImage after = draw(room.renderer());
+    EXPECT_TRUE(differ(after, before));
+    expectEqualImage(after, fresh(room.present, *exchanged, options), "other textures");
+    room.replacePackage(original);
+    expectEqualImage(draw(room.renderer()), before, "the first package again");
 }
 
 // A material that an edit has removed, because nothing had it, returns with a package that gives it to a

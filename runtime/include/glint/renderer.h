@@ -138,7 +138,8 @@ public:
     // The options stay those of create(). A package that waits gives way to one that is given later.
     // Renderers that share a GpuScene switch together: this makes what each of them needs, and the first
     // recording of any of them after that switches all. Its commands must come before those of their later
-    // recordings. `package` must not be null; the renderers keep it as long as it is needed.
+    // recordings. If RaySteps share it, too, the package waits until they have one of the same compilation.
+    // `package` must not be null; the renderers keep it as long as it is needed.
     //
     // In a scene that is edited, the textures, materials, meshes, instances and lights of edits stay; see
     // docs/live.md, "Replacing a package". Edits after the recording that switches give records in the layout
@@ -169,8 +170,7 @@ public:
     // prepare images and tables for all that follow, so they must be submitted. FrameOptions::environment may
     // change and the one before may be destroyed while frames are in flight; finished() frees it. With an
     // error nothing is recorded. Errors: "camera", "sky", "frame-options", "environment-missing",
-    // "environment-unread", "package-replaced" (RaySteps have replaced the package of the scene, see
-    // docs/engine.md), and those of memory and Vulkan's calls.
+    // "environment-unread", and those of memory and Vulkan's calls.
     Status record(VkCommandBuffer commands, const FrameOptions& frame);
 
     // The accumulated linear image. After the first recording its layout is GENERAL; a compute shader writes

@@ -55,8 +55,9 @@ inline constexpr std::uint32_t kDeclaredAttributesShift = 8;
 // Returns the attributes that the primitive has, as far as `package` knows them. Reads all colours.
 AttributeMask attributesOf(const Package& package, const PrimitiveView& primitive);
 
-// The features of a material on primitives with certain attributes. Glint::session makes these from a
-// material of glTF (glint/session/material_source.h).
+// The features of a material on primitives with certain attributes, as with AlphaPolicy::Stochastic. They
+// and the flags also say what the package may ignore: alpha, light that passes the material, and light that
+// it emits. Glint::session makes these from a material of glTF (glint/session/material_source.h).
 struct MaterialKey {
     AttributeMask attributes = 0;
     package::KeyWords features;       // the key, with all lobes
@@ -184,9 +185,9 @@ public:
         std::span<const float> morphWeights{};
     };
 
-    // These return the handle of an uploaded thing by its number in the package's scene (textures, materials,
-    // meshes) or in SceneView (instances, lights). A number that was not uploaded, or was removed, gives a
-    // handle that names nothing.
+    // These return the handle of an uploaded thing by its number in the present package's scene (textures,
+    // materials, meshes) or in SceneView (instances, lights). A number that was not uploaded, or was removed,
+    // gives a handle that names nothing.
     TextureHandle texture(std::uint32_t number) const;
     MaterialHandle material(std::uint32_t number) const;
     MeshHandle mesh(std::uint32_t number) const;
@@ -432,10 +433,10 @@ public:
     // number of the frame that the commands belong to; it may not fall, and complete() frees what only its
     // frames used. The recorded commands must be submitted before those of the next call, which builds upon
     // them. With an error nothing is recorded, but parts of the pose may be part of the next recording.
-    // Errors: "scene-still" (the scene was uploaded without `moves`), "scene-edit-frame" (the number has
-    // fallen), "scene-motion" (another number of instances, lights, joints or weights than at upload, another
-    // mesh, or a number that is not finite), "scene-light", "scene-material" (other materials than at
-    // upload).
+    // Errors: "scene-still" (the scene was uploaded as one that neither moves nor is edited),
+    // "scene-edit-frame" (the number has fallen), "scene-motion" (another number of instances, lights, joints
+    // or weights than at upload, another mesh, or a number that is not finite), "scene-light",
+    // "scene-material" (other materials than at upload).
     Status update(VkCommandBuffer commands, const MotionView& motion, std::uint64_t frame);
 
     // Records an update for the frame of the last recording, submits it, waits for the device and calls

@@ -290,7 +290,8 @@ struct SceneView {
     std::span<const ImageView> images;          // indexed by the package's TextureEntry::image
     std::span<const LightView> lights;
     std::uint32_t packageScene = 0;  // index of the scene in the package
-    // True if GpuScene::update() will move the scene. The resources for it are only made if so.
+    // True if GpuScene::update() will move the scene. The resources for it are only made if so, or if the
+    // scene is edited.
     bool moves = false;
     // Materials whose values differ from the package's, by ascending number. If the scene moves,
     // GpuScene::update() may change these materials and no others.

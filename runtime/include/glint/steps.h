@@ -119,9 +119,9 @@ public:
                                                        const EngineSceneView& scene);
     // The records of a scene that Glint has uploaded, for a host that brings rays of its own and no scene
     // yet. The GpuScene must outlive it. It is updated and edited by its own functions; steps that are
-    // recorded afterwards read it as it is then. If a Renderer replaces the scene's package,
-    // RaySteps::begin() fails with "package-replaced" until RaySteps::replacePackage() gets one with the same
-    // records. Rays are relative to its SceneView::origin. The host binds GpuScene::descriptorSet().
+    // recorded afterwards read it as it is then. Renderers and RaySteps of the scene replace its package
+    // together, when all have one of the same compilation. Rays are relative to its SceneView::origin. The
+    // host binds GpuScene::descriptorSet().
     static Result<std::unique_ptr<EngineScene>> share(Context& context, GpuScene& scene);
     ~EngineScene();
     EngineScene(const EngineScene&) = delete;
@@ -270,9 +270,10 @@ public:
     // Starts a batch: waits for all earlier commands that write memory, and sets the constants. The values
     // are stored in the command buffer. Batches share buffers, so on several queues the host orders them
     // itself. With an error nothing is recorded. Errors: "ray-steps", "sky", "environment-missing",
-    // "environment-unread", "package-replaced" (the scene has the records of another package), and those of
-    // memory and Vulkan's calls. If the scene has other geometries, strategies with a pipeline of their own
-    // get another shader binding table, and may need another pipeline, which the call then makes.
+    // "environment-unread", "package-replaced" (EngineScene::update() has given the scene the content of
+    // another package), and those of memory and Vulkan's calls. If the scene has other geometries, strategies
+    // with a pipeline of their own get another shader binding table, and may need another pipeline, which the
+    // call then makes.
     Status begin(VkCommandBuffer commands, const RayBatch& batch);
     // Traces the rays. Strategies that order no hits trace and shade in one pass, in shade(), so with them
     // this and order() do nothing.

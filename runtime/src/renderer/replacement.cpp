@@ -372,11 +372,11 @@ bool joinReplacement(PackageUser& state) {
 
 void switchPackage(PackageUser& state, VkCommandBuffer commands) {
     std::vector<PackageUser*> users = usersWith(state);
-    // The scene gets the package of a renderer, if there is one, because steps have no emissive lights.
+    std::erase_if(users, [](const PackageUser* user) { return !user->next; });
+    // The scene gets the package of a renderer, if one waits for it, because steps have no emissive lights.
     const auto renderer = std::ranges::find_if(
         users, [](const PackageUser* user) { return user->passes() == package::Passes::Frame; });
-    const NextPackage* const leading = (renderer == users.end() ? &state : *renderer)->next.get();
-    std::erase_if(users, [](const PackageUser* user) { return !user->next; });
+    const NextPackage& leading = *(renderer == users.end() ? &state : *renderer)->next;
     for (PackageUser* const user : users) {
         if (Status status = joinPasses(*user, *user->next); !status) {
             refuse(state, status.error());
@@ -387,15 +387,12 @@ void switchPackage(PackageUser& state, VkCommandBuffer commands) {
         addLeftovers(*user);
     }
     const auto left = std::make_shared<RetiredLot>();
-    if (leading != nullptr) {
-        Result<RetiredLot> scene =
-            state.drawn.recordReplacement(leading->package, leading->fit.scene, commands);
-        if (!scene) {
-            refuse(state, scene.error());
-            return;
-        }
-        *left = std::move(*scene);
+    Result<RetiredLot> scene = state.drawn.recordReplacement(leading.package, leading.fit.scene, commands);
+    if (!scene) {
+        refuse(state, scene.error());
+        return;
     }
+    *left = std::move(*scene);
     for (PackageUser* const user : users) {
         // The commands that are being recorded read the staging memory.
         takeOver(*user, std::move(user->next), left, user->recordings + (user == &state ? 1 : 0));

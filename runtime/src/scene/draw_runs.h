@@ -1,4 +1,5 @@
-// The draws of a scene's raster pass, which are kept in runs of instances that one call for each primitive draws.
+// The draws of a scene's raster pass, which are kept in runs of instances that one call for each primitive
+// draws.
 #pragma once
 
 #include "data/geometry.h"

@@ -64,31 +64,6 @@ Status checkSource(const SceneStore& store, const MaterialSource& source, const 
     return okStatus();
 }
 
-// Returns how many samplers are there if this one is not.
-std::size_t findSampler(const SceneStore& store, const package::SamplerEntry& entry) {
-    const auto known =
-        std::ranges::find_if(store.samplers, [&](const auto& other) { return isSame(other, entry); });
-    return static_cast<std::size_t>(known - store.samplers.begin());
-}
-
-// Makes the sampler, unless it is there. Error "scene-edit-room".
-Status ensureSampler(SceneStore& store, const package::SamplerEntry& entry) {
-    if (findSampler(store, entry) < store.samplers.size()) {
-        return okStatus();
-    }
-    if (store.samplers.size() >= store.scene.samplerRoom) {
-        return makeError("scene-edit-room", "",
-                         "the scene has " + std::to_string(store.samplers.size()) +
-                             " kinds of samplers, and no room for another",
-                         "set SceneView::samplerRoom, or use fewer kinds of samplers");
-    }
-    GLINT_TRY(auto sampler, createSampler(store.scene.context, entry));
-    store.scene.samplers.push_back(std::move(sampler));
-    store.samplers.push_back(entry);
-    store.setDirty = true;
-    return okStatus();
-}
-
 Result<std::vector<std::uint8_t>> makeRecord(SceneStore& store, const MaterialSource& source) {
     for (const TextureUse& use : source.textures) {
         GLINT_TRY_DO(ensureSampler(store, use.sampler));
@@ -210,18 +185,46 @@ void addTo(EditReport& report, const CaseTable& cases, MaterialHandle material, 
 }
 
 // A record says which textures it may read. A slot that no key reads holds zero.
-std::vector<TextureUse> usesOf(const SceneStore& store, const MaterialTable& table, std::size_t material) {
+std::vector<TextureUse> usesOf(const PackageScene& known, std::span<const TextureHandle> textures,
+                               std::size_t material) {
     std::vector<TextureUse> uses;
-    for (std::uint32_t slot = 0; slot < table.textureCount && !store.firstTextures.empty(); ++slot) {
-        const gpu::TextureRecord record = textureAt(table, material, slot);
+    for (std::uint32_t slot = 0; slot < known.materials.textureCount && !textures.empty(); ++slot) {
+        const gpu::TextureRecord record = textureAt(known.materials, material, slot);
         if (std::ranges::all_of(std::as_bytes(std::span(&record, 1)),
                                 [](std::byte part) { return part == std::byte{0}; })) {
             continue;
         }
-        uses.push_back({slot, store.firstTextures[record.textureIndex], store.samplers[record.samplerIndex],
-                        record.texCoord});
+        uses.push_back(
+            {slot, textures[record.textureIndex], known.samplers[record.samplerIndex], record.texCoord});
     }
     return uses;
+}
+
+std::size_t findSampler(const SceneStore& store, const package::SamplerEntry& entry) {
+    const auto known =
+        std::ranges::find_if(store.samplers, [&](const auto& other) { return isSame(other, entry); });
+    return static_cast<std::size_t>(known - store.samplers.begin());
+}
+
+Diagnostic noRoomForSampler(const SceneStore& store) {
+    return makeError("scene-edit-room", "",
+                     "the scene has " + std::to_string(store.samplers.size()) +
+                         " kinds of samplers, and no room for another",
+                     "set SceneView::samplerRoom, or use fewer kinds of samplers");
+}
+
+Status ensureSampler(SceneStore& store, const package::SamplerEntry& entry) {
+    if (findSampler(store, entry) < store.samplers.size()) {
+        return okStatus();
+    }
+    if (store.samplers.size() >= store.scene.samplerRoom) {
+        return noRoomForSampler(store);
+    }
+    GLINT_TRY(auto sampler, createSampler(store.scene.context, entry));
+    store.scene.samplers.push_back(std::move(sampler));
+    store.samplers.push_back(entry);
+    store.setDirty = true;
+    return okStatus();
 }
 
 void settleTextures(const SceneStore& store, const MaterialTable& layout, std::span<const TextureUse> uses,

@@ -62,9 +62,14 @@ public:
           layout_(package->scene(0).materials.part(0, 0)),
           fields_(recordFields(*package, known)),
           features_(store.cases->package(), *package),
-          tables_{
-              CaseTable(package), store.materialSlots, store.firstMaterials, recordsLike(store), {}, {}, {}} {
-    }
+          tables_{CaseTable(package),
+                  store.materialSlots,
+                  {},
+                  store.firstMaterials,
+                  recordsLike(store),
+                  {},
+                  {},
+                  {}} {}
 
     Result<EditedTables> make() {
         if (package_.trustTextures() && store_.otherTexels) {
@@ -72,6 +77,7 @@ public:
                              "an edit has replaced a texture, and the package relies on what textures hold",
                              "compile it with --no-trust-textures, or with --fallback");
         }
+        GLINT_TRY_DO(findTextures());
         addMaterials();
         GLINT_TRY_DO(fillMaterials());
         addKeys();
@@ -90,6 +96,28 @@ private:
         RecordStore records(layout_.recordBytes);
         records.firstCapacity = store.materials.firstCapacity;
         return records;
+    }
+
+    // Finds the package's textures among those that were uploaded, and checks that there is room for its
+    // samplers.
+    Status findTextures() {
+        const std::vector<package::TextureEntry>& uploaded = store_.scene.package.textures;
+        for (const package::TextureEntry& entry : known_.textures) {
+            const auto place = std::ranges::find_if(uploaded, [&](const package::TextureEntry& other) {
+                return other.image == entry.image && other.srgb == entry.srgb;
+            });
+            if (place == uploaded.end()) {
+                return otherContent(placeOf("image", entry.image),
+                                    "the package reads it as a texture that was not uploaded");
+            }
+            tables_.firstTextures.push_back(
+                store_.uploadedTextures[static_cast<std::size_t>(place - uploaded.begin())]);
+        }
+        std::size_t samplers = store_.samplers.size();
+        for (const package::SamplerEntry& entry : known_.samplers) {
+            samplers += findSampler(store_, entry) == store_.samplers.size() ? 1 : 0;
+        }
+        return samplers <= store_.scene.samplerRoom ? okStatus() : Status(noRoomForSampler(store_));
     }
 
     // The package may have more materials than the one before, and give primitives some that edits have
@@ -176,7 +204,7 @@ private:
 
     // The material is the package's, apart from the values that it has been given.
     Status takeMaterial(std::uint32_t index, std::uint32_t number, StoredMaterial& material) {
-        material.textures = usesOf(store_, known_.materials, number);
+        material.textures = usesOf(known_, tables_.firstTextures, number);
         for (const TextureUse& use : material.textures) {
             if (store_.textures.find(use.texture) == nullptr) {
                 return otherContent(placeOf("material", index), "an edit has removed a texture of it");
@@ -310,6 +338,7 @@ Result<EditedTables> editedTables(const SceneStore& store, const std::shared_ptr
 void exchangeTables(SceneStore& store, EditedTables& tables) {
     std::swap(*store.cases, tables.cases);
     std::swap(store.materialSlots, tables.materialSlots);
+    std::swap(store.firstTextures, tables.firstTextures);
     std::swap(store.firstMaterials, tables.firstMaterials);
     std::swap(store.materials, tables.materials);
     for (auto& [mesh, materials] : tables.meshMaterials) {

@@ -351,8 +351,9 @@ Result<PackageFit> GpuScene::State::fit(const std::shared_ptr<const Package>& ot
     }
     GLINT_TRY_DO(checkDevice(*other, context.handles));
     const PackageScene known = sceneOf(*other, *index);
-    if (!sameBytes(known.textures, std::span<const package::TextureEntry>(now.textures)) ||
-        !sameBytes(known.samplers, std::span<const package::SamplerEntry>(now.samplers))) {
+    if (!store->editable &&
+        (!sameBytes(known.textures, std::span<const package::TextureEntry>(now.textures)) ||
+         !sameBytes(known.samplers, std::span<const package::SamplerEntry>(now.samplers)))) {
         return otherScene(now.scene, "the package reads other textures or samplers");
     }
     if (attributesOf(*other) != now.attributes) {
@@ -371,6 +372,11 @@ Result<PackageFit> GpuScene::State::fit(const std::shared_ptr<const Package>& ot
 
 Result<RetiredLot> GpuScene::State::recordReplacement(const std::shared_ptr<const Package>& other,
                                                       std::uint32_t index, VkCommandBuffer commands) {
+    if (store->editable) {
+        for (const package::SamplerEntry& sampler : sceneOf(*other, index).samplers) {
+            GLINT_TRY_DO(ensureSampler(*store, sampler));
+        }
+    }
     GLINT_TRY(auto content, otherPackage(*this, other, index));
     exchange(*store, content);
     RetiredLot leftovers;

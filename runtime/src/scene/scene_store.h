@@ -178,7 +178,8 @@ struct SceneStore {
     Slots<LightView, LightHandle> lightSlots;
     std::vector<LightHandle> lightOrder;  // the place of a light is the index of its record
 
-    // Handles by their numbers at the upload.
+    std::vector<TextureHandle> uploadedTextures;  // by ScenePackage::textures
+    // Handles by their numbers at the upload; textures and materials by those of the package.
     std::vector<TextureHandle> firstTextures;
     std::vector<MaterialHandle> firstMaterials;
     std::map<std::uint32_t, MeshHandle> firstMeshes;
@@ -354,8 +355,15 @@ Result<Shading> shadingBy(const CaseTable& cases, std::span<const MaterialKey> k
                           const std::string& where);
 // Lists the key in the report if the fallback shades it.
 void addTo(EditReport& report, const CaseTable& cases, MaterialHandle material, const Shading& shading);
-// The textures of a material of the package, whose handles may name what edits have removed.
-std::vector<TextureUse> usesOf(const SceneStore& store, const MaterialTable& table, std::size_t material);
+// The textures of a material of the package, whose textures have these handles by their numbers. They may
+// name what edits have removed.
+std::vector<TextureUse> usesOf(const PackageScene& known, std::span<const TextureHandle> textures,
+                               std::size_t material);
+// Returns how many samplers are there if this one is not.
+std::size_t findSampler(const SceneStore& store, const package::SamplerEntry& entry);
+// Makes the sampler, unless it is there. Error "scene-edit-room".
+Status ensureSampler(SceneStore& store, const package::SamplerEntry& entry);
+Diagnostic noRoomForSampler(const SceneStore& store);
 // Writes into a record of this layout which textures it has. They and their samplers must be there.
 void settleTextures(const SceneStore& store, const MaterialTable& layout, std::span<const TextureUse> uses,
                     std::span<std::uint8_t> record);
@@ -370,6 +378,7 @@ void writeMaterial(SceneStore& store, std::uint32_t material, std::span<const st
 struct EditedTables {
     CaseTable cases;
     Slots<StoredMaterial, MaterialHandle> materialSlots;
+    std::vector<TextureHandle> firstTextures;
     std::vector<MaterialHandle> firstMaterials;
     RecordStore materials;
     std::map<std::uint32_t, std::vector<MaterialHandle>> meshMaterials;  // of meshes that were uploaded

@@ -124,6 +124,7 @@ private:
                     store_.textures.add({image.width, image.height, srgb, emissionTexels(image, srgb)}));
             }
         }
+        store_.uploadedTextures = store_.firstTextures;
         if (store_.editable || scene_.textures.empty()) {
             GLINT_TRY(auto white, uploadTexture(scene_.context, scene_.pool, *store_.uploader,
                                                 {1, 1, kWhiteTexel}, false));
@@ -145,7 +146,7 @@ private:
             store_.materials.writeBytes(i, std::span(records_).subspan(i * bytes, bytes));
             if (store_.editable) {
                 StoredMaterial material;
-                material.textures = usesOf(store_, known_.materials, i);
+                material.textures = usesOf(known_, store_.firstTextures, i);
                 material.hasOwnValues = std::ranges::find(scene_.changing, i, &ChangingMaterial::material) !=
                                         scene_.changing.end();
                 for (const TextureUse& use : material.textures) {
