@@ -2,11 +2,7 @@
 #include "generated/scene.glsl"
 #include "interop/models.h"
 
-// The features that a case knows about its keys. Those that every model may have stand in two words, `lobes` and
-// `inputs`; those of a model that a pack declares in `own`, numbered in the model, in as many words as some model needs. What begins with `always`, `sometimes`
-// and `case` are literals of the case; the others are the key of the geometry at hand. The functions are written so that
-// SPIRV-Tools folds every decided bit: a feature that no key of the case has leaves no code, and one that every key has
-// leaves no branch.
+// The own features of a model, in as many words as some model of the package needs.
 #if GLINT_OWN_WORDS == 1
 #define OwnWords uint
 #define GLINT_OWN(a, b, c, d) (a)
@@ -29,6 +25,11 @@
 #define GLINT_OWN_WORD(own, word) (own)[word]
 #endif
 
+// The features that a case knows about its keys. Those that every model may have stand in two words, `lobes` and
+// `inputs`; those of a model that a pack declares in `own`, numbered in the model. What begins with `always`,
+// `sometimes` and `case` are literals of the case; the others are the key of the geometry at hand. The functions are
+// written so that SPIRV-Tools folds every decided bit: a feature that no key of the case has leaves no code, and one
+// that every key has leaves no branch.
 struct Features {
     uint alwaysLobes;
     uint alwaysInputs;
