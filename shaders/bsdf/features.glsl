@@ -2,45 +2,46 @@
 #include "generated/scene.glsl"
 #include "interop/models.h"
 
-// The features that a case knows about its keys. Those that every model may have stand in two words, `lobes` and
-// `inputs`; those of a model that a pack declares in `own`, numbered in the model, in as many words as some model
-// needs. What begins with `always`, `sometimes` and `case` are literals of the case; the others are the key of the
-// geometry at hand. The functions are written so that SPIRV-Tools folds every decided bit: a feature that no key of the
-// case has leaves no code, and one that every key has leaves no branch.
+// The own features of a model, in as many words as some model of the package needs.
 #if GLINT_OWN_WORDS == 1
-#define OwnWords uint
+#define GLINT_OWN_TYPE uint
 #define GLINT_OWN(a, b, c, d) (a)
 #define GLINT_OWN_OF(words) (words).x
 #define GLINT_OWN_WORD(own, word) (own)
 #elif GLINT_OWN_WORDS == 2
-#define OwnWords uvec2
+#define GLINT_OWN_TYPE uvec2
 #define GLINT_OWN(a, b, c, d) uvec2(a, b)
 #define GLINT_OWN_OF(words) (words).xy
 #define GLINT_OWN_WORD(own, word) (own)[word]
 #elif GLINT_OWN_WORDS == 3
-#define OwnWords uvec3
+#define GLINT_OWN_TYPE uvec3
 #define GLINT_OWN(a, b, c, d) uvec3(a, b, c)
 #define GLINT_OWN_OF(words) (words).xyz
 #define GLINT_OWN_WORD(own, word) (own)[word]
 #else
-#define OwnWords uvec4
+#define GLINT_OWN_TYPE uvec4
 #define GLINT_OWN(a, b, c, d) uvec4(a, b, c, d)
 #define GLINT_OWN_OF(words) (words)
 #define GLINT_OWN_WORD(own, word) (own)[word]
 #endif
 
+// The features that a case knows about its keys. Those that every model may have stand in two words, `lobes` and
+// `inputs`; those of a model that a pack declares in `own`, numbered in the model. What begins with `always`,
+// `sometimes` and `case` are literals of the case; the others are the key of the geometry at hand. The functions are
+// written so that SPIRV-Tools folds every decided bit: a feature that no key of the case has leaves no code, and one
+// that every key has leaves no branch.
 struct Features {
     uint alwaysLobes;
     uint alwaysInputs;
     uint sometimesLobes;
     uint sometimesInputs;
     uint caseModel;  // interop/models.h
-    OwnWords alwaysOwn;
-    OwnWords sometimesOwn;
+    GLINT_OWN_TYPE alwaysOwn;
+    GLINT_OWN_TYPE sometimesOwn;
     uint lobes;
     uint inputs;
     uint model;
-    OwnWords own;
+    GLINT_OWN_TYPE own;
 };
 
 // The members of Features that are the key of a geometry.
