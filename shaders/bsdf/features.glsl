@@ -3,26 +3,26 @@
 #include "interop/models.h"
 
 // The own features of a model, in as many words as some model of the package needs.
-#if GLINT_OWN_WORDS == 1
-#define GLINT_OWN_TYPE uint
-#define GLINT_OWN(a, b, c, d) (a)
-#define GLINT_OWN_OF(words) (words).x
-#define GLINT_OWN_WORD(own, word) (own)
-#elif GLINT_OWN_WORDS == 2
-#define GLINT_OWN_TYPE uvec2
-#define GLINT_OWN(a, b, c, d) uvec2(a, b)
-#define GLINT_OWN_OF(words) (words).xy
+#if GLINT_OWN_WORDS == 4
+#define GLINT_OWN_TYPE uvec4
+#define GLINT_OWN(a, b, c, d) uvec4(a, b, c, d)
+#define GLINT_OWN_OF(words) (words)
 #define GLINT_OWN_WORD(own, word) (own)[word]
 #elif GLINT_OWN_WORDS == 3
 #define GLINT_OWN_TYPE uvec3
 #define GLINT_OWN(a, b, c, d) uvec3(a, b, c)
 #define GLINT_OWN_OF(words) (words).xyz
 #define GLINT_OWN_WORD(own, word) (own)[word]
-#else
-#define GLINT_OWN_TYPE uvec4
-#define GLINT_OWN(a, b, c, d) uvec4(a, b, c, d)
-#define GLINT_OWN_OF(words) (words)
+#elif GLINT_OWN_WORDS == 2
+#define GLINT_OWN_TYPE uvec2
+#define GLINT_OWN(a, b, c, d) uvec2(a, b)
+#define GLINT_OWN_OF(words) (words).xy
 #define GLINT_OWN_WORD(own, word) (own)[word]
+#else
+#define GLINT_OWN_TYPE uint
+#define GLINT_OWN(a, b, c, d) (a)
+#define GLINT_OWN_OF(words) (words).x
+#define GLINT_OWN_WORD(own, word) (own)
 #endif
 
 // The features that a case knows about its keys. Those that every model may have stand in two words, `lobes` and
