@@ -341,7 +341,8 @@ TEST(Models, OneInHlslGivesThePictureOfGlsl) {
         gltf::Scene scene = sceneWithCamera();
         addQuad(scene, material, {-3, -1, -6}, {6, 0, 0}, {0, 4, 0});
         addDirectionalLight(scene, {0.3F, -0.8F, -0.52F}, 1.5F);
-        return LoadedScene(scene, {}).render(package::kStrategyUber, defaultSetup(scene, 16, 16));
+        return LoadedScene(scene, compiler::CompileSettings{})
+            .render(package::kStrategyUber, defaultSetup(scene, 16, 16));
     };
     const LinearImage inHlsl = draw();
     EXPECT_GT(meanOf(inHlsl), 0.05);
@@ -351,18 +352,20 @@ TEST(Models, OneInHlslGivesThePictureOfGlsl) {
                                 "vec3 chalkEvaluate(Chalk model, vec3 view, vec3 l) {\n"
                                 "    return model.color * (l.z / 3.14159265);\n}\n"));
     expectSameImage(draw(), inHlsl, "as GLSL");
-    // A model that fills nothing of glTF's base, with so many features of its own that shaders need several
-    // words.
-    void writeZinc(const std::filesystem::path& folder, int features) {
-        std::string declared;
-        for (int i = 0; i < features; ++i) {
-            const std::string name = "alloy" + std::to_string(i);
-            declared += (i == 0 ? "" : ",\n") +
-                        ("{\"name\": \"" + name + "\", \"gltf\": \"" + name +
-                         "\", \"neutral\": [{\"when\": \"not has(zinc) or zincAlloy != " + std::to_string(i) +
-                         "\", \"because\": \"it is another alloy\"}]}");
-        }
-        ASSERT_TRUE(base::writeFile(folder / "zinc.json", R"({
+}
+
+// A model that fills nothing of glTF's base, with so many features of its own that shaders need several
+// words.
+void writeZinc(const std::filesystem::path& folder, int features) {
+    std::string declared;
+    for (int i = 0; i < features; ++i) {
+        const std::string name = "alloy" + std::to_string(i);
+        declared += (i == 0 ? "" : ",\n") +
+                    ("{\"name\": \"" + name + "\", \"gltf\": \"" + name +
+                     "\", \"neutral\": [{\"when\": \"not has(zinc) or zincAlloy != " + std::to_string(i) +
+                     "\", \"because\": \"it is another alloy\"}]}");
+    }
+    ASSERT_TRUE(base::writeFile(folder / "zinc.json", R"({
         "name": "zinc", "extension": "EXT_zinc", "stage": "base",
         "replaces": {"object": "pbrMetallicRoughness"},
         "glsl": {"surface": "zinc_surface.glsl", "bsdf": "zinc_surface.glsl", "model": "zinc.glsl"},
@@ -371,7 +374,7 @@ TEST(Models, OneInHlslGivesThePictureOfGlsl) {
                        {"name": "zincShare", "type": "float", "default": 1}],
         "features": [)" + declared + R"(],
         "effects": [{"does": "scatters", "when": "zincColor != 0"}]})"));
-        ASSERT_TRUE(base::writeFile(folder / "zinc.glsl", R"(#include "bsdf/model.glsl"
+    ASSERT_TRUE(base::writeFile(folder / "zinc.glsl", R"(#include "bsdf/model.glsl"
 struct Zinc {
     vec3 color;
 };
@@ -380,8 +383,8 @@ vec3 zincEvaluate(Zinc model, vec3 view, vec3 l) {
     return model.color * (kInversePi * max(l.z, 0.0));
 }
 )"));
-        const std::string last = std::to_string(features - 1);
-        ASSERT_TRUE(base::writeFile(folder / "zinc_surface.glsl", R"(#include "hit/surface_values.glsl"
+    const std::string last = std::to_string(features - 1);
+    ASSERT_TRUE(base::writeFile(folder / "zinc_surface.glsl", R"(#include "hit/surface_values.glsl"
 void zincSurface(Hit hit, Features features, inout SurfaceValues values) {
     values.color = vec4(GLINT_MATERIAL_ZINC_COLOR(hit) * GLINT_MATERIAL_ZINC_SHARE(hit), 1.0);
     if (GLINT_HAS_ALLOY_)" + last + R"((features)) {
@@ -395,117 +398,117 @@ void zincBsdf(Hit hit, Features features, inout SurfaceValues values, inout Surf
     surface.bsdf.layers.zinc = Zinc(values.color.rgb);
 }
 )"));
-    }
+}
 
-    // Squares side by side. Each shows the same alone, in a package whose records have its own fields, as
-    // beside materials of other models, whose fields lie in the same place.
-    TEST(Models, ShowTheSameAloneAndAmongOthers) {
-        constexpr int kFeatures = 100;
-        const test::TemporaryFolder folder;
-        writeZinc(folder.path(), kFeatures);
-        const materials::MaterialModel& model = *must(materials::loadMaterialModel(
-            std::vector<std::string>{folder.path().string(), GLINT_SOURCE_DIR "/examples/materials/models"}));
-        std::vector<materials::Material> list;
-        const auto add = [&](const char* extension) -> materials::Material& {
-            list.emplace_back(model);
-            if (extension != nullptr) {
-                list.back().give(extension);
+// Squares side by side. Each shows the same alone, in a package whose records have its own fields, as
+// beside materials of other models, whose fields lie in the same place.
+TEST(Models, ShowTheSameAloneAndAmongOthers) {
+    constexpr int kFeatures = 100;
+    const test::TemporaryFolder folder;
+    writeZinc(folder.path(), kFeatures);
+    const materials::MaterialModel& model = *must(materials::loadMaterialModel(
+        std::vector<std::string>{folder.path().string(), GLINT_SOURCE_DIR "/examples/materials/models"}));
+    std::vector<materials::Material> list;
+    const auto add = [&](const char* extension) -> materials::Material& {
+        list.emplace_back(model);
+        if (extension != nullptr) {
+            list.back().give(extension);
+        }
+        return list.back();
+    };
+    add("EXT_zinc");
+    add("EXT_zinc")["zincAlloy"] = static_cast<float>(kFeatures - 1);
+    add("EXT_zinc")["zincAlloy"] = 1.0F;
+    materials::Material& lamp = add("EXT_zinc");
+    lamp["emissiveFactor"] = {0.5F, 0.25F, 0.125F};
+    lamp["emissiveStrength"] = 2.0F;
+    materials::Material& masked = add("EXT_zinc");
+    masked.alphaMode = materials::AlphaMode::Mask;
+    masked["alphaCutoff"] = 0.75F;
+    materials::Material& hole = add("EXAMPLE_materials_toon");
+    hole.alphaMode = materials::AlphaMode::Mask;
+    hole["toonColor"] = {0.6F, 0.4F, 0.2F, 0.5F};
+    hole["alphaCutoff"] = 0.75F;
+    materials::Material& coated = add("EXAMPLE_materials_blinn_phong");
+    coated["blinnSpecular"] = {0.1F, 0.2F, 0.3F};
+    coated["clearcoatFactor"] = 0.5F;
+    add("EXAMPLE_materials_toon")["toonBands"] = 5.0F;
+    materials::Material& gltf = add(nullptr);
+    gltf["emissiveFactor"] = {0.1F, 0.2F, 0.3F};
+    const auto count = static_cast<int>(list.size());
+    const auto sceneOf = [&](int only) {
+        gltf::Scene scene = sceneWithCamera();
+        for (int i = 0; i < count; ++i) {
+            if (only < 0 || only == i) {
+                const float x = -35.5F + 8.0F * static_cast<float>(i);
+                addQuad(scene, list[static_cast<std::size_t>(i)], {x, -1, -4}, {7, 0, 0}, {0, 2, 0});
             }
-            return list.back();
+        }
+        addDirectionalLight(scene, {0.3F, -0.2F, -0.9F}, 2.0F);
+        return scene;
+    };
+    for (const auto& [merge, strategy] :
+         {std::pair{compiler::MergePolicy::None, package::kStrategyVisibility},
+          {compiler::MergePolicy::All, package::kStrategyUber}}) {
+        compiler::CompileSettings settings;
+        settings.plan.merge = merge;
+        settings.plan.keys.alpha = package::AlphaPolicy::Tested;
+        settings.strategies = strategy;
+        settings.effects = {false, compiler::builtinEffects({"shadow"})};
+        const auto rendered = [&](int only) {
+            const gltf::Scene scene = sceneOf(only);
+            const LoadedScene loaded(scene, settings);
+            RenderSetup setup = defaultSetup(scene, 90, 9);
+            setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+            return loaded.render(strategy, setup);
         };
-        add("EXT_zinc");
-        add("EXT_zinc")["zincAlloy"] = static_cast<float>(kFeatures - 1);
-        add("EXT_zinc")["zincAlloy"] = 1.0F;
-        materials::Material& lamp = add("EXT_zinc");
-        lamp["emissiveFactor"] = {0.5F, 0.25F, 0.125F};
-        lamp["emissiveStrength"] = 2.0F;
-        materials::Material& masked = add("EXT_zinc");
-        masked.alphaMode = materials::AlphaMode::Mask;
-        masked["alphaCutoff"] = 0.75F;
-        materials::Material& hole = add("EXAMPLE_materials_toon");
-        hole.alphaMode = materials::AlphaMode::Mask;
-        hole["toonColor"] = {0.6F, 0.4F, 0.2F, 0.5F};
-        hole["alphaCutoff"] = 0.75F;
-        materials::Material& coated = add("EXAMPLE_materials_blinn_phong");
-        coated["blinnSpecular"] = {0.1F, 0.2F, 0.3F};
-        coated["clearcoatFactor"] = 0.5F;
-        add("EXAMPLE_materials_toon")["toonBands"] = 5.0F;
-        materials::Material& gltf = add(nullptr);
-        gltf["emissiveFactor"] = {0.1F, 0.2F, 0.3F};
-        const auto count = static_cast<int>(list.size());
-        const auto sceneOf = [&](int only) {
-            gltf::Scene scene = sceneWithCamera();
-            for (int i = 0; i < count; ++i) {
-                if (only < 0 || only == i) {
-                    const float x = -35.5F + 8.0F * static_cast<float>(i);
-                    addQuad(scene, list[static_cast<std::size_t>(i)], {x, -1, -4}, {7, 0, 0}, {0, 2, 0});
+        const LinearImage all = rendered(-1);
+        for (int i = 0; i < count; ++i) {
+            const LinearImage alone = rendered(i);
+            int shown = 0;
+            for (std::uint32_t x = 0; x < all.width; ++x) {
+                const Pixel one = at(alone, x, 4);
+                if (one[0] + one[1] + one[2] > 0.0F) {
+                    ++shown;
+                    EXPECT_EQ(one, at(all, x, 4)) << "material " << i << ", column " << x;
                 }
             }
-            addDirectionalLight(scene, {0.3F, -0.2F, -0.9F}, 2.0F);
-            return scene;
-        };
-        for (const auto& [merge, strategy] :
-             {std::pair{compiler::MergePolicy::None, package::kStrategyVisibility},
-              {compiler::MergePolicy::All, package::kStrategyUber}}) {
-            compiler::CompileSettings settings;
-            settings.plan.merge = merge;
-            settings.plan.keys.alpha = package::AlphaPolicy::Tested;
-            settings.strategies = strategy;
-            settings.effects = {false, compiler::builtinEffects({"shadow"})};
-            const auto rendered = [&](int only) {
-                const gltf::Scene scene = sceneOf(only);
-                const LoadedScene loaded(scene, settings);
-                RenderSetup setup = defaultSetup(scene, 90, 9);
-                setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-                return loaded.render(strategy, setup);
-            };
-            const LinearImage all = rendered(-1);
-            for (int i = 0; i < count; ++i) {
-                const LinearImage alone = rendered(i);
-                int shown = 0;
-                for (std::uint32_t x = 0; x < all.width; ++x) {
-                    const Pixel one = at(alone, x, 4);
-                    if (one[0] + one[1] + one[2] > 0.0F) {
-                        ++shown;
-                        EXPECT_EQ(one, at(all, x, 4)) << "material " << i << ", column " << x;
-                    }
-                }
-                EXPECT_EQ(shown > 0, i != 5) << "material " << i;  // the hole
-            }
+            EXPECT_EQ(shown > 0, i != 5) << "material " << i;  // the hole
         }
     }
+}
 
-    // A material has one model: the first that it names. That leaves out what changes glTF's base, and keeps
-    // layers.
-    TEST(Models, LeaveOutWhatChangesTheBase) {
-        materials::Material material(models());
-        material.give("EXAMPLE_materials_toon");
-        material.give("EXAMPLE_materials_blinn_phong");
-        material.give("KHR_materials_clearcoat");
-        material.give("KHR_materials_transmission");
-        material.give("KHR_materials_anisotropy");
-        material["metallicFactor"] = 0.5F;
-        material["clearcoatFactor"] = 1.0F;
-        material["transmissionFactor"] = 1.0F;
-        material["anisotropyStrength"] = 1.0F;
-        const materials::FeatureMask key = compiler::makeKey(material, {}, {});
-        for (const char* const present : {"blinnPhong", "clearcoat"}) {
-            EXPECT_NE(key & models().mask(present), 0U) << present;
-        }
-        for (const char* const absent : {"toon", "transmission", "anisotropy", "partialMetal"}) {
-            EXPECT_EQ(key & models().mask(absent), 0U) << absent;
-        }
-        const auto reads = [&](const char* object) { return material.reads(models().findObject(object)); };
-        EXPECT_TRUE(reads("EXAMPLE_materials_blinn_phong"));
-        EXPECT_FALSE(reads("EXAMPLE_materials_toon"));
-        EXPECT_FALSE(reads("pbrMetallicRoughness"));
-        // Glint's own come first, in the key and in what is read.
-        material.give("KHR_materials_pbrSpecularGlossiness");
-        EXPECT_EQ(compiler::makeKey(material, {}, {}) & models().ownModels, 0U);
-        EXPECT_TRUE(reads("KHR_materials_pbrSpecularGlossiness"));
-        EXPECT_FALSE(reads("EXAMPLE_materials_blinn_phong"));
-        material.give("KHR_materials_unlit");
-        EXPECT_EQ(compiler::makeKey(material, {}, {}) & models().ownModels, 0U);
+// A material has one model: the first that it names. That leaves out what changes glTF's base, and keeps
+// layers.
+TEST(Models, LeaveOutWhatChangesTheBase) {
+    materials::Material material(models());
+    material.give("EXAMPLE_materials_toon");
+    material.give("EXAMPLE_materials_blinn_phong");
+    material.give("KHR_materials_clearcoat");
+    material.give("KHR_materials_transmission");
+    material.give("KHR_materials_anisotropy");
+    material["metallicFactor"] = 0.5F;
+    material["clearcoatFactor"] = 1.0F;
+    material["transmissionFactor"] = 1.0F;
+    material["anisotropyStrength"] = 1.0F;
+    const materials::FeatureMask key = compiler::makeKey(material, {}, {});
+    for (const char* const present : {"blinnPhong", "clearcoat"}) {
+        EXPECT_NE(key & models().mask(present), 0U) << present;
     }
+    for (const char* const absent : {"toon", "transmission", "anisotropy", "partialMetal"}) {
+        EXPECT_EQ(key & models().mask(absent), 0U) << absent;
+    }
+    const auto reads = [&](const char* object) { return material.reads(models().findObject(object)); };
+    EXPECT_TRUE(reads("EXAMPLE_materials_blinn_phong"));
+    EXPECT_FALSE(reads("EXAMPLE_materials_toon"));
+    EXPECT_FALSE(reads("pbrMetallicRoughness"));
+    // Glint's own come first, in the key and in what is read.
+    material.give("KHR_materials_pbrSpecularGlossiness");
+    EXPECT_EQ(compiler::makeKey(material, {}, {}) & models().ownModels, 0U);
+    EXPECT_TRUE(reads("KHR_materials_pbrSpecularGlossiness"));
+    EXPECT_FALSE(reads("EXAMPLE_materials_blinn_phong"));
+    material.give("KHR_materials_unlit");
+    EXPECT_EQ(compiler::makeKey(material, {}, {}) & models().ownModels, 0U);
+}
 
 }  // namespace
