@@ -61,8 +61,9 @@ std::string_view wordBefore(std::string_view text, std::size_t at) {
     return text.substr(first, last + 1 - first);
 }
 
-// Gives each declaration of the function that has no body one.
-void giveBody(std::string& glsl, const std::string& function) {
+// Gives each declaration of the function that has no body one. Returns whether there was any.
+bool giveBody(std::string& glsl, const std::string& function) {
+    bool gave = false;
     for (std::size_t at = glsl.find(function); at != std::string::npos; at = glsl.find(function, at + 1)) {
         const std::size_t open = glsl.find_first_not_of(" \t\r\n", at + function.size());
         if (open == std::string::npos || glsl[open] != '(' || (at > 0 && isWord(glsl[at - 1]))) {
@@ -78,7 +79,9 @@ void giveBody(std::string& glsl, const std::string& function) {
             continue;
         }
         glsl.replace(end, 1, type == "void" ? " {}" : fmt::format(" {{ {} unset; return unset; }}", type));
+        gave = true;
     }
+    return gave;
 }
 
 // --- Types ---
@@ -338,10 +341,9 @@ LinkedGlsl takeLibraries(std::string_view glsl) {
         linked.libraries.push_back(std::move(library));
         text.erase(at, end - at);
     }
-    for (const SpirvLibrary& library : linked.libraries) {
-        for (const std::string& function : library.functions) {
-            giveBody(text, function);
-        }
+    for (SpirvLibrary& library : linked.libraries) {
+        std::erase_if(library.functions,
+                      [&](const std::string& function) { return !giveBody(text, function); });
     }
     return linked;
 }

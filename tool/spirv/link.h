@@ -16,12 +16,13 @@ namespace glint::compiler {
 struct SpirvLibrary {
     std::string file;  // for messages
     SpirvWords words;
-    // Names without parameters: those under which the module exports functions, or else OpNames of functions.
+    // Those that the GLSL declares without a body, by their names without parameters: those under which the
+    // module exports functions, or else OpNames of functions.
     std::vector<std::string> functions;
 };
 
-// GLSL without the lines of libraryLine(), in which the functions of the libraries that it declares have
-// bodies, which do not matter.
+// GLSL without the lines of libraryLine(), in which the functions of libraries have bodies, which do not
+// matter.
 struct LinkedGlsl {
     std::string glsl;
     std::vector<SpirvLibrary> libraries;

@@ -33,7 +33,8 @@ constexpr const char* kExported =
 // As glslang leaves a shader that does not call the function.
 constexpr const char* kNamed =
     "OpCapability Shader\nOpMemoryModel Logical GLSL450\nOpEntryPoint GLCompute %main \"main\"\n"
-    "OpExecutionMode %main LocalSize 1 1 1\nOpName %ramp \"ramp(struct-Ramp-f11;f1;\"\n";
+    "OpExecutionMode %main LocalSize 1 1 1\nOpName %main \"main\"\nOpName %ramp "
+    "\"ramp(struct-Ramp-f11;f1;\"\n";
 constexpr const char* kValues =
     "%model = OpFunctionParameter %Ramp\n%x = OpFunctionParameter %float\n%start = OpLabel\n";
 constexpr const char* kPointers =
