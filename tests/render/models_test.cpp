@@ -285,8 +285,8 @@ gltf::Scene celRoom(const materials::MaterialModel& model, int lights, bool bloc
     return scene;
 }
 
-// Two lights of half the strength fall into the tone of one, in first hits and in the mirror. One of the two
-// in shadow takes half of that tone away.
+// Two lights of half the strength give the picture of one, in first hits and in the mirror. One of the two in
+// shadow takes half of their tone away.
 TEST(Models, OneThatShadesAllLightsHasTheToneOfTheirSum) {
     const test::TemporaryFolder folder;
     test::writePrintedFiles("material_features.md", folder.path(),
@@ -294,20 +294,21 @@ TEST(Models, OneThatShadesAllLightsHasTheToneOfTheirSum) {
     const materials::MaterialModel& model =
         *must(materials::loadMaterialModel(std::vector{folder.path().string()}));
     for (const package::Strategy strategy : {package::kStrategyVisibility, package::kStrategyHitShaders}) {
-        const auto draw = [&](int lights, bool blocked) {
+        const auto draw = [&](int lights, bool shadows, bool blocked) {
             const gltf::Scene scene = celRoom(model, lights, blocked);
             compiler::CompileSettings settings;
             settings.strategies = strategy;
-            settings.effects = {false, compiler::builtinEffects({"shadow", "reflection"})};
+            settings.effects = {false, compiler::builtinEffects({shadows ? "shadow" : "reflection"})};
             RenderSetup setup = defaultSetup(scene, 25, 25);
             setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
             return LoadedScene(scene, settings).render(strategy, setup);
         };
-        const LinearImage one = draw(1, false);
-        expectSameImage(draw(2, false), one, "two lights");
+        const LinearImage one = draw(1, false, false);
+        expectSameImage(draw(2, false, false), one, "two lights");
         // 3 cos / π = 0.59, of which the tone is two thirds.
         expectTone(at(one, 8, 6), 2.0 / 3.0);
-        expectTone(at(draw(2, true), 8, 6), 1.0 / 3.0);
+        expectTone(at(draw(2, true, false), 8, 6), 2.0 / 3.0);
+        expectTone(at(draw(2, true, true), 8, 6), 1.0 / 3.0);
     }
 }
 
