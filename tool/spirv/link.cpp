@@ -1,6 +1,5 @@
 #include "spirv/link.h"
 
-#include "spirv/compiler.h"
 #include "spirv/join.h"
 #include "spirv/optimize.h"
 
@@ -12,10 +11,153 @@
 #include <cstdint>
 #include <cstring>
 #include <map>
-#include <optional>
+#include <set>
 #include <utility>
 
 namespace glint::compiler {
+
+namespace {
+
+// The parts of a module, in the order of the specification (2.4).
+struct Parts {
+    SpirvWords capabilities;
+    SpirvWords settings;  // extensions, imports of instructions, memory model, entry points
+    SpirvWords names;
+    SpirvWords decorations;
+    SpirvWords globals;
+    SpirvWords declarations;
+    SpirvWords definitions;
+};
+
+// The treatment of a function.
+enum class Fate { Defined, Declared, Removed };
+
+std::map<std::uint32_t, Fate> fatesOf(std::span<const std::uint32_t> words,
+                                      const std::vector<SpirvFunction>& functions, const LinkNames& names) {
+    std::map<std::uint32_t, Fate> fates;
+    for (const SpirvFunction& function : functions) {
+        const bool imported = std::ranges::find(names.imported, function.name) != names.imported.end();
+        fates[function.id] = imported ? Fate::Declared : Fate::Defined;
+    }
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
+        if (it.opcode == spv::OpEntryPoint && !names.keepsEntryPoint) {
+            fates[it.operands[1]] = Fate::Removed;
+        }
+    }
+    return fates;
+}
+
+// Returns whether the instruction of a function with this fate stays.
+bool stays(Fate fate, std::uint32_t opcode) {
+    return fate == Fate::Defined ||
+           (fate == Fate::Declared && (opcode == spv::OpFunction || opcode == spv::OpFunctionParameter ||
+                                       opcode == spv::OpFunctionEnd));
+}
+
+std::set<std::uint32_t> removedResults(std::span<const std::uint32_t> words,
+                                       const std::map<std::uint32_t, Fate>& fates) {
+    std::set<std::uint32_t> removed;
+    Fate fate = Fate::Defined;
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
+        if (it.opcode == spv::OpFunction) {
+            fate = fates.at(it.operands[1]);
+        }
+        if (!stays(fate, it.opcode)) {
+            removed.insert(it.result);
+        }
+        if (it.opcode == spv::OpFunctionEnd) {
+            fate = Fate::Defined;
+        }
+    }
+    removed.erase(0);
+    return removed;
+}
+
+void addLinkage(SpirvWords& decorations, std::uint32_t function, const std::string& name,
+                spv::LinkageType type) {
+    SpirvWords text(name.size() / 4 + 1);
+    for (std::size_t i = 0; i < name.size(); ++i) {
+        text[i / 4] |= std::uint32_t{static_cast<std::uint8_t>(name[i])} << (8 * (i % 4));
+    }
+    text.push_back(static_cast<std::uint32_t>(type));
+    appendInstruction(decorations, spv::OpDecorate, {function, spv::DecorationLinkageAttributes}, text);
+}
+
+bool isSetting(std::uint32_t opcode) {
+    return opcode == spv::OpExtension || opcode == spv::OpExtInstImport || opcode == spv::OpMemoryModel ||
+           opcode == spv::OpString || opcode == spv::OpSource || opcode == spv::OpSourceExtension ||
+           opcode == spv::OpSourceContinued || opcode == spv::OpModuleProcessed;
+}
+
+Parts splitModule(std::span<const std::uint32_t> words, const std::map<std::uint32_t, Fate>& fates,
+                  bool keepsEntryPoint, bool keepNames) {
+    const std::set<std::uint32_t> removed = removedResults(words, fates);
+    Parts parts;
+    Fate fate = Fate::Defined;
+    bool inFunction = false;
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
+        const std::uint32_t opcode = it.opcode;
+        if (opcode == spv::OpFunction) {
+            inFunction = true;
+            fate = fates.at(it.operands[1]);
+        }
+        if (inFunction) {
+            if (stays(fate, opcode)) {
+                appendWords(fate == Fate::Declared ? parts.declarations : parts.definitions, it.words());
+            }
+            inFunction = opcode != spv::OpFunctionEnd;
+        } else if (opcode == spv::OpCapability) {
+            appendWords(parts.capabilities, it.words());
+        } else if (opcode == spv::OpName || opcode == spv::OpMemberName) {
+            if (keepNames && !removed.contains(it.operands[0])) {
+                appendWords(parts.names, it.words());
+            }
+        } else if (isSetting(opcode)) {
+            appendWords(parts.settings, it.words());
+        } else if (isSpirvDecoration(opcode)) {
+            if (!removed.contains(it.operands[0])) {
+                appendWords(parts.decorations, it.words());
+            }
+        } else if (opcode == spv::OpEntryPoint || opcode == spv::OpExecutionMode ||
+                   opcode == spv::OpExecutionModeId) {
+            if (keepsEntryPoint) {
+                appendWords(parts.settings, it.words());
+            }
+        } else {
+            appendWords(parts.globals, it.words());
+        }
+    }
+    return parts;
+}
+
+}  // namespace
+
+Result<std::vector<std::uint32_t>> makeLinkable(std::span<const std::uint32_t> words, const LinkNames& names,
+                                                const std::string& shader, bool keepNames) {
+    const std::vector<SpirvFunction> functions = findFunctions(words);
+    for (const std::string& name : names.exported) {
+        if (std::ranges::find(functions, name, &SpirvFunction::name) == functions.end()) {
+            return makeError("spirv-linkage", shader, "has no function " + name + " to export",
+                             "its entry point must call every function that it exports");
+        }
+    }
+    Parts parts = splitModule(words, fatesOf(words, functions, names), names.keepsEntryPoint, keepNames);
+    appendInstruction(parts.capabilities, spv::OpCapability, {spv::CapabilityLinkage});
+    for (const SpirvFunction& function : functions) {
+        if (std::ranges::find(names.exported, function.name) != names.exported.end()) {
+            addLinkage(parts.decorations, function.id, function.name, spv::LinkageTypeExport);
+        } else if (std::ranges::find(names.imported, function.name) != names.imported.end()) {
+            addLinkage(parts.decorations, function.id, function.name, spv::LinkageTypeImport);
+        }
+    }
+    SpirvWords module(words.begin(), words.begin() + kSpirvHeaderWords);
+    for (const SpirvWords* const part :
+         {&parts.capabilities, &parts.settings, &parts.names, &parts.decorations, &parts.globals,
+          &parts.declarations, &parts.definitions}) {
+        appendWords(module, *part);
+    }
+    return module;
+}
 
 namespace {
 

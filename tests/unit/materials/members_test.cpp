@@ -65,7 +65,7 @@ public:
         for (const FeatureCode& one : model.code) {
             add(one.name, one.feature, one.surface, one.bsdf, one.layer, one.model, one.diffuse, one.emission,
                 one.coordinates, one.opacity, one.coversEmission, one.isTraced, one.isReciprocal,
-                one.isSampled, one.gains);
+                one.isSampled, one.shadesAll, one.gains);
         }
         for (const Feature& one : model.features) {
             add(one.name, one.shortName, one.bit, one.gltf, one.about, static_cast<int>(one.stage),
