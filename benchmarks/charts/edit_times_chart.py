@@ -51,7 +51,7 @@ def main():
     axes.set_xlabel("instances")
     axes.set_ylabel("ms of the host for an edit and its record()")
     axes.grid(True, which="both", alpha=0.3)
-    axes.legend(fontsize=8)
+    axes.legend(fontsize=8, ncol=2, loc="upper center", bbox_to_anchor=(0.5, -0.16))
     plt.tight_layout()
     plt.savefig(sys.argv[1], dpi=110)
 
