@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <deque>
@@ -79,6 +80,23 @@ Status addFolder(const std::string& folder, std::vector<fs::path>& files) {
     return okStatus();
 }
 
+// Returns the files of a feature's GLSL, stage by stage; those of stages that it lacks are empty.
+std::array<std::string_view, 8> filesOf(const FeatureCode& code) {
+    return {code.surface,  code.bsdf,        code.layer,   code.model,
+            code.emission, code.coordinates, code.opacity, code.diffuse};
+}
+
+bool isOf(const FeatureCode& code, const ModelSource& source) {
+    const auto files = filesOf(code);
+    return std::ranges::find(files, source.name) != files.end();
+}
+
+// Returns "file:line" of a place in a source.
+std::string lineOf(const ModelSource& source, std::size_t place) {
+    const auto end = source.text.begin() + static_cast<std::ptrdiff_t>(place);
+    return fmt::format("{}:{}", source.name, 1 + std::count(source.text.begin(), end, '\n'));
+}
+
 Status checkCode(const MaterialModel& model) {
     const auto isThere = [&](const std::string& name) {
         return std::ranges::find(model.sources, name, &ModelSource::name) != model.sources.end();
@@ -100,9 +118,8 @@ Status checkCode(const MaterialModel& model) {
         if (!code.isOfPack) {
             continue;
         }
-        for (const std::string& file : {code.surface, code.bsdf, code.layer, code.model, code.emission,
-                                        code.coordinates, code.opacity, code.diffuse}) {
-            GLINT_TRY_DO(file.empty() ? okStatus() : check(code.name, file));
+        for (const std::string_view file : filesOf(code)) {
+            GLINT_TRY_DO(file.empty() ? okStatus() : check(code.name, std::string(file)));
         }
     }
     return okStatus();
@@ -124,9 +141,8 @@ Status checkReads(const MaterialModel& model) {
             const std::string asked = "HAS_" + macro.substr(macro.starts_with("GLINT_PACK_") ? 11 : 6);
             std::smatch found;
             if (source.text.find(asked) == std::string::npos && std::regex_search(source.text, found, read)) {
-                const auto line = 1 + std::count(source.text.begin(), found[0].first, '\n');
                 return makeError(
-                    "materials-glsl", fmt::format("{}:{}", source.name, line),
+                    "materials-glsl", lineOf(source, static_cast<std::size_t>(found.position())),
                     fmt::format("reads {}, but the file never asks whether the key has it", constant),
                     fmt::format("read it where GLINT_{}(features) is true", asked));
             }
@@ -135,34 +151,33 @@ Status checkReads(const MaterialModel& model) {
     return okStatus();
 }
 
-// Refuses a read of a value of the replaced base that no parameter of the model fills: records of the model
-// have another value in its place.
+// Refuses a read of a value of the replaced base that no parameter of the model fills, in the model's GLSL:
+// records of the model have another value in its place.
+Status checkValues(const MaterialModel& model, int owner, const ModelSource& source) {
+    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+        const Parameter& parameter = model.parameters[i];
+        if (parameter.feature >= 0 || !parameter.inRecord || model.hasParameter(owner, static_cast<int>(i))) {
+            continue;
+        }
+        const std::size_t found =
+            source.text.find(fmt::format("GLINT_MATERIAL_{}(", fieldMacro(parameter.name)));
+        if (found != std::string::npos) {
+            return makeError("materials-glsl", lineOf(source, found),
+                             fmt::format("reads {}, which the records of {} do not have", parameter.name,
+                                         model.models[static_cast<std::size_t>(owner)].name),
+                             fmt::format("declare a parameter with \"is\": \"{}\"", parameter.name));
+        }
+    }
+    return okStatus();
+}
+
 Status checkValues(const MaterialModel& model) {
     for (const FeatureCode& code : model.code) {
         const int owner =
             code.feature < 0 ? -1 : model.features[static_cast<std::size_t>(code.feature)].model;
         for (const ModelSource& source : model.sources) {
-            const bool isOfCode = source.name == code.surface || source.name == code.bsdf ||
-                                  source.name == code.model || source.name == code.emission ||
-                                  source.name == code.opacity || source.name == code.coordinates;
-            for (std::size_t i = 0; owner >= 0 && isOfCode && i < model.parameters.size(); ++i) {
-                const Parameter& parameter = model.parameters[i];
-                if (parameter.feature >= 0 || !parameter.inRecord ||
-                    model.hasParameter(owner, static_cast<int>(i))) {
-                    continue;
-                }
-                const std::string macro = fmt::format("GLINT_MATERIAL_{}(", fieldMacro(parameter.name));
-                const std::size_t found = source.text.find(macro);
-                if (found != std::string::npos) {
-                    const auto line =
-                        1 + std::count(source.text.begin(),
-                                       source.text.begin() + static_cast<std::ptrdiff_t>(found), '\n');
-                    return makeError(
-                        "materials-glsl", fmt::format("{}:{}", source.name, line),
-                        fmt::format("reads {}, which the records of {} do not have", parameter.name,
-                                    model.models[static_cast<std::size_t>(owner)].name),
-                        fmt::format("declare a parameter with \"is\": \"{}\"", parameter.name));
-                }
+            if (owner >= 0 && isOf(code, source)) {
+                GLINT_TRY_DO(checkValues(model, owner, source));
             }
         }
     }
