@@ -79,7 +79,7 @@ bool isClaimed(const materials::MaterialModel& model, const materials::Parameter
 ProofInputs inputsFor(const compiler::Plan& plan, int feature) {
     ProofInputs inputs;
     for (const materials::Parameter& parameter : plan.model->parameters) {
-        inputs.firstTexel += isClaimed(*plan.model, parameter, feature) ? parameter.channels : 0U;
+        inputs.firstTexel += isClaimed(*plan.model, parameter, feature) ? parameter.numbers : 0;
     }
     const std::size_t slots = materialLayoutOf(plan).textures.size();
     inputs.time = inputs.firstTexel + 4 * static_cast<std::uint32_t>(std::max<std::size_t>(slots, 1));
@@ -101,7 +101,7 @@ std::string claimParameters(const materials::MaterialModel& model, int feature, 
         if (!isClaimed(model, parameter, feature)) {
             continue;
         }
-        const auto channels = static_cast<std::uint32_t>(parameter.channels);
+        const auto channels = static_cast<std::uint32_t>(parameter.numbers);
         // GLSL reads what a parameter of another base fills by that one's name.
         const materials::Parameter& own = inRecord(model, parameter);
         std::string values;
@@ -113,7 +113,7 @@ std::string claimParameters(const materials::MaterialModel& model, int feature, 
             values += fmt::format("{}glintGiven[{}]", channel == 0 ? "" : ", ", next++);
         }
         macros += fmt::format("#undef GLINT_MATERIAL_{0}\n#define GLINT_MATERIAL_{0}(hit) {1}({2})\n",
-                              materials::fieldMacro(own.name), own.type, values);
+                              materials::fieldMacro(own.name), own.type->glsl, values);
     }
     return macros;
 }
@@ -242,6 +242,14 @@ void dropUnread(const Program& program, Claim& claim) {
 Result<FeatureProof> compileFeatureProof(const compiler::Build& build, const materials::FeatureCode& code) {
     const compiler::Plan& plan = build.plan;
     const compiler::CompileSettings& settings = build.settings.compile;
+    for (const materials::Parameter& parameter : plan.model->parameters) {
+        if (isClaimed(*plan.model, parameter, code.feature) && !parameter.isVector()) {
+            return makeError("prove-unsupported", code.declaration,
+                             fmt::format("{} has the type {}; proofs know floats and vectors of them",
+                                         parameter.declared, parameter.typeText()),
+                             "use check-materials without --prove");
+        }
+    }
     GLINT_TRY(auto sources, compiler::makeSourceSet(*build.scenes, plan, settings));
     FeatureProof proof;
     const ProofInputs inputs = inputsFor(plan, code.feature);

@@ -136,7 +136,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const glint::materials::FeatureMask usual = glint::compiler::makeKey(material, primitive, {});
     require((usual & ~all) == 0, "keys have declared features");
     for (const glint::materials::Parameter& parameter : model->parameters) {
-        for (int i = 0; parameter.aliasOf < 0 && i < parameter.channels; ++i) {
+        for (int i = 0; parameter.aliasOf < 0 && i < parameter.numbers; ++i) {
             material.values[static_cast<std::size_t>(parameter.first + i)] = parameter.hold(parameter.high);
         }
     }

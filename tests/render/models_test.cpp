@@ -164,9 +164,9 @@ TEST(Models, ALeafPassesLightFromBehind) {
 TEST(Models, AHighlightIsThatOfDoublePrecision) {
     materials::Material material(models());
     material.give("EXAMPLE_materials_blinn_phong");
-    material["blinnDiffuse"] = {0.0F, 0.0F, 0.0F, 1.0F};
-    material["blinnSpecular"] = {kColor[0], kColor[1], kColor[2]};
-    material["blinnShininess"] = 20.0F;
+    material["blinnPhongDiffuse"] = {0.0F, 0.0F, 0.0F, 1.0F};
+    material["blinnPhongSpecular"] = {kColor[0], kColor[1], kColor[2]};
+    material["blinnPhongShininess"] = 20.0F;
     // Between the view along the normal and the light lies half of its angle.
     const double half = std::cos(0.5 * std::acos(0.8));
     const double scale = 22.0 * 24.0 / (8.0 * (std::exp2(-10.0) + 20.0));
@@ -388,10 +388,10 @@ vec3 zincEvaluate(Zinc model, vec3 view, vec3 l) {
     ASSERT_TRUE(base::writeFile(folder / "zinc_surface.glsl", R"(#include "hit/surface_values.glsl"
 void zincSurface(Hit hit, Features features, inout SurfaceValues values) {
     values.color = vec4(GLINT_MATERIAL_ZINC_COLOR(hit) * GLINT_MATERIAL_ZINC_SHARE(hit), 1.0);
-    if (GLINT_HAS_ALLOY_)" + last + R"((features)) {
+    if (GLINT_HAS_ZINC_ALLOY_)" + last + R"((features)) {
         values.color.rgb = values.color.bgr;
     }
-    if (GLINT_HAS_ALLOY_1(features)) {
+    if (GLINT_HAS_ZINC_ALLOY_1(features)) {
         values.color.rgb *= 0.5;
     }
 }
@@ -431,7 +431,7 @@ TEST(Models, ShowTheSameAloneAndAmongOthers) {
     hole["toonColor"] = {0.6F, 0.4F, 0.2F, 0.5F};
     hole["alphaCutoff"] = 0.75F;
     materials::Material& coated = add("EXAMPLE_materials_blinn_phong");
-    coated["blinnSpecular"] = {0.1F, 0.2F, 0.3F};
+    coated["blinnPhongSpecular"] = {0.1F, 0.2F, 0.3F};
     coated["clearcoatFactor"] = 0.5F;
     add("EXAMPLE_materials_toon")["toonBands"] = 5.0F;
     materials::Material& gltf = add(nullptr);

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <set>
 #include <span>
 #include <string>
@@ -22,11 +21,6 @@ namespace mustache = kainjow::mustache;
 constexpr std::string_view kTemplates[] = {"layers.glsl", "layers_sky.glsl", "layers_traced.glsl",
                                            "material_stages.glsl"};
 constexpr std::string_view kMaskTemplate = "mask_stages.glsl";
-
-std::string typeName(std::string name) {
-    name.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(name.front())));
-    return name;
-}
 
 // The keys that the code runs for: those of the module's cases, or any.
 enum class Asked : std::uint8_t { OfModule, OfAnyKey };
@@ -101,7 +95,7 @@ void addLayers(mustache::data& context, const materials::MaterialModel& model,
         }
         mustache::data entry(mustache::object{
             {"name", layer->name},
-            {"type", typeName(layer->name)},
+            {"type", materials::capitalized(layer->name)},
             {"has", hasMacro(model.features[static_cast<std::size_t>(layer->feature)], Asked::OfModule)},
             {"file", layer->layer},
             {"coversEmission", layer->coversEmission},
@@ -129,7 +123,7 @@ void addLayers(mustache::data& context, const materials::MaterialModel& model,
     for (const materials::FeatureCode* const one : code) {
         if (!one->diffuse.empty()) {
             diffuse.push_back(mustache::object{{"name", one->name},
-                                               {"type", typeName(one->name)},
+                                               {"type", materials::capitalized(one->name)},
                                                {"file", one->diffuse},
                                                {"when", conditionOf(model, used, *one, Asked::OfModule)}});
         }
@@ -140,7 +134,7 @@ void addLayers(mustache::data& context, const materials::MaterialModel& model,
         if (!one->model.empty()) {
             models.push_back(mustache::object{
                 {"name", one->name},
-                {"type", typeName(one->name)},
+                {"type", materials::capitalized(one->name)},
                 {"file", one->model},
                 {"has", hasMacro(model.features[static_cast<std::size_t>(one->feature)], Asked::OfModule)},
                 {"isSampled", mustache::data(one->isSampled)},
@@ -182,7 +176,7 @@ std::vector<const materials::VertexAttribute*> attributesOf(const materials::Mat
 // The channels of a value: "{a}" for each, separated by ", ".
 std::string channelsOf(const materials::VertexAttribute& attribute) {
     std::string text;
-    for (int i = 0; i < attribute.channels; ++i) {
+    for (int i = 0; i < attribute.type->channels; ++i) {
         const float value = attribute.fallback ? (*attribute.fallback)[static_cast<std::size_t>(i)] : 0.0F;
         text += fmt::format("{}{:#.9g}", i == 0 ? "" : ", ", value);
     }
@@ -201,21 +195,21 @@ std::string vertexAttributeCode(const materials::MaterialModel& model, materials
     std::string reads;
     int stride = 0;
     for (const materials::VertexAttribute* const attribute : attributes) {
-        stride += attribute->channels;
+        stride += attribute->type->channels;
     }
     int offset = 0;
     constexpr const char* kChannels[] = {"x", "y", "z", "w"};
     for (const materials::VertexAttribute* const attribute : attributes) {
-        members += fmt::format("    {} {};\n", attribute->type, attribute->name);
-        fallbacks += fmt::format("    values.{} = {}({});\n", attribute->name, attribute->type,
+        members += fmt::format("    {} {};\n", attribute->type->glsl, attribute->name);
+        fallbacks += fmt::format("    values.{} = {}({});\n", attribute->name, attribute->type->glsl,
                                  channelsOf(*attribute));
         reads += fmt::format(
             "    if ({}) {{\n",
             hasFeature(model.features[static_cast<std::size_t>(attribute->feature)], Asked::OfAnyKey));
-        for (int i = 0; i < attribute->channels; ++i) {
+        for (int i = 0; i < attribute->type->channels; ++i) {
             reads += fmt::format("        values.{}{} = vertexAttribute(geometry, corner, weights, {}u);\n",
                                  attribute->name,
-                                 attribute->channels == 1 ? "" : fmt::format(".{}", kChannels[i]), offset++);
+                                 attribute->type->channels == 1 ? "" : fmt::format(".{}", kChannels[i]), offset++);
         }
         reads += "    }\n";
     }

@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <functional>
 #include <interop/scene.h>
@@ -15,7 +14,7 @@ namespace glint::compiler {
 
 namespace {
 
-constexpr std::uint32_t kFloatBytes = 4;
+constexpr std::uint32_t kNumberBytes = materials::kNumberBytes;
 // Frames of features without a texture are those of its coordinates.
 constexpr std::string_view kFrameTexture = "normalTexture";
 
@@ -32,10 +31,7 @@ std::string noteOf(const std::string& unit, const std::string& about) {
 }
 
 std::string textureConstant(std::string_view name) {
-    std::string text = "k";
-    text += static_cast<char>(name[0] - 'a' + 'A');
-    text += name.substr(1);
-    return text;
+    return "k" + materials::capitalized(name);
 }
 
 gpu::TextureRecord transformed(const materials::TextureTransform& transform) {
@@ -59,37 +55,62 @@ double derivedValue(const materials::MaterialFacts& facts, const materials::Deri
 }
 
 // The macros that read a field of a record, and of the record of a hit's material.
-std::string fieldMacros(std::string_view name, std::string_view value) {
+std::string fieldMacros(std::string_view name, bool isArray, std::string_view value) {
     const std::string macro = materials::fieldMacro(name);
+    const std::string_view index = isArray ? ", index" : "";
     return fmt::format(
-        "#define GLINT_RECORD_{0}(record) {1}\n#define GLINT_MATERIAL_{0}(hit) "
-        "GLINT_RECORD_{0}(GLINT_MATERIAL(hit))\n",
-        macro, value);
+        "#define GLINT_RECORD_{0}(record{1}) {2}\n#define GLINT_MATERIAL_{0}(hit{1}) "
+        "GLINT_RECORD_{0}(GLINT_MATERIAL(hit){1})\n",
+        macro, index, value);
 }
 
-std::string literalOf(const std::string& type, std::span<const float> values) {
-    std::string text = type == "float" ? "" : type + "(";
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        text += fmt::format("{}{:#.9g}", i == 0 ? "" : ", ", std::isinf(values[i]) ? 0.0F : values[i]);
+// The constant that stands for a field which no record has.
+std::string constantOf(const materials::ValueType& type, int count, std::span<const double> numbers) {
+    if (count == 0) {
+        return literalOf(type, numbers);
     }
-    return text + (type == "float" ? "" : ")");
+    const auto channels = static_cast<std::size_t>(type.channels);
+    std::string text = fmt::format("{}[{}](", type.glsl, count);
+    for (std::size_t first = 0; first < numbers.size(); first += channels) {
+        text += (first == 0 ? "" : ", ") + literalOf(type, numbers.subspan(first, channels));
+    }
+    return text + ")[index]";
 }
 
 std::uint32_t ownIndex(const MaterialLayout& layout, const RecordField& field) {
-    return (field.offset - layout.ownOffset) / kFloatBytes;
+    return (field.offset - layout.ownOffset) / kNumberBytes;
 }
 
-// The expression that reads a field. Those that only some models have lie over each other, as floats.
+// The expression that reads a field. Fields that only some models have lie over each other, as floats, and
+// matrices are arrays of floats.
 std::string readOf(const MaterialLayout& layout, const RecordField& field) {
-    if (layout.isShared(field)) {
-        return fmt::format("(record).{}", field.name);
+    const bool isArray = field.count > 0;
+    const bool isShared = layout.isShared(field);
+    if (isShared && !field.type->isMatrix()) {
+        return valueOfField(*field.type, fmt::format("(record).{}{}", field.name, isArray ? "[index]" : ""));
     }
-    const std::uint32_t first = ownIndex(layout, field);
-    std::string text = field.channels == 1 ? "" : field.type + "(";
-    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(field.channels); ++i) {
-        text += fmt::format("{}(record).own[{}]", i == 0 ? "" : ", ", first + i);
+    const std::string_view array = isShared ? std::string_view(field.name) : "own";
+    const std::string stride =
+        !isArray ? "" : fmt::format(" + {} * int(index)", field.type->channels);
+    std::vector<std::string> floats;
+    for (int i = 0; i < field.type->channels; ++i) {
+        const std::uint32_t place = (isShared ? 0U : ownIndex(layout, field)) + static_cast<std::uint32_t>(i);
+        floats.push_back(fmt::format("(record).{}[{}{}]", array, place, stride));
     }
-    return text + (field.channels == 1 ? "" : ")");
+    return valueOfFloats(*field.type, floats);
+}
+
+// The type and the name of a member of records.
+std::string memberOf(const RecordField& field, RecordLanguage language) {
+    const bool isScalar = field.type->channels == 1 || field.type->isMatrix();
+    const std::string_view type = language == RecordLanguage::Glsl || field.type->field == "float"
+                                      ? field.type->field
+                                  : field.type->field == "int" ? "std::int32_t"
+                                  : isScalar                    ? "std::uint32_t"
+                                                                : "";
+    const std::uint32_t elements = field.numbers() / (isScalar ? 1U : static_cast<std::uint32_t>(field.type->channels));
+    return fmt::format("{} {}{}", type.empty() ? fmt::format("gpu::{}", field.type->field) : std::string(type), field.name,
+                       field.count > 0 || field.type->isMatrix() ? fmt::format("[{}]", elements) : "");
 }
 
 // Whether a frame may be that of a texture's coordinates though no key reads the texture.
@@ -242,15 +263,20 @@ MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, std::sp
     for (std::size_t i = 0; i < model.parameters.size(); ++i) {
         const materials::Parameter& parameter = model.parameters[i];
         if (parameter.inRecord) {
-            add({parameter.name, parameter.type, noteOf(parameter.unit, parameter.about), parameter.channels,
-                 0, static_cast<int>(i), -1},
+            add({.name = parameter.name,
+                 .type = parameter.type,
+                 .count = parameter.count,
+                 .note = noteOf(parameter.unit, parameter.about),
+                 .parameter = static_cast<int>(i)},
                 needs.ofParameter(static_cast<int>(i)));
         }
     }
     for (std::size_t i = 0; i < model.derived.size(); ++i) {
         const materials::DerivedField& field = model.derived[i];
-        add({field.name, field.type, noteOf(field.unit, field.about), field.count, 0, -1,
-             static_cast<int>(i)},
+        add({.name = field.name,
+             .type = field.type,
+             .note = noteOf(field.unit, field.about),
+             .derived = static_cast<int>(i)},
             needs.ofDerived(field));
     }
     std::vector<std::vector<bool>> usesOfTexture;
@@ -274,20 +300,20 @@ MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, std::sp
                                  [&](std::size_t i) { return std::ranges::count(which[i], true); });
         return order;
     };
-    Overlay floats(uses.size());
+    Overlay numbers(uses.size());
     for (const std::size_t i : byUses(usesOfField)) {
         RecordField& field = layout.fields[i];
-        field.offset = kFloatBytes * static_cast<std::uint32_t>(floats.place(
-                                         usesOfField[i], static_cast<std::size_t>(field.channels)));
+        field.offset =
+            kNumberBytes * static_cast<std::uint32_t>(numbers.place(usesOfField[i], field.numbers()));
         if (layout.isShared(field)) {
-            layout.ownOffset = kFloatBytes * static_cast<std::uint32_t>(floats.end());
+            layout.ownOffset = kNumberBytes * static_cast<std::uint32_t>(numbers.end());
         }
     }
     Overlay slots(uses.size());
     for (const std::size_t i : byUses(usesOfTexture)) {
         layout.textures[i].slot = static_cast<int>(slots.place(usesOfTexture[i], 1));
     }
-    layout.textureOffset = kFloatBytes * static_cast<std::uint32_t>(floats.end());
+    layout.textureOffset = kNumberBytes * static_cast<std::uint32_t>(numbers.end());
     layout.textureCount = static_cast<std::uint32_t>(slots.end());
     layout.bytes =
         layout.textureOffset + layout.textureCount * static_cast<std::uint32_t>(sizeof(gpu::TextureRecord));
@@ -313,19 +339,19 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
         if (!has(field.models, model)) {
             continue;
         }
-        const float* const values =
+        const double* const values =
             field.parameter < 0
                 ? nullptr
                 : &plain.values[static_cast<std::size_t>(
                       layout.model->parameters[static_cast<std::size_t>(field.parameter)].first)];
-        for (int i = 0; i < field.channels; ++i) {
-            const float value =
+        for (std::uint32_t i = 0; i < field.numbers(); ++i) {
+            const double number =
                 values != nullptr
                     ? values[i]
-                    : static_cast<float>(derivedValue(
-                          facts, layout.model->derived[static_cast<std::size_t>(field.derived)], i));
-            std::memcpy(&record[field.offset + kFloatBytes * static_cast<std::size_t>(i)], &value,
-                        sizeof value);
+                    : derivedValue(facts, layout.model->derived[static_cast<std::size_t>(field.derived)],
+                                   static_cast<int>(i));
+            const std::uint32_t word = materials::wordOf(field.type->kind, number);
+            std::memcpy(&record[field.offset + kNumberBytes * std::size_t{i}], &word, sizeof word);
         }
     }
     for (const TextureSlot& row : layout.textures) {
@@ -342,12 +368,16 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
     return record;
 }
 
-std::string recordStruct(const MaterialLayout& layout, std::string_view scope) {
+std::string nameConstant(const materials::Parameter& parameter, std::size_t value) {
+    return "k" + materials::capitalized(parameter.name) + materials::capitalized(parameter.names[value]);
+}
+
+std::string recordStruct(const MaterialLayout& layout, RecordLanguage language) {
     std::string text = "struct MaterialRecord {\n";
     for (const RecordField& field : layout.fields) {
         if (layout.isShared(field)) {
-            text += fmt::format("    {}{} {};{}{}\n", field.channels == 1 ? "" : scope, field.type,
-                                field.name, field.note.empty() ? "" : "  // ", field.note);
+            text += fmt::format("    {};{}{}\n", memberOf(field, language), field.note.empty() ? "" : "  // ",
+                                field.note);
         }
     }
     if (layout.ownFloats() > 0) {
@@ -355,13 +385,14 @@ std::string recordStruct(const MaterialLayout& layout, std::string_view scope) {
                             layout.ownFloats());
         for (const RecordField& field : layout.fields) {
             if (!layout.isShared(field)) {
-                text +=
-                    fmt::format("    //   own[{}]: {} {}\n", ownIndex(layout, field), field.type, field.name);
+                text += fmt::format("    //   own[{}]: {}\n", ownIndex(layout, field),
+                                    memberOf(field, RecordLanguage::Glsl));
             }
         }
     }
     if (layout.textureCount > 0) {
-        text += fmt::format("    {}TextureRecord textures[{}];\n", scope, layout.textureCount);
+        text += fmt::format("    {}TextureRecord textures[{}];\n",
+                            language == RecordLanguage::Cpp ? "gpu::" : "", layout.textureCount);
     }
     return text + "};\n";
 }
@@ -377,7 +408,8 @@ std::string recordDeclarations(const MaterialLayout& layout, const materials::Fe
                                          .bit);
     };
     std::string text =
-        "// The values of a material that the scenes of the package need.\n" + recordStruct(layout, "");
+        "// The values of a material that the scenes of the package need.\n" +
+        recordStruct(layout, RecordLanguage::Glsl);
     text +=
         "layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer MaterialArray { "
         "MaterialRecord "
@@ -396,24 +428,28 @@ std::string recordDeclarations(const MaterialLayout& layout, const materials::Fe
     text += "// The record of the material of a Hit or a SurfacePoint.\n";
     text += "#define GLINT_MATERIAL(hit) hostMaterials().data[(hit).material]\n";
     text += "// The values of a hit's material. No key of the package reads those that are constants here.\n";
-    const auto define = [&](const std::string& name, const std::string& type, int feature,
-                            std::span<const float> fallback) {
+    const auto define = [&](const std::string& name, const std::string& constant, bool isArray) {
         const auto field = std::ranges::find(layout.fields, name, &RecordField::name);
-        if (isNamed(feature)) {
-            text += fieldMacros(
-                name, field != layout.fields.end() ? readOf(layout, *field) : literalOf(type, fallback));
-        }
+        text += fieldMacros(name, isArray, field != layout.fields.end() ? readOf(layout, *field) : constant);
     };
     for (const materials::Parameter& parameter : model.parameters) {
-        if (parameter.inRecord) {
-            define(parameter.name, parameter.type, parameter.feature,
-                   std::span(parameter.fallback).first(static_cast<std::size_t>(parameter.channels)));
+        if (!parameter.inRecord || !isNamed(parameter.feature)) {
+            continue;
         }
+        for (std::size_t i = 0; i < parameter.names.size(); ++i) {
+            text += fmt::format("const uint {} = {}u;\n", nameConstant(parameter, i), i);
+        }
+        define(parameter.name, constantOf(*parameter.type, parameter.count, parameter.fallback),
+               parameter.isArray());
     }
     for (const materials::DerivedField& field : model.derived) {
-        const std::array<float, 4> zero{};
-        define(field.name, field.type, field.feature,
-               std::span(zero).first(static_cast<std::size_t>(field.count)));
+        const std::array<double, 4> zero{};
+        if (isNamed(field.feature)) {
+            define(field.name,
+                   literalOf(*field.type,
+                             std::span(zero).first(static_cast<std::size_t>(field.type->channels))),
+                   false);
+        }
     }
     return text;
 }

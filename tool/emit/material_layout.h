@@ -14,14 +14,21 @@
 namespace glint::compiler {
 
 struct RecordField {
-    std::string name;
-    std::string type;  // in GLSL
-    std::string note;  // unit and meaning, for comments
-    int channels = 1;
+    std::string name;  // the full name of a parameter or derived field
+    const materials::ValueType* type = &materials::kTypes[0];
+    int count = 0;              // elements of an array; 0: a single value
+    std::string note{};         // unit and meaning, for comments
     std::uint32_t offset = 0;   // bytes
     int parameter = -1;         // index into MaterialModel::parameters, or
     int derived = -1;           // into MaterialModel::derived
     std::vector<int> models{};  // whose records have it, as RecordUse::models
+
+    std::uint32_t numbers() const {
+        return static_cast<std::uint32_t>(type->channels * (count > 0 ? count : 1));
+    }
+    std::uint32_t bytes() const {
+        return materials::kNumberBytes * numbers();
+    }
 };
 
 // A texture of records.
@@ -65,11 +72,15 @@ MaterialLayout materialLayoutOf(const Plan& plan);
 std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material,
                                              const MaterialLayout& layout);
 
-// Returns the GLSL of the record: the struct MaterialRecord, a constant for each texture, and for each
-// declared field a macro GLINT_MATERIAL_<FIELD>(hit), which is a constant where no record has the field. Of
-// what belongs to models of packs, it has that of the models of `used`.
+// Returns the GLSL of the record: the struct MaterialRecord, a constant for each texture and each value of an
+// enum, and for each declared field a macro GLINT_MATERIAL_<FIELD>(hit), which is a constant where no record
+// has the field; those of arrays take an index, too. Of what belongs to models of packs, it has that of the
+// models of `used`.
 std::string recordDeclarations(const MaterialLayout& layout, const materials::FeatureMask& used);
-// Returns the struct alone. `scope` stands before the names of vector types: empty in GLSL, "gpu::" in C++.
-std::string recordStruct(const MaterialLayout& layout, std::string_view scope);
+// Returns the struct alone, in GLSL or, with the types of interop/types.h, in C++.
+enum class RecordLanguage : std::uint8_t { Glsl, Cpp };
+std::string recordStruct(const MaterialLayout& layout, RecordLanguage language);
+// Returns the constant of a value of an enum: "kToonEdgeSoft".
+std::string nameConstant(const materials::Parameter& parameter, std::size_t value);
 
 }  // namespace glint::compiler

@@ -7,6 +7,7 @@
 #include "gltf/trusted_textures.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <exception>
@@ -173,7 +174,7 @@ Status addRunTimeValues(const Document& document, Scene& scene) {
         const materials::Material& rest = scene.materials[static_cast<std::size_t>(edited.material)];
         if (scene.animatedMaterials.empty() || scene.animatedMaterials.back().material != edited.material) {
             scene.animatedMaterials.push_back({edited.material, rest, rest, {}});
-            for (const float value : rest.values) {
+            for (const double value : rest.values) {
                 scene.animatedMaterials.back().planned.ranges.push_back({value, value});
             }
         }
@@ -181,17 +182,19 @@ Status addRunTimeValues(const Document& document, Scene& scene) {
         const materials::Parameter& parameter =
             rest.model().parameters[static_cast<std::size_t>(edited.parameter)];
         const materials::ValueInterval& range = edited.range;
-        for (int i = 0; i < parameter.channels; ++i) {
+        for (int i = 0; i < parameter.numbers; ++i) {
             const auto place = static_cast<std::size_t>(parameter.first + i);
             if (rest.values[place] < range.low || rest.values[place] > range.high) {
                 return document.error("material-list", edited.pointer,
-                                      fmt::format("{} is {}, which is not within {} to {}", parameter.name,
+                                      fmt::format("{} is {}, which is not within {} to {}", parameter.declared,
                                                   rest.values[place], range.low, range.high),
                                       "give it a value within the range, or widen the range");
             }
             animated.planned.ranges[place] = range;
         }
-        animated.changes.push_back(fmt::format("{} {:.4g} to {:.4g}", parameter.name, range.low, range.high));
+        animated.edited.push_back(parameter.names.empty()
+                                      ? fmt::format("{} {:.4g} to {:.4g}", parameter.name, range.low, range.high)
+                                      : fmt::format("{} {}", parameter.name, fmt::join(parameter.names, " or ")));
     }
     return okStatus();
 }

@@ -11,14 +11,50 @@
 #include <glint/result.h>
 
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
 #include <vector>
 
 namespace glint::gltf {
+
+// A value of a parameter, in the form that JSON has: a number in the unit of its declaration, true or false,
+// the name of an enum's value, or a list of these: {0.8, 0.5, 0.2}, {{1, 0, 0}, {0, 1, 0}}. A list of one
+// number stands for the number, too.
+class ParameterInput {
+public:
+    using List = std::vector<ParameterInput>;
+
+    ParameterInput() = default;  // an empty list
+    template <typename Number>
+        requires std::is_arithmetic_v<Number>
+    ParameterInput(Number number) {
+        if constexpr (std::same_as<Number, bool>) {
+            value_ = number;
+        } else {
+            value_ = static_cast<double>(number);
+        }
+    }
+    ParameterInput(std::string name) : value_(std::move(name)) {}
+    ParameterInput(const char* name) : value_(std::string(name)) {}
+    ParameterInput(std::initializer_list<ParameterInput> list) : value_(List(list)) {}
+    explicit ParameterInput(List list) : value_(std::move(list)) {}
+    ParameterInput(const std::vector<double>& numbers) : value_(List(numbers.begin(), numbers.end())) {}
+
+    const std::variant<List, double, bool, std::string>& value() const {
+        return value_;
+    }
+
+private:
+    std::variant<List, double, bool, std::string> value_;
+};
 
 struct TextureDescription {
     std::string file{};  // relative to the folder of MaterialSet::path; empty: the program gives the texels
@@ -34,7 +70,8 @@ struct TextureDescription {
 // A parameter that the program may set while the package is in use. No feature is left out for its value.
 struct EditedParameter {
     std::string parameter{};
-    // The least and the greatest value of each of its channels. Without it: the range of its declaration.
+    // The least and the greatest of each of its numbers. Without it: the range of its declaration. A value of
+    // a bool or an enum has none.
     std::optional<std::array<double, 2>> range{};
 };
 
@@ -42,9 +79,7 @@ struct MaterialDescription {
     std::string name{};
     std::string model{};                  // the declaration of its base; empty: "metallicRoughness"
     std::vector<std::string> features{};  // features that it asks for without a value: "unlit"
-    // By parameter: a number for each of its channels, in the unit of its declaration. Others have their
-    // default.
-    std::map<std::string, std::vector<double>> values{};
+    std::map<std::string, ParameterInput> values{};        // by parameter; others have their default
     std::map<std::string, TextureDescription> textures{};  // by texture: "baseColorTexture"
     std::vector<EditedParameter> edited{};
     // The attributes that the vertices of all its surfaces have beside positions, as in glTF. Empty: NORMAL

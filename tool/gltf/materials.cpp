@@ -4,6 +4,7 @@
 #include "gltf/document/validate.h"
 #include "gltf/steps.h"
 #include "gltf/textures.h"
+#include "materials/value_json.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -164,21 +165,24 @@ std::string rangeHint(const materials::Parameter& parameter) {
 void readParameter(const ObjectSource& object, const materials::Parameter& parameter,
                    materials::Material& material) {
     const Json* const json = findBelow(object.json, parameter.place);
-    for (int i = 0; i < parameter.channels; ++i) {
-        float& target = material.values[static_cast<std::size_t>(parameter.first + i)];
-        if (json == nullptr) {
-            // An object that replaces another one has defaults of its own.
-            target = parameter.aliasOf >= 0 ? parameter.fallback[static_cast<std::size_t>(i)] : target;
-            continue;
+    const auto target = material.values.begin() + parameter.first;
+    if (json == nullptr) {
+        // An object that replaces another one has defaults of its own.
+        if (parameter.aliasOf >= 0) {
+            std::ranges::copy(parameter.fallback, target);
         }
-        const double value = (json->is_array() ? (*json)[static_cast<std::size_t>(i)] : *json).get<double>();
-        target = parameter.hold(value);
-        if (!parameter.isValid(value)) {
-            const std::string place =
-                json->is_array() ? fmt::format("{}/{}", parameter.place, i) : parameter.place;
+        return;
+    }
+    std::vector<double> numbers;
+    readValue(parameter, *json, numbers);  // checkDocument() has checked it
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        const double number = numbers[i];
+        target[static_cast<std::ptrdiff_t>(i)] = parameter.hold(number);
+        if (!parameter.isValid(number)) {
             object.document.warn(
-                "material-range", object.pointerTo(place),
-                fmt::format("is {}; {} is used", value, std::clamp(value, parameter.low, parameter.high)),
+                "material-range",
+                object.pointerTo(parameter.place + placeOfNumber(parameter, static_cast<int>(i))),
+                fmt::format("is {}; {} is used", number, std::clamp(number, parameter.low, parameter.high)),
                 rangeHint(parameter));
         }
     }
@@ -223,7 +227,7 @@ void readParameters(Document& document, const Json& json, const std::string& poi
             if (material.reads(static_cast<int>(i))) {
                 const materials::Parameter& parameter =
                     model.parameters[static_cast<std::size_t>(setting.parameter)];
-                material.values[static_cast<std::size_t>(parameter.first)] = setting.value;
+                std::ranges::copy(setting.numbers, material.values.begin() + parameter.first);
             }
         }
     }

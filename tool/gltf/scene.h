@@ -219,15 +219,16 @@ struct SourceFile {
     std::uint64_t hash = 0;  // XXH3, 64 bits
 };
 
-// A material whose values animations change (KHR_animation_pointer). Its features are decided once for all
-// times.
+// A material whose values animations change (KHR_animation_pointer), or a program at run time. Its features are
+// decided once for all of them.
 struct AnimatedMaterial {
     int material = 0;          // index into Scene::materials
     materials::Material rest;  // as the file gives it
     // The same, with the ranges of what varies. A feature is only left out if it is neutral over the whole
     // range.
     materials::Material planned;
-    std::vector<std::string> changes;  // the values that vary, such as "metallicFactor 0 to 1"
+    std::vector<std::string> changes;   // by animations, such as "metallicFactor 0 to 1"
+    std::vector<std::string> edited{};  // that a program may set, in the same form
 };
 
 struct Scene {

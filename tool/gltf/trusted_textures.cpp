@@ -104,7 +104,7 @@ std::optional<std::uint32_t> scaledChannels(const materials::Material& material,
         if (parameter.scaledBy != slot || !material.reads(parameter.object)) {
             continue;
         }
-        for (int i = 0; i < parameter.channels; ++i) {
+        for (int i = 0; i < parameter.numbers; ++i) {
             const int channel = parameter.scaledByChannels[static_cast<std::size_t>(i)];
             if (channel < 0) {
                 return std::nullopt;
@@ -141,13 +141,16 @@ std::optional<Constant> constantOf(const materials::Material& material,
 void fold(materials::Material& material, int slot, const Constant& constant) {
     std::vector<bool> isScaled(material.values.size());
     for (const materials::Parameter& parameter : material.model().parameters) {
-        for (int i = 0; i < parameter.channels; ++i) {
+        if (parameter.scaledBy != slot || !material.reads(parameter.object)) {
+            continue;
+        }
+        for (int i = 0; i < parameter.numbers; ++i) {
             const auto place = static_cast<std::size_t>(parameter.first + i);
             const int channel = parameter.scaledByChannels[static_cast<std::size_t>(i)];
-            if (parameter.scaledBy == slot && material.reads(parameter.object) && channel >= 0 &&
-                !isScaled[place]) {
+            if (channel >= 0 && !isScaled[place]) {
                 // As a device multiplies them.
-                material.values[place] *= static_cast<float>(constant[static_cast<std::size_t>(channel)]);
+                material.values[place] = static_cast<float>(material.values[place]) *
+                                         static_cast<float>(constant[static_cast<std::size_t>(channel)]);
                 isScaled[place] = true;
             }
         }

@@ -1,5 +1,6 @@
 // Collects everything that has a name in declarations: features, parameters, textures, attributes.
 #include "materials/model_builder.h"
+#include "materials/value_json.h"
 
 #include <algorithm>
 #include <cctype>
@@ -37,9 +38,7 @@ int ModelBuilder::addFeature(const Members& members, Feature feature, Light ligh
     feature.macro = (isOfPack_ ? "GLINT_PACK" : "GLINT") + macroCase("_" + feature.name);
     feature.about = members.text("about", "");
     feature.isInDraft = members.flag("draft", false);
-    std::string capital = feature.name;
-    capital[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(capital[0])));
-    feature.shortName = members.text("short", capital);
+    feature.shortName = members.text("short", capitalized(feature.name));
     readNeeds(members, feature);
     if (members.has("cost")) {
         const Members cost(members["cost"], members.at("cost"), Place::Cost);
@@ -92,6 +91,7 @@ void ModelBuilder::checkOwn(const Members& members, const Feature& feature) {
 void ModelBuilder::collect(File& file) {
     isOfPack_ = file.isOfPack;
     base_ = -1;
+    scope_.clear();
     const Members members = membersOf(file);
     const std::string name = newName(members);
     const std::string stageName = members.text("stage");
@@ -108,7 +108,9 @@ void ModelBuilder::collect(File& file) {
         feature.isOfBase = members.flag("ofBase", false);
         checkOwn(members, feature);
         const Light light = choose(kLights, members, "light", members.text("light", "front")).light;
-        base_ = isOfPack_ && stage == Stage::Base ? static_cast<int>(pending_.size()) : -1;
+        const bool isModel = isOfPack_ && stage == Stage::Base;
+        base_ = isModel ? static_cast<int>(pending_.size()) : -1;
+        file.scope = scope_ = isModel ? name : "";
         file.mainFeature = addFeature(members, std::move(feature), light);
     }
     for (const auto& [json, where] : members.list("parameters")) {
@@ -138,20 +140,49 @@ void ModelBuilder::collect(File& file) {
     }
 }
 
-Parameter ModelBuilder::makeParameter(const File& file, const Members& members, const std::string& name,
-                                      int channels) {
-    Parameter parameter;
-    parameter.name = name;
-    parameter.object = file.object;
-    parameter.place = members.text("at", name);
-    parameter.unit = members.text("unit", "");
-    parameter.about = members.text("about", "");
-    parameter.isAngle = parameter.unit == "radians";
-    parameter.channels = channels;
-    parameter.inRecord = members.flag("record", true);
-    parameter.low = -kLargestFloat;
-    parameter.high = kLargestFloat;
+const ValueType& ModelBuilder::vectorType(const Members& members) {
+    const ValueType& type = choose(kTypes, members, "type", members.text("type"));
+    if (!type.isVector()) {
+        failAt(members.at("type"), fmt::format("must be a number or a vector of floats, and not \"{}\"", type.name),
+               "use float, vec2, vec3, color or vec4");
+    }
+    return type;
+}
+
+void ModelBuilder::readType(const Members& members, Parameter& parameter) {
+    parameter.type = &choose(kTypes, members, "type", members.text("type"));
+    const bool isEnum = parameter.type->kind == NumberKind::Name;
+    parameter.names = members.texts("values");
+    if (isEnum == parameter.names.empty()) {
+        failAt(members.has("values") ? members.at("values") : members.where(),
+               isEnum ? "an enum has names: \"values\" must list them" : "lists names, which enums alone have",
+               isEnum ? "write \"values\": [\"soft\", \"hard\"]" : "make the type \"enum\", or leave them out");
+    }
+    if (members.has("count")) {
+        const double count = members.number("count", 0.0);
+        if (!(count >= 1.0 && count <= kMostElements) || count != std::trunc(count)) {
+            failAt(members.at("count"), fmt::format("must be a whole number from 1 to {}", kMostElements));
+        }
+        parameter.count = static_cast<int>(count);
+    }
+    parameter.numbers = parameter.type->channels * std::max(parameter.count, 1);
+    if (parameter.isAngle && !parameter.type->isVector()) {
+        failAt(members.at("unit"), "angles are numbers or vectors of floats");
+    }
+}
+
+void ModelBuilder::readRange(const Members& members, Parameter& parameter) {
+    const NumberKind kind = parameter.type->kind;
+    const double least = leastOf(kind);
+    const double greatest = greatestOf(kind, parameter.names.size());
+    parameter.low = least;
+    parameter.high = greatest;
     if (members.has("range")) {
+        if (kind == NumberKind::Truth || kind == NumberKind::Name) {
+            failAt(members.at("range"), fmt::format("is for numbers, and this is a value of \"{}\"",
+                                                    parameter.type->name),
+                   "leave it out");
+        }
         if (parameter.isAngle) {
             failAt(members.at("range"), "angles are held between half a turn either way, whatever the range",
                    "leave it out");
@@ -161,9 +192,9 @@ Parameter ModelBuilder::makeParameter(const File& file, const Members& members, 
             failAt(members.at("range"), "must be the least and the greatest value; null means no limit");
         }
         parameter.low =
-            range[0].first->is_null() ? -kLargestFloat : Members::toNumber(*range[0].first, range[0].second);
+            range[0].first->is_null() ? least : Members::toNumber(*range[0].first, range[0].second);
         parameter.high =
-            range[1].first->is_null() ? kLargestFloat : Members::toNumber(*range[1].first, range[1].second);
+            range[1].first->is_null() ? greatest : Members::toNumber(*range[1].first, range[1].second);
         if (!(parameter.low <= parameter.high)) {
             failAt(members.at("range"), "the least value is above the greatest");
         }
@@ -178,23 +209,46 @@ Parameter ModelBuilder::makeParameter(const File& file, const Members& members, 
             failAt(members.at("also"), "is within the range, so that it is valid anyway", "leave it out");
         }
     }
+    if (kind == NumberKind::Real) {
+        return;
+    }
+    for (const double end : {parameter.low, parameter.high, parameter.also.value_or(least)}) {
+        if (end != std::trunc(end) || !(end >= least && end <= greatest)) {
+            failAt(members.at("range"), fmt::format("{} is no value of {}", end, parameter.type->name));
+        }
+    }
+}
+
+Parameter ModelBuilder::makeParameter(const File& file, const Members& members, const std::string& name) {
+    Parameter parameter;
+    parameter.name = name;
+    parameter.declared = members.text("name");
+    parameter.object = file.object;
+    parameter.place = members.text("at", parameter.declared);
+    parameter.unit = members.text("unit", "");
+    parameter.about = members.text("about", "");
+    parameter.isAngle = parameter.unit == "radians";
+    parameter.inRecord = members.flag("record", true);
+    readType(members, parameter);
+    readRange(members, parameter);
     readDefault(members, parameter);
     return parameter;
 }
 
 void ModelBuilder::readDefault(const Members& members, Parameter& parameter) {
     const DeclarationJson& fallback = members["default"];
-    const bool isList = fallback.is_array();
-    if (isList ? fallback.size() != static_cast<std::size_t>(parameter.channels) : parameter.channels != 1) {
-        failAt(members.at("default"), fmt::format("must have {} numbers", parameter.channels));
+    parameter.fallback.clear();
+    if (parameter.isVector() && parameter.numbers == 1 && fallback.is_string()) {
+        parameter.fallback.push_back(Members::toNumber(fallback, members.at("default")));  // "infinity"
+    } else if (const auto fault = readValue(parameter, fallback, parameter.fallback)) {
+        failAt(members.at("default") + fault->place, fault->message);
     }
-    for (int i = 0; i < parameter.channels; ++i) {
-        const DeclarationJson& value = isList ? fallback[static_cast<std::size_t>(i)] : fallback;
-        const double number = Members::toNumber(value, members.at("default"));
-        if (number != parameter.also && !(number >= parameter.low && number <= parameter.high)) {
-            failAt(members.at("default"), "is outside of the range");
+    for (int i = 0; i < parameter.numbers; ++i) {
+        double& number = parameter.fallback[static_cast<std::size_t>(i)];
+        if (!parameter.isValid(number)) {
+            failAt(members.at("default") + placeOfNumber(parameter, i), "is outside of the range");
         }
-        parameter.fallback[static_cast<std::size_t>(i)] = static_cast<float>(number);
+        number = parameter.type->kind == NumberKind::Real ? static_cast<float>(number) : number;
     }
 }
 
@@ -205,14 +259,18 @@ void ModelBuilder::addParameter(const File& file, const Members& members) {
     if (file.json["name"] != name) {
         name = newName(members);
     }
-    refuseWordOfGlsl(members);
-    const auto& type = choose(kTypes, members, "type", members.text("type"));
-    Parameter parameter = makeParameter(file, members, name, type.channels);
-    parameter.type = type.glsl;
+    refuseWordOfGlsl(members, name);
+    Parameter parameter = makeParameter(file, members, name);
     parameter.first = model_.valueCount;
-    model_.valueCount += parameter.channels;
+    model_.valueCount += parameter.numbers;
     if (model_.findParameter(name) >= 0) {
         failAt(members.at("name"), fmt::format("\"{}\" is declared twice", name));
+    }
+    for (std::size_t i = 0; i < parameter.names.size(); ++i) {
+        // GLSL has a constant of each.
+        const std::string where = fmt::format("{}/{}", members.at("values"), i);
+        checkName(parameter.names[i], where);
+        claimName(name + capitalized(parameter.names[i]), where);
     }
     model_.parameters.push_back(std::move(parameter));
 }
@@ -220,12 +278,10 @@ void ModelBuilder::addParameter(const File& file, const Members& members) {
 void ModelBuilder::addAttribute(const File& file, const Members& members) {
     VertexAttribute attribute;
     attribute.name = newName(members);
-    refuseWordOfGlsl(members);
+    refuseWordOfGlsl(members, attribute.name);
     attribute.gltf = members.text("at");
     attribute.about = members.text("about", "");
-    const auto& type = choose(kTypes, members, "type", members.text("type"));
-    attribute.type = type.glsl;
-    attribute.channels = type.channels;
+    attribute.type = &vectorType(members);
     attribute.feature = file.mainFeature;
     // Attributes of an application begin with an underscore: glTF 2.0, section 3.7.2.1.
     if (attribute.gltf.size() < 2 || attribute.gltf.front() != '_') {
@@ -236,17 +292,19 @@ void ModelBuilder::addAttribute(const File& file, const Members& members) {
     }
     if (members.has("default")) {
         Parameter value;
-        value.channels = attribute.channels;
+        value.type = attribute.type;
+        value.numbers = attribute.type->channels;
         value.low = -kLargestFloat;
         value.high = kLargestFloat;
         readDefault(members, value);
-        attribute.fallback = value.fallback;
+        std::ranges::transform(value.fallback, attribute.fallback.emplace().begin(),
+                               [](double number) { return static_cast<float>(number); });
     }
     for (const VertexAttribute& other : model_.attributes) {
-        if (other.gltf == attribute.gltf && other.channels != attribute.channels) {
+        if (other.gltf == attribute.gltf && other.type->channels != attribute.type->channels) {
             failAt(members.at("type"),
                    fmt::format("{} has {} channels here and {} for \"{}\"", attribute.gltf,
-                               attribute.channels, other.channels, other.name));
+                               attribute.type->channels, other.type->channels, other.name));
         }
     }
     if (model_.attributes.size() == kMostVertexAttributes) {
@@ -313,11 +371,11 @@ TextureReads ModelBuilder::readsOfTexture(const Members& members) {
 void ModelBuilder::addTexture(const File& file, const Members& members) {
     MaterialTexture texture;
     texture.name = newName(members);
-    texture.places.push_back(
-        {file.object, texture.name, members.flag("color", false), readsOfTexture(members)});
+    const std::string declared = members.text("name");
+    texture.places.push_back({file.object, declared, members.flag("color", false), readsOfTexture(members)});
     Feature feature;
     feature.name = texture.name;
-    feature.gltf = gltfPlace(file.object, texture.name);
+    feature.gltf = gltfPlace(file.object, declared);
     feature.texture = static_cast<int>(model_.textures.size());
     if (members.has("coordinates")) {
         if (members.text("coordinates") != "own") {
@@ -330,6 +388,7 @@ void ModelBuilder::addTexture(const File& file, const Members& members) {
 }
 
 void ModelBuilder::collectAliases(const File& file) {
+    scope_ = file.scope;
     const Members members = membersOf(file);
     for (const auto& [json, where] : members.list("parameters")) {
         const Members alias(*json, where, Place::Parameter);
@@ -337,15 +396,16 @@ void ModelBuilder::collectAliases(const File& file) {
             continue;
         }
         const std::string name = newName(alias);
-        const int target = model_.findParameter(alias.text("is"));
+        const int target = named(&MaterialModel::findParameter, alias.text("is"));
         if (target < 0) {
             failAt(alias.at("is"), fmt::format("there is no parameter \"{}\"", alias.text("is")));
         }
         const Parameter& original = model_.parameters[static_cast<std::size_t>(target)];
         Parameter parameter = original;
         parameter.name = name;
+        parameter.declared = alias.text("name");
         parameter.object = file.object;
-        parameter.place = alias.text("at", name);
+        parameter.place = alias.text("at", parameter.declared);
         parameter.aliasOf = target;
         parameter.inRecord = false;
         readDefault(alias, parameter);
@@ -354,15 +414,16 @@ void ModelBuilder::collectAliases(const File& file) {
     for (const auto& [json, where] : members.list("textures")) {
         const Members alias(*json, where, Place::Texture);
         if (alias.has("is")) {
-            const std::string name = newName(alias);
+            newName(alias);
             textureNamed(alias, "is")
-                .places.push_back({file.object, name, alias.flag("color", false), readsOfTexture(alias)});
+                .places.push_back(
+                    {file.object, alias.text("name"), alias.flag("color", false), readsOfTexture(alias)});
         }
     }
 }
 
 MaterialTexture& ModelBuilder::textureNamed(const Members& members, std::string_view member) {
-    const int found = model_.findTexture(members.text(member));
+    const int found = named(&MaterialModel::findTexture, members.text(member));
     if (found < 0) {
         failAt(members.at(member), fmt::format("there is no texture \"{}\"", members.text(member)));
     }

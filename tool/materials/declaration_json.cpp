@@ -17,6 +17,7 @@ constexpr std::string_view kGlslWords =
     "static "
     "extern external interface long short half fixed unsigned superp input output filter sizeof cast "
     "namespace using";
+constexpr std::string_view kMembersOfRecords = "own textures";
 constexpr std::string_view kGlslTypes[] = {"vec", "ivec", "uvec", "bvec", "dvec", "mat", "dmat"};
 
 bool isWordOfGlsl(std::string_view name) {
@@ -70,10 +71,12 @@ Members::Members(const DeclarationJson& json, std::string where, Place place)
     }
 }
 
-void refuseWordOfGlsl(const Members& members) {
-    const std::string name = members.text("name");
+void refuseWordOfGlsl(const Members& members, const std::string& name) {
     if (isWordOfGlsl(name)) {
         failAt(members.at("name"), fmt::format("\"{}\" is a word of GLSL, where the name stands", name));
+    }
+    if (hasWord(kMembersOfRecords, name)) {
+        failAt(members.at("name"), fmt::format("\"{}\" is a member that all records have", name));
     }
 }
 

@@ -136,8 +136,8 @@ private:
     std::string where_;
 };
 
-// Refuses a name that can't be that of a member in GLSL.
-void refuseWordOfGlsl(const Members& members);
+// Refuses the object whose name in GLSL, where it is that of a member, would be `name`.
+void refuseWordOfGlsl(const Members& members, const std::string& name);
 
 // A name that an #include may have, and that stays in its folder.
 inline bool isDeclaredFile(std::string_view name, std::string_view extension) {

@@ -68,6 +68,13 @@ template <Json (*Element)()>
 Json oneOrList() {
     return {{"oneOf", {Element(), list<Element, 1>()}}};
 }
+// A value, or lists of values of that depth.
+Json oneOrNested(Json one, int depth) {
+    return depth == 0
+               ? one
+               : Json{{"oneOf",
+                       {one, {{"type", "array"}, {"items", oneOrNested(one, depth - 1)}, {"minItems", 1}}}}};
+}
 template <Json (*Element)()>
 Json byName() {
     return {{"type", "object"}, {"additionalProperties", Element()}};
@@ -75,6 +82,23 @@ Json byName() {
 template <Place Of>
 Json object() {
     return schemaOfPlace(Of);
+}
+// A value of any type; the names of enums are texts, and so is "infinity".
+Json plainValue() {
+    return {{"type", {"number", "boolean", "string"}}};
+}
+Json value() {
+    return oneOrNested(plainValue(), 2);
+}
+Json elements() {
+    return {{"type", "integer"}, {"minimum", 1}, {"maximum", kMostElements}};
+}
+Json vectorType() {
+    Json names = Json::array();
+    for (const ValueType& type : kVectorTypes) {
+        names.push_back(type.name);
+    }
+    return {{"enum", std::move(names)}};
 }
 template <const auto& Rows>
 Json nameOf() {
@@ -95,7 +119,7 @@ constexpr auto file = matching<kFilePattern>;
 constexpr MemberRow kRows[] = {
     {"$schema", at({File}), text, "This schema, for editors."},
     {"name", at({File, Parameter, Texture, Attribute, Derived, Feature}), name,
-     "The name, unique in all declarations.", at({File, Parameter, Texture, Attribute, Derived, Feature})},
+     "The name, unique in all declarations; in a model of a pack, unique in the model.", at({File, Parameter, Texture, Attribute, Derived, Feature})},
     {"about", at({File, Parameter, Texture, Attribute, Derived, Feature}), text, "One sentence about it."},
     {"extension", at({File}), text, "The material extension that holds the parameters and textures."},
     {"object", at({File, Replaces}), text, "The object of the core that holds them.", at({Replaces})},
@@ -132,7 +156,7 @@ constexpr MemberRow kRows[] = {
     {"fetches", at({Cost}), positive, "Texture fetches.", at({Cost})},
     {"when", at({Reason, Effect}), text, "A condition.", at({Reason, Effect})},
     {"because", at({Reason, Excludes}), text, "The condition in words.", at({Reason, Excludes})},
-    {"sets", at({Replaces}), byName<number>, "Values that the replaced parameters have."},
+    {"sets", at({Replaces}), byName<value>, "Values that the replaced parameters have."},
     {"but", at({Excludes}), list<name>, "The features that stay."},
 
     {"surface", at({Glsl}), file, "The file of nameSurface(), which changes colour, normal and roughness."},
@@ -169,10 +193,11 @@ constexpr MemberRow kRows[] = {
 
     {"at", at({Parameter}), text, "The place below the object."},
     {"at", at({Attribute}), matching<kAttributePattern>, "Its name in glTF.", at({Attribute})},
-    {"type", at({Parameter, Attribute, Derived}), nameOf<kTypes>, "The type of the value.",
-     at({Attribute, Derived})},
-    {"default", at({Parameter}), oneOrList<number>, "The value of a material whose file gives none.",
-     at({Parameter})},
+    {"type", at({Parameter}), nameOf<kTypes>, "The type of the value."},
+    {"type", at({Attribute, Derived}), vectorType, "The type of the value.", at({Attribute, Derived})},
+    {"count", at({Parameter}), elements, "Makes it an array of so many values."},
+    {"values", at({Parameter}), list<name, 1>, "The names that a value of an enum may be."},
+    {"default", at({Parameter}), value, "The value of a material whose file gives none.", at({Parameter})},
     {"default", at({Attribute}), oneOrList<finite>,
      "The value on primitives that lack it; without one they do not have the feature."},
     {"range", at({Parameter}), list<numberOrNull, 2, 2>,
@@ -213,7 +238,7 @@ constexpr MemberRule kRules[] = {
     {File, "replaces", "extension object", "", "every material would lose what it replaces",
      "give the declaration \"extension\" or \"object\""},
     {File, "object", "", "extension", "a feature has an extension or an object of the core, not both", ""},
-    {Parameter, "range also type unit record of", "", "is", "is that of the parameter whose value this is",
+    {Parameter, "range also type count values unit record of", "", "is", "is that of the parameter whose value this is",
      "leave it out"},
     {Parameter, "also", "range", "", "says nothing without a range", "give the parameter \"range\""},
     {Texture, "short order draft needs cost of coordinates", "", "is",

@@ -37,17 +37,6 @@ struct NamedLight {
 inline constexpr NamedLight kLights[] = {
     {"none", Light::None}, {"front", Light::Front}, {"both", Light::Both}};
 
-struct NamedType {
-    std::string_view name;
-    std::string_view glsl;
-    int channels;
-};
-inline constexpr NamedType kTypes[] = {{"float", "float", 1},
-                                       {"vec2", "vec2", 2},
-                                       {"vec3", "vec3", 3},
-                                       {"color", "vec3", 3},
-                                       {"vec4", "vec4", 4}};
-
 struct NamedBehaviour {
     std::string_view name;
     Behaviour behaviour;
@@ -66,6 +55,9 @@ struct NamedNeed {
     int texCoord;  // the UV set; -1: a frame
 };
 inline constexpr NamedNeed kNeeds[] = {{"tangents", -1}, {"texCoord0", 0}, {"texCoord1", 1}};
+
+// The most elements of an array.
+inline constexpr int kMostElements = 256;
 
 // --- The members ---
 

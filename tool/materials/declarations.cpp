@@ -321,17 +321,29 @@ int ModelBuilder::addObject(const std::string& name, bool isExtension) {
 }
 
 std::string ModelBuilder::newName(const Members& members) {
-    std::string name = members.text("name");
-    if (!isIdentifier(name)) {
-        failAt(members.at("name"),
-               fmt::format("\"{}\" must be letters and digits that begin with a small letter", name));
-    }
-    const auto [place, isNew] = named_.try_emplace(name, members.at("name"));
-    if (!isNew) {
-        failAt(members.at("name"),
-               fmt::format("\"{}\" is declared twice; {} declares it, too", name, place->second));
-    }
+    const std::string declared = members.text("name");
+    checkName(declared, members.at("name"));
+    std::string name = fullName(scope_, declared);
+    claimName(name, members.at("name"));
     return name;
+}
+
+void ModelBuilder::checkName(const std::string& name, const std::string& where) {
+    if (!isIdentifier(name)) {
+        failAt(where, fmt::format("\"{}\" must be letters and digits that begin with a small letter", name));
+    }
+}
+
+void ModelBuilder::claimName(const std::string& name, const std::string& where) {
+    const auto [place, isNew] = named_.try_emplace(name, where);
+    if (!isNew) {
+        failAt(where, fmt::format("\"{}\" is declared twice; {} declares it, too", name, place->second));
+    }
+}
+
+int ModelBuilder::named(int (MaterialModel::*find)(std::string_view) const, std::string_view name) const {
+    const int own = (model_.*find)(fullName(scope_, name));
+    return own >= 0 ? own : (model_.*find)(name);
 }
 
 std::string ModelBuilder::gltfPlace(int object, std::string_view member) const {
@@ -347,7 +359,7 @@ Feature& ModelBuilder::featureAt(int index) {
 }
 
 int ModelBuilder::featureNamed(const std::string& name, const std::string& where) const {
-    const int found = model_.findFeature(name);
+    const int found = named(&MaterialModel::findFeature, name);
     if (found < 0) {
         failAt(where, fmt::format("there is no feature \"{}\"", name));
     }

@@ -1,11 +1,13 @@
 #include "materials/expression.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cassert>
 #include <charconv>
 #include <iterator>
+#include <map>
 #include <utility>
 
 namespace glint::materials {
@@ -162,6 +164,11 @@ private:
             if (operand < 0) {
                 return false;
             }
+            if (const auto named = named_.find(operand); named != named_.end()) {
+                fail(fmt::format("a value with names is compared by == or != with one of {}",
+                                 fmt::join(named->second.names, ", ")));
+                return false;
+            }
             if (at(operand).isCondition != conditions) {
                 fail(conditions ? "expected a condition, found a number"
                                 : "expected a number, found a condition");
@@ -222,6 +229,9 @@ private:
         if (left < 0) {
             return left;
         }
+        if (const auto named = named_.find(left); named != named_.end()) {
+            return comparisonOfNames(left, named->second);
+        }
         constexpr struct {
             std::string_view token;
             Operation operation;
@@ -239,6 +249,27 @@ private:
             }
         }
         return left;
+    }
+
+    // The value of a number whose values have names, which is the left operand.
+    int comparisonOfNames(int left, const Symbol& symbol) {
+        const bool isDifferent = take("!=");
+        Node value;
+        if (isDifferent || take("==")) {
+            const std::string_view name = peekName();
+            const auto found = std::ranges::find(symbol.names, name);
+            if (found == symbol.names.end()) {
+                return fail(fmt::format("\"{}\" is none of {}", name, fmt::join(symbol.names, ", ")));
+            }
+            place_ += name.size();
+            value.value = static_cast<double>(found - symbol.names.begin());
+        } else if (symbol.isTruth) {
+            value.value = 1.0;
+        } else {
+            accept({left}, false);
+            return -1;
+        }
+        return append({isDifferent ? Operation::Different : Operation::Equal, true, 1, {left, append(value), -1}});
     }
 
     int sum() {
@@ -279,7 +310,7 @@ private:
     }
 
     int swizzled(int node) {
-        if (node < 0 || at(node).isCondition || !take(".")) {
+        if (node < 0 || at(node).isCondition || named_.contains(node) || !take(".")) {
             return node;
         }
         const std::string_view name = peekName();
@@ -383,10 +414,18 @@ private:
             return fail(
                 fmt::format("there is no \"{}\"", text_.substr(start, endOf(start, function.empty()))));
         }
+        if (!found->refusal.empty()) {
+            place_ = start;
+            return fail(found->refusal);
+        }
         Node node{Operation::Name, found->isCondition, found->channels, {-1, -1, -1}};
         node.symbol = found->id;
         made_.symbols_.push_back(found->id);
-        return append(node);
+        const int index = append(node);
+        if (!found->names.empty()) {
+            named_.emplace(index, *found);
+        }
+        return index;
     }
 
     // Returns the length of the name or call that starts at `start`.
@@ -404,6 +443,7 @@ private:
     std::size_t place_ = 0;
     int depth_ = 0;
     bool failed_ = false;
+    std::map<int, Symbol> named_;  // the nodes whose values have names
     Expression made_;
 };
 

@@ -2,6 +2,7 @@
 // once and evaluated on intervals. Pure functions.
 //
 //   condition   a or b, a and b, not a, a == b, a != b, a < b, a <= b, a > b, a >= b
+//               flag, enumeration == soft, enumeration != soft
 //   number      a + b, a - b, a * b, a / b, -a, 0.5, 1e-6, infinity, name, name.rgb
 //               min(a, b), max(a, b), abs(a), sqrt(a), ln(a), exp(a), sin(a), cos(a), select(condition, a, b)
 //
@@ -27,6 +28,11 @@ struct Symbol {
     int id = 0;
     bool isCondition = false;
     int channels = 1;  // of a number
+    // A number that counts these names is compared with one of them, and with nothing else. One that counts
+    // "false" and "true" is a condition without a comparison.
+    std::vector<std::string> names{};
+    bool isTruth = false;
+    std::string refusal{};  // why no expression may name it; empty: each may
 };
 
 // Returns the symbol, or no value if there is none. `function` is empty for a plain name, which is then the

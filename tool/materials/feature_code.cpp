@@ -57,7 +57,7 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
         checkModel(declaration, members);
     }
     if (!code.layer.empty() || !code.model.empty() || !code.diffuse.empty()) {
-        refuseWordOfGlsl(declaration);  // The BSDF has a member of the name.
+        refuseWordOfGlsl(declaration, code.name);  // The BSDF has a member of the name.
     }
     // The code of coordinates and opacity also runs in traversal, for keys that no case of the module has.
     for (const std::string_view stage : {"layer", "coordinates", "opacity", "diffuse"}) {

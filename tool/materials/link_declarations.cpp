@@ -1,4 +1,5 @@
 #include "materials/model_builder.h"
+#include "materials/value_json.h"
 
 #include <algorithm>
 #include <array>
@@ -175,7 +176,7 @@ void ModelBuilder::excludeFromModels() {
             }
             for (const auto& [json, where] : membersOf(file).list("features")) {
                 const Members further(*json, where, Place::Feature);
-                excluded |= model_.mask(further.text("name"));
+                excluded |= model_.mask(fullName(file.scope, further.text("name")));
             }
         }
         model_.exclusions.push_back(
@@ -254,6 +255,24 @@ constexpr struct {
 
 }  // namespace
 
+namespace {
+
+Symbol symbolOf(const Parameter& parameter, int index) {
+    Symbol symbol{index, false, parameter.type->channels};
+    if (!parameter.isNamedByConditions()) {
+        symbol.refusal = fmt::format("\"{}\" is {}, which conditions can't name", parameter.declared,
+                                     parameter.isArray() ? "an array" : "a matrix");
+    } else if (parameter.type->kind == NumberKind::Name) {
+        symbol.names = parameter.names;
+    } else if (parameter.type->kind == NumberKind::Truth) {
+        symbol.names = {"false", "true"};
+        symbol.isTruth = true;
+    }
+    return symbol;
+}
+
+}  // namespace
+
 std::optional<Symbol> ModelBuilder::resolve(std::string_view function,
                                             const std::vector<std::string_view>& names) {
     for (const auto& row : kFacts) {
@@ -265,29 +284,29 @@ std::optional<Symbol> ModelBuilder::resolve(std::string_view function,
         return index < 0 ? std::nullopt : std::optional(Symbol{symbol, true, 1});
     };
     if (function.empty()) {
-        const int index = model_.findParameter(names[0]);
-        return index < 0 ? std::nullopt
-                         : std::optional(Symbol{index, false,
-                                                model_.parameters[static_cast<std::size_t>(index)].channels});
+        const int index = named(&MaterialModel::findParameter, names[0]);
+        return index < 0
+                   ? std::nullopt
+                   : std::optional(symbolOf(model_.parameters[static_cast<std::size_t>(index)], index));
     }
     if (function == "has" && names.size() == 1) {
-        const int index = model_.findFeature(names[0]);
+        const int index = named(&MaterialModel::findFeature, names[0]);
         return condition(index, model_.symbolOfFeature(index));
     }
     if (function == "readable" && names.size() == 1) {
-        const int index = model_.findTexture(names[0]);
+        const int index = named(&MaterialModel::findTexture, names[0]);
         return condition(index, model_.symbolOfTexture(index));
     }
     if (function == "texel" && names.size() == 1) {
-        const int index = model_.findTexture(names[0]);
+        const int index = named(&MaterialModel::findTexture, names[0]);
         return index < 0 ? std::nullopt : std::optional(Symbol{model_.symbolOfTexel(index), false, 4});
     }
     if (function == "attribute" && names.size() == 1) {
-        const int index = model_.findAttribute(names[0]);
+        const int index = named(&MaterialModel::findAttribute, names[0]);
         return condition(index, model_.symbolOfAttribute(index));
     }
     if (function == "same" && names.size() == 2) {
-        const std::array<int, 2> pair{model_.findTexture(names[0]), model_.findTexture(names[1])};
+        const std::array<int, 2> pair{named(&MaterialModel::findTexture, names[0]), named(&MaterialModel::findTexture, names[1])};
         if (pair[0] < 0 || pair[1] < 0) {
             return std::nullopt;
         }
@@ -327,13 +346,14 @@ void ModelBuilder::linkFeature(const Members& members, int index, FeatureMask on
 }
 
 void ModelBuilder::link(const File& file) {
+    scope_ = file.scope;
     const Members members = membersOf(file);
     if (file.mainFeature >= 0) {
         linkFeature(members, file.mainFeature, 0);
     }
     for (const auto& [json, where] : members.list("features")) {
         const Members further(*json, where, Place::Feature);
-        linkFeature(further, model_.findFeature(further.text("name")), 0);
+        linkFeature(further, named(&MaterialModel::findFeature, further.text("name")), 0);
     }
     for (const auto& [json, where] : members.list("textures")) {
         const Members texture(*json, where, Place::Texture);
@@ -352,7 +372,7 @@ void ModelBuilder::link(const File& file) {
 }
 
 void ModelBuilder::linkTexture(const File& file, const Members& members) {
-    const int slot = model_.findTexture(members.text("name"));
+    const int slot = named(&MaterialModel::findTexture, members.text("name"));
     const int feature = model_.textures[static_cast<std::size_t>(slot)].feature;
     linkFeature(members, feature, 0);
     const bool ofLayer = file.mainFeature >= 0 && featureAt(file.mainFeature).isLobe;
@@ -363,13 +383,14 @@ void ModelBuilder::linkTexture(const File& file, const Members& members) {
 }
 
 void ModelBuilder::linkAliases(const File& file) {
+    scope_ = file.scope;
     const Members members = membersOf(file);
     for (const auto& [json, where] : members.list("textures")) {
         const Members texture(*json, where, Place::Texture);
         if (!texture.has("is")) {
             continue;
         }
-        const int slot = model_.findTexture(texture.text("is"));
+        const int slot = named(&MaterialModel::findTexture, texture.text("is"));
         const int feature = model_.textures[static_cast<std::size_t>(slot)].feature;
         const FeatureMask own = file.mainFeature < 0 ? 0 : featureAt(file.mainFeature).mask();
         for (NeutralReason& reason : featureAt(feature).neutral) {
@@ -384,7 +405,7 @@ void ModelBuilder::linkScales(const Members& members, int slot) {
     std::set<std::string> scales;
     for (const std::string& scaled : members.texts("scales")) {
         const std::string name = scaled.substr(0, scaled.find('.'));
-        int index = model_.findParameter(name);
+        int index = named(&MaterialModel::findParameter, name);
         if (index < 0) {
             failAt(members.at("scales"), fmt::format("there is no parameter \"{}\"", name));
         }
@@ -395,6 +416,11 @@ void ModelBuilder::linkScales(const Members& members, int slot) {
         const int filled = model_.parameters[static_cast<std::size_t>(index)].aliasOf;
         index = filled < 0 ? index : filled;
         Parameter& parameter = model_.parameters[static_cast<std::size_t>(index)];
+        if (!parameter.isVector()) {
+            failAt(members.at("scales"), fmt::format("\"{}\" has the type {}; a texture scales floats and "
+                                                     "vectors of them",
+                                                     name, parameter.typeText()));
+        }
         if (parameter.scaledBy >= 0 && parameter.scaledBy != slot) {
             failAt(members.at("scales"),
                    fmt::format("{} scales \"{}\", too; one texture can",
@@ -405,11 +431,11 @@ void ModelBuilder::linkScales(const Members& members, int slot) {
         if (channels.empty()) {
             continue;
         }
-        if (channels.size() != static_cast<std::size_t>(parameter.channels) + 1) {
+        if (channels.size() != static_cast<std::size_t>(parameter.numbers) + 1) {
             failAt(members.at("scales"),
-                   fmt::format("\"{}\" must name {} of the texture's channels", scaled, parameter.channels));
+                   fmt::format("\"{}\" must name {} of the texture's channels", scaled, parameter.numbers));
         }
-        for (int i = 0; i < parameter.channels; ++i) {
+        for (int i = 0; i < parameter.numbers; ++i) {
             const std::size_t channel =
                 std::string_view("rgba").find(channels[static_cast<std::size_t>(i) + 1]);
             if (channel == std::string_view::npos) {
@@ -425,7 +451,7 @@ void ModelBuilder::linkParameters(const File& file, const Members& members) {
     for (const auto& [json, where] : members.list("parameters")) {
         const Members row(*json, where, Place::Parameter);
         Parameter& parameter =
-            model_.parameters[static_cast<std::size_t>(model_.findParameter(row.text("name")))];
+            model_.parameters[static_cast<std::size_t>(named(&MaterialModel::findParameter, row.text("name")))];
         parameter.feature = row.has("of") ? featureNamed(row.text("of"), row.at("of")) : file.mainFeature;
     }
 }
@@ -433,10 +459,9 @@ void ModelBuilder::linkParameters(const File& file, const Members& members) {
 void ModelBuilder::linkDerived(const File& file, const Members& members) {
     DerivedField field;
     field.name = newName(members);
-    refuseWordOfGlsl(members);
-    const auto& type = choose(kTypes, members, "type", members.text("type"));
-    field.type = type.glsl;
-    field.count = type.channels;
+    refuseWordOfGlsl(members, field.name);
+    field.type = &vectorType(members);
+    const auto count = static_cast<std::size_t>(field.type->channels);
     field.unit = members.text("unit", "");
     field.about = members.text("about", "");
     field.feature = members.has("of") ? featureNamed(members.text("of"), members.at("of")) : file.mainFeature;
@@ -448,10 +473,11 @@ void ModelBuilder::linkDerived(const File& file, const Members& members) {
         field.channels.push_back(expression(members["value"], members.at("value"), false));
     }
     const bool fits = field.channels.size() == 1
-                          ? field.channels[0].channels() == field.count || field.channels[0].channels() == 1
-                          : field.channels.size() == static_cast<std::size_t>(field.count);
+                          ? field.channels[0].channels() == field.type->channels ||
+                                field.channels[0].channels() == 1
+                          : field.channels.size() == count;
     if (!fits) {
-        failAt(members.at("value"), fmt::format("must give {} channels", field.count));
+        failAt(members.at("value"), fmt::format("must give {} channels", count));
     }
     model_.derived.push_back(std::move(field));
 }
@@ -477,16 +503,23 @@ void ModelBuilder::linkBase(const File& file, const Members& members) {
         owner.replaces = object;
         if (replaces.has("sets")) {
             for (const auto& [name, value] : replaces["sets"].items()) {
-                const int parameter = model_.findParameter(name);
+                const int parameter = named(&MaterialModel::findParameter, name);
                 if (parameter < 0) {
                     failAt(replaces.at("sets"), fmt::format("there is no parameter \"{}\"", name));
                 }
                 const std::string place = replaces.at("sets") + "/" + name;
-                const double number = Members::toNumber(value, place);
-                if (!model_.parameters[static_cast<std::size_t>(parameter)].isValid(number)) {
-                    failAt(place, "is outside of the parameter's range");
+                const Parameter& row = model_.parameters[static_cast<std::size_t>(parameter)];
+                MaterialObject::Setting setting{parameter};
+                if (const auto fault = readValue(row, value, setting.numbers)) {
+                    failAt(place + fault->place, fault->message);
                 }
-                owner.settings.push_back({parameter, static_cast<float>(number)});
+                for (double& number : setting.numbers) {
+                    if (!row.isValid(number)) {
+                        failAt(place, "is outside of the parameter's range");
+                    }
+                    number = row.hold(number);
+                }
+                owner.settings.push_back(std::move(setting));
             }
         }
     }

@@ -28,10 +28,10 @@ bool sameTexture(const TextureInfo& a, const TextureInfo& b) {
            !b.moves;
 }
 
-const Parameter& parameterOf(const MaterialModel& model, std::string_view name) {
-    const int index = model.findParameter(name);
+const Parameter& parameterOf(const Material& material, std::string_view name) {
+    const int index = material.model().findParameter(name, modelOf(material));
     assert(index >= 0);
-    return model.parameters[static_cast<std::size_t>(index)];
+    return material.model().parameters[static_cast<std::size_t>(index)];
 }
 
 }  // namespace
@@ -51,33 +51,32 @@ Material::Material(const MaterialModel& model)
       given(model.objects.size()),
       model_(&model) {
     for (const Parameter& parameter : model.parameters) {
-        for (int i = 0; parameter.aliasOf < 0 && i < parameter.channels; ++i) {
-            values[static_cast<std::size_t>(parameter.first) + static_cast<std::size_t>(i)] =
-                parameter.fallback[static_cast<std::size_t>(i)];
+        if (parameter.aliasOf < 0) {
+            std::ranges::copy(parameter.fallback, values.begin() + parameter.first);
         }
     }
 }
 
 ParameterValue Material::operator[](std::string_view parameter) {
-    const Parameter& row = parameterOf(*model_, parameter);
+    const Parameter& row = parameterOf(*this, parameter);
     return ParameterValue(std::span(values).subspan(static_cast<std::size_t>(row.first),
-                                                    static_cast<std::size_t>(row.channels)));
+                                                    static_cast<std::size_t>(row.numbers)));
 }
 
 ConstParameterValue Material::operator[](std::string_view parameter) const {
-    const Parameter& row = parameterOf(*model_, parameter);
+    const Parameter& row = parameterOf(*this, parameter);
     return ConstParameterValue(std::span(values).subspan(static_cast<std::size_t>(row.first),
-                                                         static_cast<std::size_t>(row.channels)));
+                                                         static_cast<std::size_t>(row.numbers)));
 }
 
 TextureInfo& Material::texture(std::string_view texture) {
-    const int index = model_->findTexture(texture);
+    const int index = model_->findTexture(texture, modelOf(*this));
     assert(index >= 0);
     return textures[static_cast<std::size_t>(index)];
 }
 
 const TextureInfo& Material::texture(std::string_view texture) const {
-    const int index = model_->findTexture(texture);
+    const int index = model_->findTexture(texture, modelOf(*this));
     assert(index >= 0);
     return textures[static_cast<std::size_t>(index)];
 }
@@ -264,8 +263,9 @@ Channels MaterialFacts::number(int symbol) const {
     const Parameter& parameter = model.parameters[static_cast<std::size_t>(symbol)];
     const bool scaled = textures_ != Textures::Ignored && parameter.scaledBy >= 0 &&
                         isReadable(material_, primitive_, parameter.scaledBy);
-    number.count = parameter.channels;
-    for (int i = 0; i < parameter.channels; ++i) {
+    assert(parameter.isNamedByConditions());
+    number.count = parameter.numbers;
+    for (int i = 0; i < parameter.numbers; ++i) {
         const auto place = static_cast<std::size_t>(parameter.first) + static_cast<std::size_t>(i);
         ValueInterval& target = number.of[static_cast<std::size_t>(i)];
         target = material_.ranges.empty() ? ValueInterval{material_.values[place], material_.values[place]}

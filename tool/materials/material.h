@@ -73,7 +73,7 @@ struct TextureInfo {
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
 
-// The numbers of one parameter of a material, to which it refers. `Number` is float or const float.
+// The numbers of one parameter of a material, to which it refers. `Number` is double or const double.
 template <typename Number>
 class BasicParameterValue {
 public:
@@ -84,22 +84,22 @@ public:
 
     // The first number.
     operator float() const {
-        return numbers_[0];
+        return static_cast<float>(numbers_[0]);
     }
     Number& operator[](std::size_t channel) const {
         return numbers_[channel];
     }
     // Sets all numbers to one value, or each to its own. `values` must have as many as the parameter.
-    const BasicParameterValue& operator=(float value) const {
+    const BasicParameterValue& operator=(double value) const {
         std::ranges::fill(numbers_, value);
         return *this;
     }
-    const BasicParameterValue& operator=(std::span<const float> values) const {
+    const BasicParameterValue& operator=(std::span<const double> values) const {
         assert(values.size() == numbers_.size());
         std::ranges::copy(values, numbers_.begin());
         return *this;
     }
-    const BasicParameterValue& operator=(std::initializer_list<float> values) const {
+    const BasicParameterValue& operator=(std::initializer_list<double> values) const {
         return *this = std::span(values.begin(), values.size());
     }
     std::size_t size() const {
@@ -119,8 +119,8 @@ public:
 private:
     std::span<Number> numbers_;
 };
-using ParameterValue = BasicParameterValue<float>;
-using ConstParameterValue = BasicParameterValue<const float>;
+using ParameterValue = BasicParameterValue<double>;
+using ConstParameterValue = BasicParameterValue<const double>;
 
 // Values are the declared defaults until something sets them. The model must outlive the material.
 class Material {
@@ -130,7 +130,7 @@ public:
     std::string name;
     AlphaMode alphaMode = AlphaMode::Opaque;
     bool doubleSided = false;
-    std::vector<float> values;          // by Parameter::first
+    std::vector<double> values;         // by Parameter::first; floats and whole numbers of 32 bits
     std::vector<TextureInfo> textures;  // by index into MaterialModel::textures
     std::vector<std::uint8_t> given;  // by index into MaterialModel::objects: 1 if the file gives the object
     // The values that an animation gives each number, by its index in `values`; empty if none changes.
@@ -142,7 +142,7 @@ public:
     const MaterialModel& model() const {
         return *model_;
     }
-    // Requires a name that the model has.
+    // Require a name that the model has, as its declaration or its full name.
     ParameterValue operator[](std::string_view parameter);
     ConstParameterValue operator[](std::string_view parameter) const;
     TextureInfo& texture(std::string_view texture);

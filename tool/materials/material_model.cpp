@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <interop/models.h>
 #include <limits>
@@ -40,11 +41,20 @@ std::string Feature::neutralText() const {
     return reasons.empty() ? "never" : fmt::format("{}", fmt::join(reasons, "; or "));
 }
 
+std::string Parameter::typeText() const {
+    const std::string one =
+        names.empty() ? std::string(type->name) : fmt::format("{} ({})", type->name, fmt::join(names, ", "));
+    return isArray() ? fmt::format("{}[{}]", one, count) : one;
+}
+
 bool Parameter::isValid(double value) const {
     return value == also || (value >= low && value <= high);
 }
 
-float Parameter::hold(double value) const {
+double Parameter::hold(double value) const {
+    if (type->kind != NumberKind::Real) {
+        return value == also ? value : std::round(std::clamp(value, low, high));
+    }
     if (value == also) {
         return static_cast<float>(value);
     }
@@ -75,6 +85,18 @@ int MaterialModel::findObject(std::string_view name) const {
 
 int MaterialModel::findAttribute(std::string_view name) const {
     return indexOf(attributes, name);
+}
+
+int MaterialModel::findParameter(std::string_view name, int model) const {
+    const int own =
+        model < 0 ? -1 : findParameter(fullName(models[static_cast<std::size_t>(model)].name, name));
+    return own >= 0 ? own : findParameter(name);
+}
+
+int MaterialModel::findTexture(std::string_view name, int model) const {
+    const int own =
+        model < 0 ? -1 : findTexture(fullName(models[static_cast<std::size_t>(model)].name, name));
+    return own >= 0 ? own : findTexture(name);
 }
 
 FeatureMask MaterialModel::withBases(FeatureMask mask) const {
@@ -223,6 +245,19 @@ int MaterialModel::ownWordCount(const FeatureMask& used) const {
         bits = used.has(model.firstBit - 1) ? std::max(bits, model.bits) : bits;
     }
     return (bits + 31) / 32;
+}
+
+std::string capitalized(std::string_view name) {
+    std::string text(name);
+    text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    return text;
+}
+
+std::string fullName(std::string_view scope, std::string_view name) {
+    const std::string_view rest = name.substr(std::min(scope.size(), name.size()));
+    const bool isFull = name.starts_with(scope) &&
+                        (rest.empty() || std::islower(static_cast<unsigned char>(rest.front())) == 0);
+    return scope.empty() || isFull ? std::string(name) : std::string(scope) + capitalized(name);
 }
 
 std::string Feature::macroEnd() const {

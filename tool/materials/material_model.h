@@ -3,6 +3,7 @@
 #pragma once
 
 #include "materials/expression.h"
+#include "materials/value_type.h"
 
 #include <glint/internal/package_format.h>
 
@@ -210,24 +211,28 @@ struct MaterialObject {
     int replaces = -1;
     struct Setting {
         int parameter = 0;
-        float value = 0.0F;
+        std::vector<double> numbers{};
     };
     std::vector<Setting> settings{};
 };
 
-// A parameter of a material: one to four adjacent numbers of Material::values.
+// A parameter of a material: adjacent numbers of Material::values, those of an array's elements one after the
+// other.
 struct Parameter {
-    std::string name;  // unique in the model
+    std::string name;      // unique in all declarations (fullName()): "toonEdge"
+    std::string declared;  // in its declaration and in lists of materials: "edge"
     int object = 0;
     // The place below its object: "clearcoatFactor", "normalTexture/scale".
     std::string place;
-    std::string type;  // in GLSL: "float", "vec2", "vec3", "vec4"
+    const ValueType* type = &kTypes[0];
+    int count = 0;                     // elements of an array; 0: a single value
+    std::vector<std::string> names{};  // of an enum: its values, by their numbers
     std::string unit{};
     std::string about{};
-    int first = 0;  // index into Material::values
-    int channels = 1;
-    std::array<float, 4> fallback{};  // The value that a material has whose file gives none.
-    // Values outside of the range are clamped. A parameter whose upper end is infinite may itself be
+    int first = 0;                   // index into Material::values
+    int numbers = 1;                 // how many there are, of all elements
+    std::vector<double> fallback{};  // The numbers that a material has whose file gives none.
+    // Numbers outside of the range are clamped. A parameter whose upper end is infinite may itself be
     // infinite.
     double low = 0.0;
     double high = 0.0;
@@ -235,26 +240,39 @@ struct Parameter {
     bool isAngle = false;          // in radians; reduced to one turn
     int aliasOf = -1;              // the parameter whose numbers it sets, or -1
     int scaledBy = -1;             // the texture that multiplies it by numbers in [0, 1], or -1
-    // The texture's channel that multiplies each channel of the parameter, if the texture has no other effect
-    // on it; -1: not known.
+    // The texture's channel that multiplies each channel of the parameter, which is a vector, if the texture
+    // has no other effect on it; -1: not known.
     std::array<int, 4> scaledByChannels{-1, -1, -1, -1};
     int feature = -1;  // Records have the parameter if a key has this feature; -1: always.
     bool inRecord = true;
 
+    bool isArray() const {
+        return count > 0;
+    }
+    // Returns whether it is a single number or vector in floating point (kVectorTypes).
+    bool isVector() const {
+        return !isArray() && type->isVector();
+    }
+    // Returns whether conditions may name it: it is neither an array nor a matrix.
+    bool isNamedByConditions() const {
+        return !isArray() && !type->isMatrix();
+    }
+    // Returns the type as people write it: "color", "enum (soft, hard)", "vec3[8]".
+    std::string typeText() const;
     bool isValid(double value) const;
-    // Returns the value as a material stores it: within the range, angles within half a turn.
-    float hold(double value) const;
+    // Returns a number as a material stores it: within the range, angles within half a turn, rounded to a
+    // float or to a whole number.
+    double hold(double value) const;
 };
 
 // A field of the record that follows from parameters.
 struct DerivedField {
-    std::string name;
-    std::string type;
+    std::string name;                   // unique in all declarations
+    const ValueType* type = &kTypes[0];  // one of kVectorTypes
     std::string unit{};
     std::string about{};
     int feature = -1;
     std::vector<Expression> channels;  // one expression for all channels, or one for each
-    int count = 1;                     // channels of the field
 };
 
 // The reads of a texture by shading. They decide about compressed formats and the making of levels.
@@ -268,7 +286,7 @@ struct TextureReads {
 
 // A texture that a material can have. Two places can fill one, because there are two base models.
 struct MaterialTexture {
-    std::string name;  // "clearcoatTexture"
+    std::string name;  // unique in all declarations: "clearcoatTexture"
     int feature = 0;   // index into MaterialModel::features
     struct Place {
         int object = 0;
@@ -281,11 +299,10 @@ struct MaterialTexture {
 
 // An attribute of vertices that a feature reads beside those of glTF's core: "_WEAR".
 struct VertexAttribute {
-    std::string name;  // unique in the model, and the member of VertexAttributes in GLSL
+    std::string name;  // unique in all declarations, and the member of VertexAttributes in GLSL
     std::string gltf;  // its name in the attributes of a primitive
-    std::string type;  // in GLSL: "float", "vec2", "vec3", "vec4"
+    const ValueType* type = &kTypes[0];  // one of kVectorTypes
     std::string about{};
-    int channels = 1;
     // The value on primitives that lack it. Without one, such primitives do not have the feature.
     std::optional<std::array<float, 4>> fallback{};
     int feature = -1;  // index into MaterialModel::features
@@ -325,7 +342,7 @@ struct Feature {
     int bit = 0;
     int model = -1;  // index into MaterialModel::models: only keys of this base have the feature; -1: any
     bool isLobe = false;
-    std::string name;       // name in the manifest: "baseColorTexture"
+    std::string name;       // unique in all declarations: "baseColorTexture"
     std::string shortName;  // part of a case's name: "BaseTex"
     std::string macro;      // macro in GLSL: "GLINT_BASE_COLOR_TEXTURE"
     std::string gltf;       // its place in glTF
@@ -461,6 +478,10 @@ public:
     int findFeature(std::string_view name) const;
     int findObject(std::string_view name) const;
     int findAttribute(std::string_view name) const;
+    // The same for what materials of a model of a pack mean by a name: a thing of the model, or else one that all
+    // models share. `model` is an index into `models`; -1: of glTF's bases.
+    int findParameter(std::string_view name, int model) const;
+    int findTexture(std::string_view name, int model) const;
 
     // Returns the feature's bit, or 0 if there is no such feature.
     FeatureMask mask(std::string_view feature) const;
@@ -510,6 +531,13 @@ public:
     int symbolOfAttribute(int attribute) const;  // attribute(name)
     int symbolOfPair(int pair) const;            // same(texture, texture)
 };
+
+// Returns the name, unique in all declarations, of what a model of a pack declares by `name`. It begins with
+// the name of the model: "toonEdge" of "edge", and also of "toonEdge". An empty `scope` stands for what all
+// models share, whose names are unique by themselves.
+std::string fullName(std::string_view scope, std::string_view name);
+// Returns "ToonEdge" of "toonEdge".
+std::string capitalized(std::string_view name);
 
 // The model of glTF's core and of the extensions that Glint shades. It is read once, from the declarations
 // that are embedded in the library, and lives as long as the program.

@@ -6,7 +6,6 @@
 #include "materials/material_model.h"
 
 #include <cstddef>
-#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -18,7 +17,6 @@
 namespace glint::materials {
 
 inline constexpr double kNoOrder = 1e6;
-inline constexpr double kLargestFloat = std::numeric_limits<float>::max();
 
 // Builds the model in two passes over the files: the first collects the names, the second reads the
 // expressions, which may use any of the names.
@@ -34,6 +32,7 @@ private:
         int object = 0;
         int mainFeature = -1;  // index into pending_, until bits are assigned
         bool isOfPack = false;
+        std::string scope{};  // the name of the model of a pack that it declares
     };
     // A feature before bits are assigned.
     struct Pending {
@@ -54,8 +53,14 @@ private:
     void readEffects();
     Members membersOf(const File& file) const;
     int addObject(const std::string& name, bool isExtension);
-    // Every name stands for one thing in the whole model.
+    // Returns the full name of what the object declares, which must be new: every full name stands for one
+    // thing.
     std::string newName(const Members& members);
+    void claimName(const std::string& name, const std::string& where);
+    static void checkName(const std::string& name, const std::string& where);
+    // Finds what the file that is read means by a name: a thing of its own model, or one that models share.
+    // `find` is a function of MaterialModel. Returns the index, or -1.
+    int named(int (MaterialModel::*find)(std::string_view) const, std::string_view name) const;
     std::string gltfPlace(int object, std::string_view member) const;
     Feature& featureAt(int index);
     int featureNamed(const std::string& name, const std::string& where) const;
@@ -67,8 +72,11 @@ private:
     // Refuses a feature that every material would have, and what is for lobes where it is none.
     static void checkOwn(const Members& members, const Feature& feature);
     void collect(File& file);
-    Parameter makeParameter(const File& file, const Members& members, const std::string& name, int channels);
+    Parameter makeParameter(const File& file, const Members& members, const std::string& name);
+    static void readType(const Members& members, Parameter& parameter);
+    static void readRange(const Members& members, Parameter& parameter);
     static void readDefault(const Members& members, Parameter& parameter);
+    static const ValueType& vectorType(const Members& members);
     void addParameter(const File& file, const Members& members);
     void addAttribute(const File& file, const Members& members);
     void addTexture(const File& file, const Members& members);
@@ -113,6 +121,7 @@ private:
     MaterialModel model_;
     bool isOfPack_ = false;  // of the file that collect() reads
     int base_ = -1;          // the model that it declares: Pending::base of its features
+    std::string scope_;      // File::scope of the file that is read
     std::vector<File> files_;
     std::vector<Pending> pending_;
     std::map<std::string, std::string> named_;  // where each name is declared

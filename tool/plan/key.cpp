@@ -75,7 +75,7 @@ std::string whatTexturesHold(const materials::Material& material, const material
         if (parameter.scaledBy < 0 || !isRead(parameter.scaledBy)) {
             continue;
         }
-        for (int i = 0; i < parameter.channels; ++i) {
+        for (int i = 0; i < parameter.numbers; ++i) {
             const int channel = parameter.scaledByChannels[static_cast<std::size_t>(i)];
             channels[parameter.scaledBy] |= channel >= 0 ? 1U << static_cast<unsigned>(channel) : 0U;
         }

@@ -68,7 +68,7 @@ void appendMaterials(const Scene& from, const Offsets& by, Scene& to) {
     }
     for (const gltf::AnimatedMaterial& animated : from.animatedMaterials) {
         to.animatedMaterials.push_back({animated.material + by.materials, shifted(animated.rest, by),
-                                        shifted(animated.planned, by), animated.changes});
+                                        shifted(animated.planned, by), animated.changes, animated.edited});
     }
     for (const gltf::Texture& texture : from.textures) {
         to.textures.push_back({texture.image + by.images, texture.sampler + by.samplers});

@@ -298,10 +298,21 @@ compiler::MaterialLayout recordLayoutOf(const Package& package, const materials:
         }
         compiler::RecordField field;
         field.name = name;
-        field.channels = static_cast<int>(entry.bytes / sizeof(float));
         field.offset = entry.offset;
         field.parameter = model.findParameter(name);
         field.derived = indexIn(model.derived, name);
+        if (field.parameter >= 0) {
+            const materials::Parameter& parameter =
+                model.parameters[static_cast<std::size_t>(field.parameter)];
+            field.type = parameter.type;
+            field.count = parameter.count;
+        } else if (field.derived >= 0) {
+            field.type = model.derived[static_cast<std::size_t>(field.derived)].type;
+        }
+        // A field of another declaration keeps what the record has.
+        if ((field.parameter < 0 && field.derived < 0) || field.bytes() != entry.bytes) {
+            continue;
+        }
         field.models = {owner};
         layout.fields.push_back(std::move(field));
     }

@@ -246,7 +246,7 @@ RecordFields recordFields(const Package& package, const PackageScene& known) {
     RecordFields fields;
     for (const package::FieldEntry& entry : package.fields()) {
         fields.list.push_back(
-            {std::string(package.string(entry.name)), entry.offset, entry.bytes, entry.model});
+            {std::string(package.string(entry.name)), entry.offset, entry.bytes, entry.model, entry.type});
     }
     fields.models.resize(known.materials.size());
     for (const package::PrimitiveEntry& entry : known.primitives) {
@@ -259,7 +259,7 @@ void carryFields(const RecordFields& from, std::uint32_t modelBefore, std::span<
                  const RecordFields& to, std::uint32_t model, std::span<std::uint8_t> record) {
     for (const RecordField& field : to.list) {
         const RecordField* const same = field.model == model ? from.find(field.name, modelBefore) : nullptr;
-        if (same != nullptr && same->bytes == field.bytes) {
+        if (same != nullptr && same->bytes == field.bytes && same->type == field.type) {
             std::memcpy(&record[field.offset], &values[same->offset], field.bytes);
         }
     }

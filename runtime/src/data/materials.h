@@ -81,6 +81,7 @@ struct RecordField {
     std::uint32_t offset = 0;  // bytes
     std::uint32_t bytes = 0;
     std::uint32_t model = 0;  // whose records have it, as in keys
+    std::uint32_t type = 0;   // FieldEntry::type
 };
 // The fields of a scene's records, which the package need not outlive.
 struct RecordFields {

@@ -218,7 +218,7 @@ TEST_F(MaterialPacks, TheBaseComesFirstOfItsModel) {
     const materials::BaseModel& zinc = model->models[0];
     EXPECT_EQ(zinc.name, "zinc");
     EXPECT_EQ(model->mask("zinc"), materials::FeatureMask::ofBit(zinc.firstBit - 1));
-    EXPECT_EQ(model->words(model->mask("alloy")).own.words[0], 1U);
+    EXPECT_EQ(model->words(model->mask("zincAlloy")).own.words[0], 1U);
 }
 
 // Declares a model with so many features beside its base.
@@ -244,11 +244,11 @@ TEST_F(MaterialPacks, AModelHas128FeaturesOfItsOwn) {
     EXPECT_EQ((key & ~materials::FeatureMask(~std::uint64_t{0})).count(), 129);
     EXPECT_EQ(model->words(key).own, package::OwnWords::all());
     EXPECT_EQ(model->maskOf(model->words(key)), key);
-    const package::KeyWords last = model->words(model->mask("alloy127"));
+    const package::KeyWords last = model->words(model->mask("zincAlloy127"));
     EXPECT_EQ(last.own.words, (std::array<std::uint32_t, 4>{0, 0, 0, 1U << 31}));
-    EXPECT_EQ(model->maskOf(last), model->mask("zinc") | model->mask("alloy127"));
+    EXPECT_EQ(model->maskOf(last), model->mask("zinc") | model->mask("zincAlloy127"));
     EXPECT_NE(
-        model->featureDefines().find("GLINT_HAS_ALLOY_127(features) hasOwn(features, 1u, 3, 0x80000000u)"),
+        model->featureDefines().find("GLINT_HAS_ZINC_ALLOY_127(features) hasOwn(features, 1u, 3, 0x80000000u)"),
         std::string::npos);
     write("zinc.json", zincWith(129));
     expectError("declaration", "zinc.json#/features/128", "zinc has more than 128 features of its own");

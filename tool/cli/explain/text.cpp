@@ -336,12 +336,13 @@ base::Json primaryToJson(const compiler::Build& build, const compiler::Key& key,
     });
 }
 
-// The values of the material that animations change: planning drops no feature for a value that passes.
-std::vector<std::string> changesOf(const gltf::SceneList& scenes, int material) {
+// The values of the material that animations or programs change: planning drops no feature for one of them.
+const gltf::AnimatedMaterial& changesOf(const gltf::SceneList& scenes, int material) {
+    static const gltf::AnimatedMaterial kNone;
     const gltf::SceneList::Place place = scenes.place(material);
     const std::vector<gltf::AnimatedMaterial>& all = scenes.scenes()[place.scene].animatedMaterials;
     const auto found = std::ranges::find(all, place.index, &gltf::AnimatedMaterial::material);
-    return found == all.end() ? std::vector<std::string>() : found->changes;
+    return found == all.end() ? kNone : *found;
 }
 
 std::string whyText(const compiler::Case& shader) {
@@ -384,7 +385,8 @@ base::Json materialToJson(const compiler::Build& build, int material) {
             {"name", build.scenes->materialName(material)},
             {"keys", listOf(keysOf(build, material), keyOfMaterial)},
             {"dropped", listOf(dropsOf(build, material), dropToJson)},
-            {"animated", changesOf(*build.scenes, material)}};
+            {"animated", changesOf(*build.scenes, material).changes},
+            {"edited", changesOf(*build.scenes, material).edited}};
 }
 
 Rows materialRows(const compiler::Build& build, int material, Detail detail) {
@@ -411,8 +413,12 @@ Rows materialRows(const compiler::Build& build, int material, Detail detail) {
     for (const auto& [feature, reason] : dropsOf(build, material)) {
         rows.push_back({"  dropped", fmt::format("{}: {}", feature, reason)});
     }
-    for (const std::string& change : changesOf(*build.scenes, material)) {
+    const gltf::AnimatedMaterial& changes = changesOf(*build.scenes, material);
+    for (const std::string& change : changes.changes) {
         rows.push_back({"  animated", fmt::format("{}: kept for all values between", change)});
+    }
+    for (const std::string& change : changes.edited) {
+        rows.push_back({"  edited", fmt::format("{}: kept for all values that a program may set", change)});
     }
     return rows;
 }

@@ -136,10 +136,8 @@ mustache::data featureList(const materials::MaterialModel& model) {
         if (info.model >= 0) {
             continue;
         }
-        std::string name(info.name);
-        name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
         mustache::data entry;
-        entry.set("name", name);
+        entry.set("name", materials::capitalized(info.name));
         entry.set("bit", fmt::format("{}", info.bit));
         entry.set("gltf", commentText(info.gltf));
         list.push_back(entry);
@@ -211,6 +209,24 @@ mustache::data materialMembers(const MaterialLayout& layout) {
     return members;
 }
 
+// The values of the enums that records have.
+mustache::data enumNames(const MaterialLayout& layout) {
+    mustache::data list(mustache::data::type::list);
+    for (const RecordField& field : layout.fields) {
+        if (field.parameter < 0) {
+            continue;
+        }
+        const materials::Parameter& parameter =
+            layout.model->parameters[static_cast<std::size_t>(field.parameter)];
+        for (std::size_t i = 0; i < parameter.names.size(); ++i) {
+            list.push_back(mustache::object{{"constant", nameConstant(parameter, i)},
+                                            {"value", fmt::format("{}", i)},
+                                            {"field", parameter.name}});
+        }
+    }
+    return list;
+}
+
 mustache::data layoutList(const std::vector<StructLayout>& layouts) {
     mustache::data list(mustache::data::type::list);
     for (const StructLayout& layout : layouts) {
@@ -252,7 +268,7 @@ Result<std::string> makeHeader(const gltf::SceneList& scenes, const Plan& plan, 
     context.set("namespace", headerNamespace(scenes.scenes().front().path));
     const MaterialLayout layout = materialLayoutOf(plan);
     context.set("interop", interop);
-    context.set("materialRecord", recordStruct(layout, "gpu::"));
+    context.set("materialRecord", recordStruct(layout, RecordLanguage::Cpp));
     context.set("features", featureList(*plan.model));
     context.set("hasCases", !plan.cases.empty());
     context.set("caseCount", fmt::format("{}", plan.cases.size()));
@@ -262,6 +278,7 @@ Result<std::string> makeHeader(const gltf::SceneList& scenes, const Plan& plan, 
     context.set("layouts", layoutList(layouts));
     context.set("materialBytes", fmt::format("{}", layout.bytes));
     context.set("materialMembers", materialMembers(layout));
+    context.set("enumNames", enumNames(layout));
     return renderTemplate(sources, "glint_tables.h.mustache", context);
 }
 

@@ -301,10 +301,10 @@ std::vector<ManifestAttribute> attributesOf(const Plan& plan) {
         if (!used.has(feature.bit)) {
             continue;
         }
-        list.push_back({attribute.name, attribute.gltf, feature.name, attribute.channels, {}});
+        list.push_back({attribute.name, attribute.gltf, feature.name, attribute.type->channels, {}});
         if (attribute.fallback) {
             list.back().fallback.emplace(attribute.fallback->begin(),
-                                         attribute.fallback->begin() + attribute.channels);
+                                         attribute.fallback->begin() + attribute.type->channels);
         }
     }
     return list;

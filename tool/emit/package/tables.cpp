@@ -5,6 +5,7 @@
 #include "scene/deformed.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -122,7 +123,7 @@ std::vector<AttributeEntry> makeAttributes(const Plan& plan, StringTable& string
         }
         AttributeEntry entry{};
         entry.name = strings.add(attribute.gltf);
-        entry.channels = static_cast<std::uint32_t>(attribute.channels);
+        entry.channels = static_cast<std::uint32_t>(attribute.type->channels);
         entry.hasFallback = attribute.fallback ? 1 : 0;
         std::ranges::copy(attribute.fallback.value_or(std::array<float, 4>{}), entry.fallback);
         entry.feature = plan.model->words(feature.mask());
@@ -139,23 +140,31 @@ std::vector<FeatureEntry> makeFeatures(const materials::MaterialModel& model, St
     return entries;
 }
 
+// Tells types apart, and enums by their names.
+std::uint32_t typeHash(const MaterialLayout& layout, const RecordField& field) {
+    std::string text = fmt::format("{} {}", field.type->glsl, field.count);
+    if (field.parameter >= 0) {
+        text += fmt::format(" {}", fmt::join(layout.model->parameters[static_cast<std::size_t>(field.parameter)].names, " "));
+    }
+    return static_cast<std::uint32_t>(base::hashBytes(text));
+}
+
 std::vector<FieldEntry> makeFields(const MaterialLayout& layout, StringTable& strings) {
     std::vector<FieldEntry> entries;
     const auto add = [&](const std::string& name, std::uint32_t offset, std::uint32_t bytes,
-                         const std::vector<int>& models) {
+                         std::uint32_t type, const std::vector<int>& models) {
         const package::StringRef text = strings.add(name);
         for (const int model : models) {
-            entries.push_back({text, offset, bytes, model < 0 ? 0U : layout.model->modelWord(model)});
+            entries.push_back({text, offset, bytes, model < 0 ? 0U : layout.model->modelWord(model), type});
         }
     };
     for (const RecordField& field : layout.fields) {
-        add(field.name, field.offset, static_cast<std::uint32_t>(field.channels * sizeof(float)),
-            field.models);
+        add(field.name, field.offset, field.bytes(), typeHash(layout, field), field.models);
     }
     constexpr auto kBytes = static_cast<std::uint32_t>(sizeof(gpu::TextureRecord));
     for (const TextureSlot& row : layout.textures) {
         add(layout.model->textures[static_cast<std::size_t>(row.texture)].name,
-            layout.textureOffset + static_cast<std::uint32_t>(row.slot) * kBytes, kBytes, row.models);
+            layout.textureOffset + static_cast<std::uint32_t>(row.slot) * kBytes, kBytes, 0, row.models);
     }
     std::ranges::stable_sort(entries, {}, [](const FieldEntry& entry) {
         return std::pair(entry.model & gpu::kModelNumber, entry.offset);

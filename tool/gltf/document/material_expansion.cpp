@@ -1,6 +1,7 @@
 // Makes a document of glTF of a set of materials.
 #include "base/text.h"
 #include "gltf/document/material_list.h"
+#include "materials/value_json.h"
 
 #include <fmt/format.h>
 
@@ -158,7 +159,7 @@ private:
                         [](const Normal& n, double, double) { return std::array{0.5 + 0.5 * n[1]}; }),
             sphere_["TEXCOORD_0"], sphere_["POSITION"], sphere_["COLOR_0"]};
         for (const materials::VertexAttribute& attribute : model_.attributes) {
-            sphere_[attribute.gltf] = ofChannels[static_cast<std::size_t>(attribute.channels - 1)];
+            sphere_[attribute.gltf] = ofChannels[static_cast<std::size_t>(attribute.type->channels - 1)];
         }
         indices_ = arrays_.addIndices();
     }
@@ -267,22 +268,30 @@ private:
         }
     }
 
+    // Returns how well a thing of the object fits a name in a list: 2 if it is of the material's model, 1 if
+    // materials with that model may have it, 0 if it is of another base.
+    int fitOf(int object) const {
+        return object == base_ && base_ >= 0 ? 2 : replacedBy(object).empty() ? 1 : 0;
+    }
+
+    // Names of a model stand before those that all models share.
     const materials::Parameter* parameterNamed(const std::string& name, const Place& place) {
-        const int found = model_.findParameter(name);
-        if (found < 0) {
-            std::vector<std::string> names;
-            for (const materials::Parameter& parameter : model_.parameters) {
-                names.push_back(parameter.name);
-            }
+        const materials::Parameter* found = nullptr;
+        std::vector<std::string> names;
+        for (const materials::Parameter& parameter : model_.parameters) {
+            const bool isBetter =
+                found == nullptr || fitOf(parameter.object) > fitOf(found->object);
+            found = parameter.declared == name && isBetter ? &parameter : found;
+            names.push_back(parameter.declared);
+        }
+        if (found == nullptr) {
             fail(place, fmt::format("no parameter is called \"{}\"{}", name, base::suggestion(name, names)));
-            return nullptr;
+        } else if (fitOf(found->object) == 0) {
+            fail(place, fmt::format("{} is of another base: the model of the material is {}", name,
+                                    replacedBy(found->object)));
+            found = nullptr;
         }
-        const materials::Parameter& parameter = model_.parameters[static_cast<std::size_t>(found)];
-        if (const std::string model = replacedBy(parameter.object); !model.empty()) {
-            fail(place, fmt::format("{} is of another base: the model of the material is {}", name, model));
-            return nullptr;
-        }
-        return &parameter;
+        return found;
     }
 
     void readTextures(const MaterialDescription& listed, std::size_t index, Json& material) {
@@ -292,10 +301,12 @@ private:
             const materials::MaterialTexture::Place* found = nullptr;
             for (const materials::MaterialTexture& slot : model_.textures) {
                 for (const materials::MaterialTexture::Place& one : slot.places) {
-                    if (replacedBy(one.object).empty()) {
-                        names.push_back(one.member);
-                        found = one.member == name ? &one : found;
+                    if (fitOf(one.object) == 0) {
+                        continue;
                     }
+                    names.push_back(one.member);
+                    const bool isBetter = found == nullptr || fitOf(one.object) > fitOf(found->object);
+                    found = one.member == name && isBetter ? &one : found;
                 }
             }
             if (found == nullptr) {
@@ -355,16 +366,19 @@ private:
     }
 
     void readValues(const MaterialDescription& listed, std::size_t index, Json& material) {
-        for (const auto& [name, numbers] : listed.values) {
+        for (const auto& [name, input] : listed.values) {
             const Place place = fmt::format("/materials/{}/values/{}", index, name);
             const materials::Parameter* const parameter = parameterNamed(name, place);
             if (parameter == nullptr) {
                 return;
             }
-            const auto count = static_cast<std::size_t>(parameter->channels);
-            if (numbers.size() != count) {
-                fail(place,
-                     count == 1 ? "must be a number" : fmt::format("must be a list of {} numbers", count));
+            Json value = toJson<Json>(input);
+            if (value.is_array() && value.size() == 1 && !parameter->isArray() && parameter->numbers == 1) {
+                value = Json(value[0]);
+            }
+            std::vector<double> numbers;
+            if (const auto fault = materials::readValue(*parameter, value, numbers)) {
+                fail(place + fault->place, fault->message);
                 return;
             }
             Json* target = &objectOf(material, parameter->object);
@@ -380,7 +394,7 @@ private:
                 target = &(*target)[member];
                 rest.remove_prefix(slash + 1);
             }
-            (*target)[std::string(rest)] = count == 1 ? Json(numbers.front()) : Json(numbers);
+            (*target)[std::string(rest)] = std::move(value);
         }
     }
 
@@ -392,6 +406,13 @@ private:
             if (parameter == nullptr) {
                 return;
             }
+            const bool isNamed = parameter->type->kind == materials::NumberKind::Truth ||
+                                 parameter->type->kind == materials::NumberKind::Name;
+            if (edited.range && isNamed) {
+                fail(place + "/range", fmt::format("is for numbers; {} has the type {}", edited.parameter,
+                                                   parameter->typeText()));
+                return;
+            }
             const materials::ValueInterval whole =
                 parameter->isAngle ? materials::ValueInterval{-std::numbers::pi, std::numbers::pi}
                                    : materials::ValueInterval{parameter->hold(parameter->low),
@@ -399,6 +420,11 @@ private:
             materials::ValueInterval range = whole;
             if (edited.range) {
                 range = {(*edited.range)[0], (*edited.range)[1]};
+                const bool isWhole = range.low == std::trunc(range.low) && range.high == std::trunc(range.high);
+                if (parameter->type->kind != materials::NumberKind::Real && !isWhole) {
+                    fail(place, fmt::format("{} to {} is no range of whole numbers", range.low, range.high));
+                    return;
+                }
                 if (!(whole.low <= range.low && range.low <= range.high && range.high <= whole.high)) {
                     fail(place, fmt::format("{} to {} is no range within that of {}, which is {} to {}",
                                             range.low, range.high, edited.parameter, whole.low, whole.high));

@@ -82,25 +82,50 @@ base::Json mapOf(base::Json values) {
 
 using M = MaterialDescription;
 
+// The depth of an array of matrices.
+constexpr int kDeepest = 2;
+
+ParameterInput readInput(base::JsonReader& reader, const base::Json& json, const std::string& place, int depth) {
+    if (json.is_boolean()) {
+        return json.get<bool>();
+    }
+    if (json.is_string()) {
+        return json.get<std::string>();
+    }
+    if (!json.is_array() || depth == kDeepest) {
+        constexpr double kLargest = std::numeric_limits<float>::max();
+        return reader.number(json, place, -kLargest, kLargest);
+    }
+    ParameterInput::List list;
+    reader.each(json, place, [&](const base::Json& one, const auto& there) {
+        list.push_back(readInput(reader, one, there, depth + 1));
+    });
+    return ParameterInput(std::move(list));
+}
+
+base::Json writeValues(const void* object) {
+    base::Json values = base::Json::object();
+    for (const auto& [name, input] : static_cast<const M*>(object)->values) {
+        values[name] = toJson<base::Json>(input);
+    }
+    return values;
+}
+
 void readValues(void* object, base::JsonReader& reader, const base::Json& json, const std::string& place,
                 const base::FieldTraits& /*traits*/) {
     reader.eachMember(json, place, [&](const std::string& name, const base::Json& one, const auto& there) {
-        std::vector<double>& numbers = static_cast<M*>(object)->values[name];
-        const auto add = [&](const base::Json& number, const std::string& at) {
-            numbers.push_back(reader.number(number, at, -kMost, std::numeric_limits<float>::max()));
-        };
-        if (one.is_array()) {
-            reader.each(one, there, add);
-        } else {
-            add(one, there);
-        }
+        static_cast<M*>(object)->values[name] = readInput(reader, one, there, 0);
     });
 }
 
 base::Json schemaOfValues(const base::FieldTraits& /*traits*/) {
-    base::Json number = base::schemaOfNumber(false, {.least = -kMost});
-    return mapOf(
-        base::schemaOfAny({number, base::schemaOfList(number, {.leastElements = 1, .mostElements = 4})}));
+    base::Json one = base::schemaOfAny({base::schemaOfNumber(false, {.least = -kMost}), {{"type", "boolean"}},
+                                        base::schemaOfText({})});
+    base::Json value = one;
+    for (int depth = 0; depth < kDeepest; ++depth) {
+        value = base::schemaOfAny({one, base::schemaOfList(value, {.leastElements = 1})});
+    }
+    return mapOf(value);
 }
 
 void readTextures(void* object, base::JsonReader& reader, const base::Json& json, const std::string& place,
@@ -160,9 +185,8 @@ base::Fields fieldsOf(const MaterialDescription*) {
                          kMayBeMissing),
         field<&M::features>("features", "Names of features that it asks for and gives no value of.",
                             kMayBeMissing),
-        readBy(base::output<&M::values>("values", "A number, or a list of them, by the names of parameters.",
-                                        kMayBeMissing),
-               readValues, schemaOfValues),
+        {"values", "A value, or a list of them, by the names of parameters.", kMayBeMissing, writeValues,
+         readValues, schemaOfValues},
         readBy(
             base::output<&M::textures>(
                 "textures", "An image's file relative to the list, or an object, by the names of textures.",

@@ -19,6 +19,8 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <variant>
 #include <vector>
 
 namespace glint::gltf {
@@ -32,6 +34,24 @@ base::Fields fieldsOf(const TextureDescription* none);
 base::Fields fieldsOf(const EditedParameter* none);
 base::Fields fieldsOf(const MaterialDescription* none);
 base::Fields fieldsOf(const MaterialSet* none);
+
+// Returns a value as JSON of either type.
+template <typename AnyJson>
+AnyJson toJson(const ParameterInput& input) {
+    return std::visit(
+        [](const auto& value) -> AnyJson {
+            if constexpr (std::is_same_v<std::decay_t<decltype(value)>, ParameterInput::List>) {
+                AnyJson list = AnyJson::array();
+                for (const ParameterInput& element : value) {
+                    list.push_back(toJson<AnyJson>(element));
+                }
+                return list;
+            } else {
+                return value;
+            }
+        },
+        input.value());
+}
 
 bool isMaterialList(const Json& json);
 // Collects errors "material-list" of the set or list with this path.

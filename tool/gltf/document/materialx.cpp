@@ -343,12 +343,12 @@ private:
             if (name == "base_color") {
                 numbers.push_back(1.0);  // glTF's alpha
             }
-            if (numbers.size() != static_cast<std::size_t>(parameter->channels)) {
+            if (numbers.size() != static_cast<std::size_t>(parameter->numbers)) {
                 return fail(fmt::format("{}/{}", surface_.attribute("name").value(), name),
                             fmt::format("has {} numbers; the input needs {}", input.numbers.size(),
-                                        parameter->channels - (name == "base_color" ? 1 : 0)));
+                                        parameter->numbers - (name == "base_color" ? 1 : 0)));
             }
-            made.values[parameter->name] = std::move(numbers);
+            made.values[parameter->declared] = std::move(numbers);
             if (!input.file.empty()) {
                 GLINT_TRY(const std::string slot, slotOf(name, inputs));
                 const Numbers tiling = input.tiling.empty() ? Numbers{1.0, 1.0} : input.tiling;

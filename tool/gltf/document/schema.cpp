@@ -1,5 +1,7 @@
 #include "gltf/document/schema.h"
 
+#include "materials/value_json.h"
+
 #include <cmath>
 #include <utility>
 
@@ -12,7 +14,7 @@ constexpr std::string_view kExpected[] = {
     "an integer",           "a number",  "an array of numbers",
     "true or false",        "a string",  "an integer",
     "an array of integers", "an object", "an object",
-    "an array of objects",
+    "an array of objects",  "",
 };
 
 std::string_view expectedOf(Kind kind) {
@@ -110,6 +112,24 @@ Status checkIntegers(Json& value, const Rule& rule) {
     return okStatus();
 }
 
+Status checkParameter(const Json& value, const Rule& rule) {
+    std::vector<double> numbers;
+    if (const auto fault = readValue(*rule.parameter, value, numbers)) {
+        const Json::json_pointer place(fault->place);
+        return isHugeNumber(value.at(place))
+                   ? within(fault->place, typeError(value.at(place), ""))
+                   : schemaError("json-type", fault->place, fault->message);
+    }
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        if (!(numbers[i] >= rule.min && numbers[i] <= rule.max)) {
+            return within(placeOfNumber(*rule.parameter, static_cast<int>(i)),
+                          schemaError("json-range", "",
+                                      fmt::format("is {}, outside of {} to {}", numbers[i], rule.min, rule.max)));
+        }
+    }
+    return okStatus();
+}
+
 Status checkValue(const Json& root, Json& value, const Rule& rule) {
     const auto expect = [&](bool holds) {
         return holds ? okStatus() : typeError(value, expectedOf(rule.kind));
@@ -137,6 +157,8 @@ Status checkValue(const Json& root, Json& value, const Rule& rule) {
         case Kind::Objects:
             return checkElements(value, expectedOf(rule.kind),
                                  [&](Json& element) { return checkObject(root, element, rule.rules); });
+        case Kind::Value:
+            return checkParameter(value, rule);
     }
     return okStatus();
 }

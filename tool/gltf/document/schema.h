@@ -16,6 +16,10 @@
 #include <utility>
 #include <vector>
 
+namespace glint::materials {
+struct Parameter;
+}
+
 namespace glint::gltf {
 
 using Json = nlohmann::json;
@@ -31,6 +35,7 @@ enum class Kind : std::uint8_t {
     Integers,  // object whose members are integers of any names
     Object,
     Objects,  // array of objects
+    Value,    // of the parameter Rule::parameter; its range is not checked
 };
 
 // A rule for one member of an object. Members without a rule are not checked.
@@ -45,6 +50,7 @@ struct Rule {
     std::size_t length = 0;
     std::string_view target{};      // JSON pointer of the array into which an index points
     std::span<const Rule> rules{};  // for Object and Objects
+    const materials::Parameter* parameter = nullptr;
 };
 
 // Short forms for the tables of rules.

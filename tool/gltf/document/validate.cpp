@@ -146,8 +146,7 @@ constexpr std::array kTransformRules{numbers("offset", 2), number("rotation"), n
 constexpr std::array kTextureInfoExtensions{object("KHR_texture_transform", kTransformRules)};
 
 Rule parameterRule(const materials::Parameter& parameter, std::string_view name) {
-    Rule rule =
-        parameter.channels == 1 ? number(name) : numbers(name, static_cast<std::size_t>(parameter.channels));
+    Rule rule{.name = name, .kind = Kind::Value, .parameter = &parameter};
     if (std::isinf(parameter.high)) {
         // Exporters write the largest number they know for an infinite one. A float need not be able to hold
         // it.

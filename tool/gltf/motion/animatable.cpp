@@ -106,12 +106,9 @@ std::string propertyPath(const materials::MaterialModel& model, int property) {
                               kTransformParts[partOf(model, property)]));
 }
 
-// Returns the first number of a material property.
-float* firstOf(materials::Material& material, int property) {
+// Returns the first number of a texture's transform.
+float* firstOfTransform(materials::Material& material, int property) {
     const materials::MaterialModel& model = material.model();
-    if (const materials::Parameter* parameter = parameterOf(model, property)) {
-        return &material.values[static_cast<std::size_t>(parameter->first)];
-    }
     materials::TextureTransform& transform =
         material.textures[static_cast<std::size_t>(placeOf(model, property).texture)].transform;
     switch (partOf(model, property)) {
@@ -131,12 +128,8 @@ double settled(const AnimatableProperty<Object, Number>& row, double value) {
 }
 
 // Returns the value as the material stores it while an animation plays, which never is Parameter::also.
-float heldValue(const materials::Parameter* parameter, double value) {
-    if (parameter == nullptr) {
-        return static_cast<float>(std::clamp(value, -kMax, kMax));
-    }
-    return parameter->hold(value == parameter->also ? std::clamp(value, parameter->low, parameter->high)
-                                                    : value);
+double heldValue(const materials::Parameter& parameter, double value) {
+    return parameter.hold(value == parameter.also ? std::clamp(value, parameter.low, parameter.high) : value);
 }
 
 // A material reads only one of the two base models.
@@ -174,6 +167,14 @@ std::string materialPropertyName(const materials::MaterialModel& model, int prop
     return name.starts_with(kExtensions) ? name.substr(kExtensions.size()) : name;
 }
 
+std::string notAnimated(const materials::MaterialModel& model, int property) {
+    const materials::Parameter* const parameter = parameterOf(model, property);
+    return parameter == nullptr || parameter->isVector()
+               ? std::string()
+               : fmt::format("has the type {}; animations change floats and vectors of them",
+                             parameter->typeText());
+}
+
 bool isFixed(const materials::Material& material, int property) {
     const materials::Parameter* const parameter = parameterOf(material.model(), property);
     return parameter != nullptr && parameter->also &&
@@ -198,7 +199,7 @@ bool takesCameraValue(int property, double value) {
 
 std::size_t materialPropertyWidth(const materials::MaterialModel& model, int property) {
     const materials::Parameter* const parameter = parameterOf(model, property);
-    return parameter != nullptr                   ? static_cast<std::size_t>(parameter->channels)
+    return parameter != nullptr                   ? static_cast<std::size_t>(parameter->numbers)
            : partOf(model, property) == kRotation ? 1U
                                                   : 2U;
 }
@@ -211,9 +212,13 @@ void setMaterialProperty(materials::Material& material, int property, std::span<
     if (!isRead(material, property)) {
         return;
     }
-    float* const numbers = firstOf(material, property);
+    const materials::Parameter* const parameter = parameterOf(material.model(), property);
     for (std::size_t i = 0; i < values.size(); ++i) {
-        numbers[i] = heldValue(parameterOf(material.model(), property), values[i]);
+        if (parameter != nullptr) {
+            material.values[static_cast<std::size_t>(parameter->first) + i] = heldValue(*parameter, values[i]);
+        } else {
+            firstOfTransform(material, property)[i] = static_cast<float>(std::clamp(values[i], -kMax, kMax));
+        }
     }
 }
 
@@ -241,8 +246,11 @@ void settleCamera(Camera& camera) {
 }
 
 double materialPropertyValue(const materials::Material& material, int property, std::size_t number) {
+    if (const materials::Parameter* const parameter = parameterOf(material.model(), property)) {
+        return material.values[static_cast<std::size_t>(parameter->first) + number];
+    }
     materials::Material copy = material;
-    return firstOf(copy, property)[number];
+    return firstOfTransform(copy, property)[number];
 }
 
 bool setPropertyRange(materials::Material& material, int property, std::size_t number, ValueRange range) {
@@ -261,12 +269,12 @@ bool setPropertyRange(materials::Material& material, int property, std::size_t n
         return varies;
     }
     if (material.ranges.empty()) {
-        for (const float value : material.values) {
+        for (const double value : material.values) {
             material.ranges.push_back({value, value});
         }
     }
     const bool turns = parameter->isAngle && varies;
-    const materials::ValueInterval held{heldValue(parameter, range.low), heldValue(parameter, range.high)};
+    const materials::ValueInterval held{heldValue(*parameter, range.low), heldValue(*parameter, range.high)};
     material.ranges[static_cast<std::size_t>(parameter->first) + number] =
         turns ? materials::ValueInterval{-std::numbers::pi, std::numbers::pi}
               : materials::hull({held.low, held.low}, {held.high, held.high});

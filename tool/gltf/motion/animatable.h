@@ -39,6 +39,9 @@ int materialPropertyCount(const materials::MaterialModel& model);
 // Returns the name without "extensions/" at its start.
 std::string materialPropertyName(const materials::MaterialModel& model, int property);
 
+// Returns why no animation may change the property; empty if one may.
+std::string notAnimated(const materials::MaterialModel& model, int property);
+
 // Whether the property has the value outside of its range that its parameter takes, too. KHR_materials_ior
 // calls that a mode, which no animation enters or leaves.
 bool isFixed(const materials::Material& material, int property);

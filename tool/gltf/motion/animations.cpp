@@ -282,6 +282,9 @@ private:
         if (!hasOwner()) {
             return undefined();
         }
+        if (const std::string reason = notAnimated(model_, *property); !reason.empty()) {
+            return wrong(reason);
+        }
         if (isFixed(scene_.materials[index], *property)) {
             return wrong("has a value in the file that stands for a mode, which no animation changes");
         }

@@ -100,8 +100,9 @@ struct CheckedScene {
 // for which the feature changes nothing are left out. Error "check-unreachable" if none is left.
 Result<CheckedScene> makeCheckedScene(const materials::MaterialModel& model, std::uint32_t combinations);
 
-// The values at which a parameter is checked: a usual one, the least and the greatest.
-std::vector<float> checkedValues(const materials::Parameter& parameter);
+// The numbers at which a parameter is checked: a usual one, the least and the greatest; of a bool or an enum
+// all.
+std::vector<double> checkedValues(const materials::Parameter& parameter);
 
 class FeatureEvaluator {
 public:

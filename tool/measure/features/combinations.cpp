@@ -27,23 +27,42 @@ std::uint32_t scrambled(std::uint32_t number) {
 }
 
 // The numbers of a parameter: one value for all channels, first the usual one, then the ends; then each
-// channel at the greatest with the others at the least.
+// channel of a vector at the greatest with the others at the least, or numbers of an array or a matrix that
+// differ.
 struct CheckedNumbers {
-    std::vector<std::array<float, 4>> of;
+    std::vector<std::vector<double>> of;
     std::size_t ends = 0;  // those before the channels
 };
 
 CheckedNumbers numbersOf(const materials::Parameter& parameter) {
     CheckedNumbers numbers;
-    const std::vector<float> values = checkedValues(parameter);
-    for (const float value : values) {
-        numbers.of.push_back({value, value, value, value});
+    const std::vector<double> values = checkedValues(parameter);
+    const auto count = static_cast<std::size_t>(parameter.numbers);
+    if (parameter.isNamedByConditions()) {
+        for (const double value : values) {
+            numbers.of.emplace_back(count, value);
+        }
+    } else {
+        // Equal numbers make matrices that no one has, and arrays that need not be arrays.
+        numbers.of.push_back(parameter.fallback);
     }
-    numbers.ends = values.size();
-    for (int channel = 0; parameter.channels > 1 && channel < parameter.channels; ++channel) {
-        const float least = *std::ranges::min_element(values);
-        numbers.of.push_back({least, least, least, least});
-        numbers.of.back()[static_cast<std::size_t>(channel)] = *std::ranges::max_element(values);
+    numbers.ends = numbers.of.size();
+    const double least = *std::ranges::min_element(values);
+    const double greatest = *std::ranges::max_element(values);
+    if (parameter.isVector()) {
+        for (std::size_t channel = 0; count > 1 && channel < count; ++channel) {
+            numbers.of.emplace_back(count, least);
+            numbers.of.back()[channel] = greatest;
+        }
+        return numbers;
+    }
+    constexpr std::uint32_t kDraws = 4;
+    for (std::uint32_t draw = 0; !parameter.isNamedByConditions() && draw < kDraws; ++draw) {
+        std::vector<double>& drawn = numbers.of.emplace_back();
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const double share = scrambled(draw * 65536U + i + 1) / 4294967295.0;
+            drawn.push_back(parameter.hold(least + share * (greatest - least)));
+        }
     }
     return numbers;
 }
@@ -143,7 +162,7 @@ gltf::Primitive squareOf(int material, const materials::MaterialModel& model, bo
         }
         gltf::VertexValues& given = square.attributes.emplace_back();
         given.name = attribute.gltf;
-        given.channels = static_cast<std::uint32_t>(attribute.channels);
+        given.channels = static_cast<std::uint32_t>(attribute.type->channels);
         for (std::uint32_t i = 0; i < 4 * given.channels; ++i) {
             given.values.push_back(static_cast<float>(scrambled(i + 1) % 5) / 4.0F);
         }
@@ -201,10 +220,9 @@ Combined combine(const materials::MaterialModel& model, const materials::Feature
                                   isRich ? " with vertex colours and UV 1" : "");
     for (std::size_t i = 0; i < choice.size(); ++i) {
         const materials::Parameter& parameter = *ingredients.parameters[i];
-        const std::array<float, 4>& numbers = ingredients.values[i].of[choice[i]];
-        const std::vector<float> values(numbers.begin(), numbers.begin() + parameter.channels);
-        made.material[parameter.name] = std::span(values);
-        made.place.parameters.emplace_back(parameter.name, values);
+        const std::vector<double>& numbers = ingredients.values[i].of[choice[i]];
+        made.material[parameter.name] = std::span(numbers);
+        made.place.parameters.emplace_back(parameter.name, std::vector<float>(numbers.begin(), numbers.end()));
     }
     const int object = code.feature < 0 ? -1 : model.features[static_cast<std::size_t>(code.feature)].object;
     if (object >= 0) {
@@ -275,12 +293,22 @@ std::vector<CheckedMaterial> addBases(const materials::MaterialModel& model,
 
 }  // namespace
 
-std::vector<float> checkedValues(const materials::Parameter& parameter) {
-    const double fallback = static_cast<double>(parameter.fallback[0]);
+std::vector<double> checkedValues(const materials::Parameter& parameter) {
+    const double fallback = parameter.fallback[0];
+    if (parameter.type->kind == materials::NumberKind::Truth ||
+        parameter.type->kind == materials::NumberKind::Name) {
+        std::vector<double> values{fallback};
+        for (double value = parameter.low; value <= parameter.high; ++value) {
+            if (value != fallback) {
+                values.push_back(value);
+            }
+        }
+        return values;
+    }
     const bool hasLow = std::isfinite(parameter.low) && parameter.low > -1e30;
     const bool hasHigh = std::isfinite(parameter.high) && parameter.high < 1e30;
     if (parameter.isAngle && !hasLow && !hasHigh) {
-        return {0.4F, 0.0F, 2.5F};
+        return {0.4F, 0.0, 2.5};
     }
     double usual = fallback;
     if (hasLow && hasHigh && (fallback <= parameter.low || fallback >= parameter.high)) {
@@ -290,10 +318,10 @@ std::vector<float> checkedValues(const materials::Parameter& parameter) {
     }
     const double least = hasLow ? parameter.low : -kFarFactor * std::max(std::abs(usual), 1.0);
     const double greatest = hasHigh ? parameter.high : kFarFactor * std::max(std::abs(usual), 1.0);
-    std::vector<float> values{static_cast<float>(usual)};
+    std::vector<double> values{parameter.hold(usual)};
     for (const double end : {least, greatest}) {
-        if (std::ranges::find(values, static_cast<float>(end)) == values.end()) {
-            values.push_back(static_cast<float>(end));
+        if (std::ranges::find(values, parameter.hold(end)) == values.end()) {
+            values.push_back(parameter.hold(end));
         }
     }
     return values;

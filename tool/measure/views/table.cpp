@@ -148,28 +148,36 @@ void showMaterials(const ViewInput& input, ViewValues& values) {
     });
 }
 
-// A set of lobes has the place among those of the scene as its number, so that its colour depends on the
-// scene alone.
+// A set of lobes, with the model of a pack, has the place among those of the scene as its number, so that its
+// colour depends on the scene alone.
 void showKeys(const ViewInput& input, ViewValues& values) {
     constexpr std::uint32_t kBaseAlone = 0x10000;  // no set of lobes has this number
     Filler filler(input, values);
-    std::set<std::uint32_t> known;
+    using LobesAndModel = std::pair<std::uint32_t, std::uint32_t>;
+    std::set<LobesAndModel> known;
+    std::map<std::uint32_t, std::uint32_t> models;  // by material
     for (const package::PrimitiveEntry& primitive : input.package->scene(input.scene).primitives) {
-        known.insert(primitive.key.lobes);
+        known.emplace(primitive.key.lobes, primitive.key.model);
+        models[primitive.materialIndex] = primitive.key.model;
     }
     const std::vector<std::uint32_t>& lobes = integersOf(input, "lobes");
-    known.insert(lobes.begin(), lobes.end());
-    known.erase(kNoLayerValue);
-    known.erase(0);
-    const std::vector<std::uint32_t> ordered(known.begin(), known.end());
+    const std::vector<std::uint32_t>& materials = integersOf(input, "material");
+    const auto keyOf = [&](std::size_t i) {
+        const auto model = models.find(materials[i]);
+        return LobesAndModel(lobes[i], model == models.end() ? 0 : model->second);
+    };
+    filler.eachSurface(lobes, [&](std::size_t i, std::uint32_t) { known.insert(keyOf(i)); });
+    known.erase({0, 0});
+    const std::vector<LobesAndModel> ordered(known.begin(), known.end());
     filler.eachSurface(lobes, [&](std::size_t i, std::uint32_t set) {
-        if (set == 0) {
+        const LobesAndModel key = keyOf(i);
+        if (key == LobesAndModel(0, 0)) {
             filler.category(i, kBaseAlone, "base alone", {44, 52, 66});
             return;
         }
-        const auto place = std::ranges::lower_bound(ordered, set) - ordered.begin();
+        const auto place = std::ranges::lower_bound(ordered, key) - ordered.begin();
         filler.category(i, static_cast<std::uint32_t>(place), [&] {
-            return fmt::format("{}", fmt::join(input.package->featureNames({set}), " "));
+            return fmt::format("{}", fmt::join(input.package->featureNames({set, 0, key.second}), " "));
         });
     });
 }
@@ -384,7 +392,8 @@ const std::vector<ViewInfo>& rows() {
     static const std::vector<ViewInfo> kRows = {
         view("shader", "case that shades the material where rays hit it", Categories, "case", {"shader"},
              showShaders),
-        view("key", "set of lobes of the surface's key", Categories, "lobes", {"lobes"}, showKeys),
+        view("key", "model of a pack and set of lobes of the surface's key", Categories, "lobes",
+             {"lobes", "material"}, showKeys),
         view("material", "material of the surface", Categories, "material", {"material"}, showMaterials),
         view("hit-shader", "case that shades what the ray hits", Categories, "case", {"hit-shader"},
              showHitShaders),

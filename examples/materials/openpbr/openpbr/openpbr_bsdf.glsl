@@ -54,27 +54,29 @@ vec3 openPbrDip(vec3 f0, vec3 tint) {
 
 // Reads the coat, and finds how it darkens the base.
 void openPbrCoat(Hit hit, vec3 baseAlbedo, float baseRoughness, float cosine, inout OpenPbr model) {
-    vec3 color = max(GLINT_MATERIAL_COAT_COLOR(hit), vec3(kDarkest));
-    model.coatEta = GLINT_MATERIAL_COAT_IOR(hit);
-    model.coatAlpha = openPbrAlphas(GLINT_MATERIAL_COAT_ROUGHNESS(hit), GLINT_MATERIAL_COAT_ROUGHNESS_ANISOTROPY(hit));
+    vec3 color = max(GLINT_MATERIAL_OPEN_PBR_COAT_COLOR(hit), vec3(kDarkest));
+    model.coatEta = GLINT_MATERIAL_OPEN_PBR_COAT_IOR(hit);
+    model.coatAlpha = openPbrAlphas(GLINT_MATERIAL_OPEN_PBR_COAT_ROUGHNESS(hit),
+                                    GLINT_MATERIAL_OPEN_PBR_COAT_ROUGHNESS_ANISOTROPY(hit));
     model.coatDepth = -0.5 * log(color);
     // The share of diffuse light that the coat's inner side turns back, and of light that a smooth base mirrors.
     float rough = 1.0 - (1.0 - openPbrMeanFresnel(model.coatEta)) / (model.coatEta * model.coatEta);
     float inner = mix(openPbrCoatFresnel(model.coatEta, cosine), rough, baseRoughness);
     vec3 darkening = (1.0 - inner) / max(1.0 - baseAlbedo * inner, vec3(1e-6));
-    model.coatDarkening = mix(vec3(1.0), darkening, GLINT_MATERIAL_COAT_DARKENING(hit));
+    model.coatDarkening = mix(vec3(1.0), darkening, GLINT_MATERIAL_OPEN_PBR_COAT_DARKENING(hit));
 }
 
 // Reads the glass or the scattering sheet beyond the interface.
 void openPbrGlass(Hit hit, Features features, inout OpenPbr model) {
-    model.transmission = GLINT_MATERIAL_TRANSMISSION_WEIGHT(hit);
+    model.transmission = GLINT_MATERIAL_OPEN_PBR_TRANSMISSION_WEIGHT(hit);
     model.isInside = !model.isThin && model.transmission > 0.0 && showsBack(features) && !hit.frontFace;
-    float depth = GLINT_MATERIAL_TRANSMISSION_DEPTH(hit);
-    vec3 color = GLINT_MATERIAL_TRANSMISSION_COLOR(hit);
+    float depth = GLINT_MATERIAL_OPEN_PBR_TRANSMISSION_DEPTH(hit);
+    vec3 color = GLINT_MATERIAL_OPEN_PBR_TRANSMISSION_COLOR(hit);
     model.tint = model.isThin || depth == 0.0 ? color : vec3(1.0);
-    float scale = GLINT_MATERIAL_TRANSMISSION_DISPERSION_SCALE(hit);
+    float scale = GLINT_MATERIAL_OPEN_PBR_TRANSMISSION_DISPERSION_SCALE(hit);
     if (scale > 0.0) {
-        model.eta = openPbrDispersed(model.eta.y, GLINT_MATERIAL_TRANSMISSION_DISPERSION_ABBE_NUMBER(hit) / scale);
+        model.eta =
+            openPbrDispersed(model.eta.y, GLINT_MATERIAL_OPEN_PBR_TRANSMISSION_DISPERSION_ABBE_NUMBER(hit) / scale);
     }
     if (model.isInside) {
         model.eta = 1.0 / model.eta;
@@ -84,13 +86,13 @@ void openPbrGlass(Hit hit, Features features, inout OpenPbr model) {
         float way = 0.0;
 #endif
         if (depth > 0.0) {
-            vec3 scattering = GLINT_MATERIAL_TRANSMISSION_SCATTER(hit) / max(depth, kLeastDepth);
+            vec3 scattering = GLINT_MATERIAL_OPEN_PBR_TRANSMISSION_SCATTER(hit) / max(depth, kLeastDepth);
             vec3 absorption = -log(max(color, vec3(kDarkest))) / max(depth, kLeastDepth) - scattering;
             absorption -= min(smallest(absorption), 0.0);
             vec3 kept = volumeTransmittance(absorption, way);
             model.clear = kept * volumeTransmittance(scattering, way);
             model.scattered = model.transmission * (kept - model.clear);
-            model.forward = 0.5 + 0.5 * GLINT_MATERIAL_TRANSMISSION_SCATTER_ANISOTROPY(hit);
+            model.forward = 0.5 + 0.5 * GLINT_MATERIAL_OPEN_PBR_TRANSMISSION_SCATTER_ANISOTROPY(hit);
         }
     }
 }
@@ -107,35 +109,35 @@ void openPbrBsdf(Hit hit, Features features, inout SurfaceValues values, inout S
         tangentFrame(hit, kNormalTexture, features, tangent, bitangent);
         vec2 along = toSurface(surface, tangent).xy;
         model.along = dot(along, along) > 0.0 ? normalize(along) : model.along;
-        anisotropy = GLINT_MATERIAL_SPECULAR_ROUGHNESS_ANISOTROPY(hit);
+        anisotropy = GLINT_MATERIAL_OPEN_PBR_SPECULAR_ROUGHNESS_ANISOTROPY(hit);
     }
-    model.coat = GLINT_HAS_OPEN_PBR_COAT(features) ? GLINT_MATERIAL_COAT_WEIGHT(hit) : 0.0;
+    model.coat = GLINT_HAS_OPEN_PBR_COAT(features) ? GLINT_MATERIAL_OPEN_PBR_COAT_WEIGHT(hit) : 0.0;
     float roughness = values.roughness;
     if (model.coat > 0.0) {
         // The lobes of slopes, of which the coat's counts twice.
-        float coatRoughness = GLINT_MATERIAL_COAT_ROUGHNESS(hit);
+        float coatRoughness = GLINT_MATERIAL_OPEN_PBR_COAT_ROUGHNESS(hit);
         float both = pow(roughness, 4.0) + 2.0 * pow(coatRoughness, 4.0);
         roughness = mix(roughness, pow(min(both, 1.0), 0.25), model.coat);
     }
     model.alpha = openPbrAlphas(roughness, anisotropy);
-    float coatIor = GLINT_HAS_OPEN_PBR_COAT(features) ? GLINT_MATERIAL_COAT_IOR(hit) : 1.0;
-    float weight = GLINT_MATERIAL_SPECULAR_WEIGHT(hit);
-    float eta = openPbrIndex(GLINT_MATERIAL_SPECULAR_IOR(hit), model.coat, coatIor, weight);
+    float coatIor = GLINT_HAS_OPEN_PBR_COAT(features) ? GLINT_MATERIAL_OPEN_PBR_COAT_IOR(hit) : 1.0;
+    float weight = GLINT_MATERIAL_OPEN_PBR_SPECULAR_WEIGHT(hit);
+    float eta = openPbrIndex(GLINT_MATERIAL_OPEN_PBR_SPECULAR_IOR(hit), model.coat, coatIor, weight);
     model.eta = vec3(eta);
 
-    vec3 color = values.color.rgb * GLINT_MATERIAL_BASE_WEIGHT(hit);
-    float share = GLINT_MATERIAL_SUBSURFACE_WEIGHT(hit);
-    vec3 subsurface = GLINT_MATERIAL_SUBSURFACE_COLOR(hit);
-    model.specularColor = GLINT_MATERIAL_SPECULAR_COLOR(hit);
+    vec3 color = values.color.rgb * GLINT_MATERIAL_OPEN_PBR_BASE_WEIGHT(hit);
+    float share = GLINT_MATERIAL_OPEN_PBR_SUBSURFACE_WEIGHT(hit);
+    vec3 subsurface = GLINT_MATERIAL_OPEN_PBR_SUBSURFACE_COLOR(hit);
+    model.specularColor = GLINT_MATERIAL_OPEN_PBR_SPECULAR_COLOR(hit);
     model.metalness = values.metallic;
     model.metalF0 = color;
     model.metalDip = openPbrDip(color, model.specularColor);
     model.metalWeight = min(weight, 1.0);
     model.diffuse = color * (1.0 - share);
     model.subsurface = subsurface * share;
-    model.diffuseRoughness = GLINT_MATERIAL_BASE_DIFFUSE_ROUGHNESS(hit);
+    model.diffuseRoughness = GLINT_MATERIAL_OPEN_PBR_BASE_DIFFUSE_ROUGHNESS(hit);
 
-    model.isThin = GLINT_HAS_OPEN_PBR_GLASS(features) && GLINT_MATERIAL_GEOMETRY_THIN_WALLED(hit) >= 0.5;
+    model.isThin = GLINT_HAS_OPEN_PBR_GLASS(features) && GLINT_MATERIAL_OPEN_PBR_GEOMETRY_THIN_WALLED(hit) >= 0.5;
     model.sidedness = 1.0;
     model.transmission = 0.0;
     model.tint = vec3(1.0);
@@ -145,7 +147,7 @@ void openPbrBsdf(Hit hit, Features features, inout SurfaceValues values, inout S
     model.forward = 0.5;
     if (GLINT_HAS_OPEN_PBR_GLASS(features)) {
         openPbrGlass(hit, features, model);
-        model.sidedness = model.isThin ? 0.5 - 0.5 * GLINT_MATERIAL_SUBSURFACE_SCATTER_ANISOTROPY(hit) : 1.0;
+        model.sidedness = model.isThin ? 0.5 - 0.5 * GLINT_MATERIAL_OPEN_PBR_SUBSURFACE_SCATTER_ANISOTROPY(hit) : 1.0;
     }
 
     float outside = mix(1.0, coatIor, model.coat);
@@ -153,9 +155,9 @@ void openPbrBsdf(Hit hit, Features features, inout SurfaceValues values, inout S
     model.filmIor = 1.0;
     model.filmThickness = 0.0;
     if (GLINT_HAS_OPEN_PBR_FILM(features)) {
-        model.filmWeight = GLINT_MATERIAL_THIN_FILM_WEIGHT(hit);
-        model.filmIor = GLINT_MATERIAL_THIN_FILM_IOR(hit) / outside;
-        model.filmThickness = 1000.0 * outside * GLINT_MATERIAL_THIN_FILM_THICKNESS(hit);
+        model.filmWeight = GLINT_MATERIAL_OPEN_PBR_THIN_FILM_WEIGHT(hit);
+        model.filmIor = GLINT_MATERIAL_OPEN_PBR_THIN_FILM_IOR(hit) / outside;
+        model.filmThickness = 1000.0 * outside * GLINT_MATERIAL_OPEN_PBR_THIN_FILM_THICKNESS(hit);
     }
 
     model.coatAlpha = vec2(kMinAlpha);
@@ -174,9 +176,9 @@ void openPbrBsdf(Hit hit, Features features, inout SurfaceValues values, inout S
     model.fuzzColor = vec3(0.0);
     model.fuzzRoughness = 1.0;
     if (GLINT_HAS_OPEN_PBR_FUZZ(features)) {
-        model.fuzz = GLINT_MATERIAL_FUZZ_WEIGHT(hit);
-        model.fuzzColor = GLINT_MATERIAL_FUZZ_COLOR(hit);
-        model.fuzzRoughness = max(GLINT_MATERIAL_FUZZ_ROUGHNESS(hit), kMinFuzzRoughness);
+        model.fuzz = GLINT_MATERIAL_OPEN_PBR_FUZZ_WEIGHT(hit);
+        model.fuzzColor = GLINT_MATERIAL_OPEN_PBR_FUZZ_COLOR(hit);
+        model.fuzzRoughness = max(GLINT_MATERIAL_OPEN_PBR_FUZZ_ROUGHNESS(hit), kMinFuzzRoughness);
     }
 
     openPbrPrepare(model, normalize(local));

@@ -80,7 +80,7 @@ constexpr void forEachEffect(std::uint32_t effects, const Visit& visit) {
 // --- The file ---
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 25;
+inline constexpr std::uint32_t kVersion = 26;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -268,6 +268,7 @@ struct FieldEntry {
     // The model whose records have it, as in keys; 0: glTF's bases. Several models have it by an entry each.
     // Fields of different models share their places.
     std::uint32_t model;
+    std::uint32_t type;  // a hash of the type and of an enum's names: other values have another meaning
 };
 
 static_assert(sizeof(PackageHeader) == 160);
@@ -282,7 +283,7 @@ static_assert(sizeof(AttributeEntry) == 60);
 static_assert(sizeof(EffectEntry) == 24);
 static_assert(sizeof(EmissionEntry) == 108);
 static_assert(sizeof(FeatureEntry) == 36);
-static_assert(sizeof(FieldEntry) == 20);
+static_assert(sizeof(FieldEntry) == 24);
 static_assert(sizeof(OpacityEntry) == 60);
 
 }  // namespace glint::package
