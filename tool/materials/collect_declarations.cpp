@@ -31,6 +31,12 @@ std::string macroCase(std::string_view name) {
     return macro;
 }
 
+// Whether a default is that of every element of an array.
+bool isOneElement(const Parameter& parameter, const DeclarationJson& json) {
+    return parameter.type->channels == 1 ? !json.is_array()
+                                         : json.is_array() && !json.empty() && !json[0].is_array();
+}
+
 }  // namespace
 
 int ModelBuilder::addFeature(const Members& members, Feature feature, Light light) {
@@ -240,6 +246,12 @@ void ModelBuilder::readDefault(const Members& members, Parameter& parameter) {
     parameter.fallback.clear();
     if (parameter.isVector() && parameter.numbers == 1 && fallback.is_string()) {
         parameter.fallback.push_back(Members::toNumber(fallback, members.at("default")));  // "infinity"
+    } else if (parameter.isArray() && isOneElement(parameter, fallback)) {
+        // The place of a fault is that in the first element.
+        const DeclarationJson all(static_cast<std::size_t>(parameter.count), fallback);
+        if (const auto fault = readValue(parameter, all, parameter.fallback)) {
+            failAt(members.at("default") + fault->place.substr(2), fault->message);
+        }
     } else if (const auto fault = readValue(parameter, fallback, parameter.fallback)) {
         failAt(members.at("default") + fault->place, fault->message);
     }

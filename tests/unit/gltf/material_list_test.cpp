@@ -222,7 +222,7 @@ TEST_F(MaterialLists, RefuseWhatNoDeclarationHas) {
     EXPECT_NE(material(R"("values": {"roughnessFactor": [1, 2]})").find("must be a number"),
               std::string::npos);
     EXPECT_NE(material(R"("values": {"sheenColorFactor": [1, "a", 0]})")
-                  .find("/values/sheenColorFactor/1: is no number"),
+                  .find("/values/sheenColorFactor/1: must be a number"),
               std::string::npos);
     EXPECT_NE(
         material(R"("values": {"glossinessFactor": 1})")

@@ -482,6 +482,179 @@ TEST(Declarations, OfEffectsSayWhatIsWrongAndWhere) {
             "one effect of the kind light");
 }
 
+// A parameter of a layer with these members, and conditions on it.
+std::string layerWith(const std::string& parameter, const std::string& rest = "") {
+    return R"({"name": "wet", "extension": "EXT_wet", "stage": "layer", "parameters": [{"name": "rim", )" +
+           parameter + "}]" + rest + "}";
+}
+
+TEST(Declarations, TypesHaveValuesOfTheirOwn) {
+    struct Case {
+        const char* parameter;
+        const char* refusal;
+    };
+    for (const Case& one : {
+             Case{R"("type": "int", "default": 0.5)", "/default: is 0.5; it must be a whole number"},
+             {R"("type": "int", "default": 3000000000)", "/default: is outside of the range"},
+             {R"("type": "uint", "default": -1)", "/default: is outside of the range"},
+             {R"("type": "int", "default": 5, "range": [0, 4])", "/default: is outside of the range"},
+             {R"("type": "int", "default": 1, "range": [0.5, 4])", "/range: 0.5 is no value of int"},
+             {R"("type": "int", "default": true)", "/default: must be a whole number"},
+             {R"("type": "bool", "default": 1)", "/default: must be true or false"},
+             {R"("type": "bool", "default": true, "range": [0, 1])", "/range: is for numbers"},
+             {R"("type": "float", "default": "soft")", "/default: must be a number, or \"infinity\""},
+             {R"("type": "enum", "default": "soft")", "parameters/0: an enum has names"},
+             {R"("type": "enum", "values": ["soft", "hard"], "default": "hart")",
+              "/default: \"hart\" is none of soft, hard; did you mean hard?"},
+             {R"("type": "enum", "values": ["soft", "hard"], "default": 1)",
+              "/default: must be one of the names soft, hard"},
+             {R"("type": "enum", "values": ["soft", "soft"], "default": "soft")",
+              "/values/1: \"rimSoft\" is declared twice"},
+             {R"("type": "enum", "values": ["Soft"], "default": "Soft")", "/values/0: \"Soft\" must be letters"},
+             {R"("type": "float", "values": ["soft"], "default": 1)", "/values: lists names"},
+             {R"("type": "mat3", "default": [1, 0, 0])", "/default: must be an array of 9 numbers"},
+             {R"("type": "float", "count": 0, "default": 1)", "/count: must be a whole number from 1 to 256"},
+             {R"("type": "float", "count": 2.5, "default": 1)", "/count: must be a whole number"},
+             {R"("type": "color", "count": 2, "default": [[0, 0, 0]])",
+              "/default: has 1 values; it must be an array of 2"},
+             {R"("type": "color", "count": 2, "default": [[0, 0, 0], [0, "a", 0]])",
+              "/default/1/1: must be a number"},
+             {R"("type": "color", "count": 2, "range": [0, 1], "default": [[0, 0, 0], [0, 2, 0]])",
+              "/default/1/1: is outside of the range"},
+             {R"("type": "int", "count": 2, "default": 0.5)", "/default: is 0.5; it must be a whole number"},
+             {R"("type": "int", "unit": "radians", "default": 0)", "/unit: angles are"},
+         }) {
+        const std::string refused = refusal(layerWith(one.parameter));
+        EXPECT_NE(refused.find(one.refusal), std::string::npos) << one.parameter << ": " << refused;
+    }
+    const auto numbersOf = [](const std::string& parameter) {
+        const materials::MaterialModel model = must(modelWith(layerWith(parameter)));
+        return model.parameters[static_cast<std::size_t>(model.findParameter("rim"))].fallback;
+    };
+    using Numbers = std::vector<double>;
+    EXPECT_EQ(numbersOf(R"("type": "uint", "default": 4294967295)"), Numbers{4294967295.0});
+    EXPECT_EQ(numbersOf(R"("type": "int", "default": -2147483648)"), Numbers{-2147483648.0});
+    EXPECT_EQ(numbersOf(R"("type": "enum", "values": ["soft", "hard"], "default": "hard")"), Numbers{1.0});
+    EXPECT_EQ(numbersOf(R"("type": "bool", "count": 2, "default": [false, true])"), (Numbers{0.0, 1.0}));
+    EXPECT_EQ(numbersOf(R"("type": "vec2", "count": 2, "default": [3, 4])"), (Numbers{3.0, 4.0, 3.0, 4.0}));
+}
+
+TEST(Declarations, ConditionsKnowWholeNumbersAndNames) {
+    const std::string edge = R"("type": "enum", "values": ["soft", "hard"], "default": "soft")";
+    const std::string flag = R"("type": "bool", "default": true)";
+    const std::string step = R"("type": "int", "default": 3)";
+    const auto neutral = [](const std::string& when) {
+        return R"(, "neutral": [{"when": ")" + when + R"(", "because": "it is so"}])";
+    };
+    const auto drops = [&](const std::string& parameter, const std::string& when) {
+        const materials::MaterialModel model = must(modelWith(layerWith(parameter, neutral(when))));
+        materials::Material material(model);
+        material.give("EXT_wet");
+        return (compiler::makeKey(material, {}, {}) & model.mask("wet")) == 0;
+    };
+    EXPECT_TRUE(drops(edge, "rim == soft"));
+    EXPECT_FALSE(drops(edge, "rim == hard"));
+    EXPECT_TRUE(drops(edge, "rim != hard and not (rim == hard)"));
+    EXPECT_TRUE(drops(flag, "rim"));
+    EXPECT_TRUE(drops(flag, "(rim) and rim == true"));
+    EXPECT_FALSE(drops(flag, "not rim or rim != true"));
+    EXPECT_TRUE(drops(flag, "select(rim, 1, 2) < 2"));
+    EXPECT_TRUE(drops(step, "rim - 1 == 2 and rim > 2.5"));
+    const auto refusedBy = [&](const std::string& parameter, const std::string& when) {
+        return refusal(layerWith(parameter, neutral(when)));
+    };
+    for (const std::string when : {"rim", "rim == 1", "rim < hard", "rim + 1 == 2", "rim.r == soft"}) {
+        EXPECT_NE(refusedBy(edge, when).find("#/neutral/0/when: "), std::string::npos) << when;
+    }
+    EXPECT_NE(refusedBy(edge, "rim == hart").find("\"hart\" is none of soft, hard"), std::string::npos);
+    EXPECT_NE(refusedBy(edge, "rim > 0").find("is compared by == or != with one of soft, hard"), std::string::npos);
+    EXPECT_NE(refusedBy(flag, "rim + 1 == 2").find("with one of false, true"), std::string::npos);
+    EXPECT_NE(refusedBy(R"("type": "mat3", "default": [1, 0, 0, 0, 1, 0, 0, 0, 1])", "rim == 0")
+                  .find("\"rim\" is a matrix, which conditions can't name"),
+              std::string::npos);
+    EXPECT_NE(refusedBy(R"("type": "float", "count": 2, "default": 0)", "rim == 0")
+                  .find("\"rim\" is an array, which conditions can't name"),
+              std::string::npos);
+    EXPECT_NE(refusal(layerWith(step, R"(, "textures": [{"name": "wetTexture", "scales": ["rim"]}])"))
+                  .find("#/textures/0/scales: \"rim\" has the type int"),
+              std::string::npos);
+    for (const std::string member : {R"("derived": [{"name": "damp", "type": "int", "value": "rim"}])",
+                                     R"("attributes": [{"name": "damp", "at": "_DAMP", "type": "int"}])"}) {
+        EXPECT_NE(refusal(layerWith(step, ", " + member)).find("/0/type: must be a number or a vector of floats"),
+                  std::string::npos)
+            << member;
+    }
+    // Whole numbers take part in derived fields.
+    EXPECT_TRUE(modelWith(layerWith(step, R"(, "derived": [{"name": "damp", "type": "float", "value": "rim / 2"}])")).ok());
+}
+
+// Models of packs have names of their own, which hide those that all models share.
+TEST(Declarations, NamesAreUniqueInTheirModel) {
+    const auto read = [](const std::vector<std::string>& texts) {
+        std::vector<std::string> names;
+        std::vector<materials::DeclarationFile> files;
+        for (const base::BuiltinFile& file : materials::declarationFiles()) {
+            files.push_back({file.name, file.text});
+        }
+        names.reserve(texts.size());
+        for (const std::string& text : texts) {
+            files.push_back({names.emplace_back("pack/" + std::to_string(names.size()) + ".json"), text, true});
+        }
+        return materials::readDeclarations(files);
+    };
+    const auto modelOf = [](const std::string& name, const std::string& more = "") {
+        return R"({"name": ")" + name + R"(", "extension": "EXT_)" + name + R"(", "stage": "base",
+            "replaces": {"object": "pbrMetallicRoughness"},
+            "parameters": [{"name": "color", "is": "baseColorFactor", "default": [1, 1, 1, 1]},
+                           {"name": "roughnessFactor", "type": "float", "default": 0.25},
+                           {"name": "texture", "type": "float", "default": 0},
+                           {"name": "precision", "type": "enum", "values": ["low", "high"], "default": "low"}],
+            "textures": [{"name": "frame"}, {"name": "specularTexture", "scales": ["roughnessFactor.r"]}],
+            "features": [{"name": "paths", "gltf": "paths", "neutral": [
+                {"when": "roughnessFactor == 0.25 or has(frame) or precision == low", "because": "it is plain"}]}])" +
+               more + "}";
+    };
+    const Result<materials::MaterialModel> both = read({modelOf("opal"), modelOf("jade")});
+    ASSERT_TRUE(both.ok()) << toString(both.error());
+    const std::string defines = both->featureDefines();
+    for (const char* const macro : {"GLINT_HAS_OPAL_FRAME", "GLINT_HAS_JADE_FRAME", "GLINT_KEY_HAS_OPAL_PATHS",
+                                    "GLINT_HAS_JADE_SPECULAR_TEXTURE", "GLINT_HAS_SPECULAR_TEXTURE"}) {
+        EXPECT_NE(defines.find(fmt::format("#define {}(", macro)), std::string::npos) << macro;
+    }
+    for (std::size_t i = 0; i < 2; ++i) {
+        const auto model = static_cast<int>(i);
+        const std::string name = both->models[i].name;
+        const auto own = static_cast<std::size_t>(both->findParameter("roughnessFactor", model));
+        EXPECT_EQ(both->parameters[own].name, name + "RoughnessFactor");
+        EXPECT_EQ(both->parameters[own].declared, "roughnessFactor");
+        EXPECT_EQ(both->parameters[own].place, "roughnessFactor");
+        EXPECT_EQ(both->parameters[own].scaledBy, both->findTexture(name + "SpecularTexture"));
+        materials::Material material(*both);
+        material.give("EXT_" + name);
+        EXPECT_EQ(material["roughnessFactor"][0], 0.25);
+        EXPECT_EQ(both->findParameter("metallicFactor", model), both->findParameter("metallicFactor"));
+    }
+    EXPECT_EQ(materials::Material(*both)["roughnessFactor"][0], 1.0);
+    // Full names meet only where two begin alike.
+    const auto refused = [&](const std::vector<std::string>& texts) {
+        const Result<materials::MaterialModel> model = read(texts);
+        return model ? std::string("accepted") : toString(model.error());
+    };
+    EXPECT_NE(refused({modelOf("opal"), modelOf("opalFrame", R"(, "derived": [])"),
+                       R"({"name": "opalFrame", "stage": "surface"})"})
+                  .find("\"opalFrame\" is declared twice"),
+              std::string::npos);
+    EXPECT_NE(refused({modelOf("opal", R"(, "derived": [{"name": "opalColor", "type": "float", "value": "1"}])")})
+                  .find("\"opalColor\" is declared twice"),
+              std::string::npos);
+    for (const std::string name : {"own", "textures"}) {
+        EXPECT_NE(refused({R"({"name": "wet", "stage": "surface", "parameters": [
+                             {"name": ")" + name + R"(", "type": "float", "default": 0}]})"})
+                      .find("is a member that all records have"),
+                  std::string::npos);
+    }
+}
+
 // Damaged declarations are refused, or read; they never crash.
 TEST(Declarations, DamagedFilesAreRefusedOrRead) {
     for (const base::BuiltinFile& file : materials::declarationFiles()) {

@@ -28,16 +28,16 @@ public:
         for (const MaterialObject& one : model.objects) {
             add(one.name, one.isExtension, one.replaces);
             for (const MaterialObject::Setting& setting : one.settings) {
-                add(setting.parameter, setting.value);
+                add(setting.parameter, setting.numbers);
             }
         }
         for (const Parameter& one : model.parameters) {
-            add(one.name, one.object, one.place, one.type, one.unit, one.about, one.fallback, one.low,
-                one.high, one.also.value_or(-99.0), one.isAngle, one.aliasOf, one.scaledBy,
+            add(one.name, one.declared, one.object, one.place, one.typeText(), one.unit, one.about,
+                one.fallback, one.low, one.high, one.also.value_or(-99.0), one.isAngle, one.aliasOf, one.scaledBy,
                 one.scaledByChannels, one.feature, one.inRecord);
         }
         for (const DerivedField& one : model.derived) {
-            add(one.name, one.type, one.unit, one.about, one.feature, one.count, one.channels.size());
+            add(one.name, one.type->name, one.unit, one.about, one.feature, one.channels.size());
             for (const Expression& channel : one.channels) {
                 add(channel.symbols());
             }
@@ -50,7 +50,7 @@ public:
             }
         }
         for (const VertexAttribute& one : model.attributes) {
-            add(one.name, one.gltf, one.type, one.about, one.fallback.value_or(std::array<float, 4>{-99.0F}),
+            add(one.name, one.gltf, one.type->name, one.about, one.fallback.value_or(std::array<float, 4>{-99.0F}),
                 one.fallback.has_value(), one.feature);
         }
         for (const Exclusion& one : model.exclusions) {
@@ -120,7 +120,8 @@ struct Case {
 };
 constexpr const char* kFeature = R"({"name": "amber", "extension": "EXT_wet", "stage": "layer",
     "parameters": [{"name": "wetness", "type": "float", "default": 0.5},
-                   {"name": "damp", "is": "ior", "default": 1}],
+                   {"name": "damp", "is": "ior", "default": 1},
+                   {"name": "rim", "type": "enum", "values": ["soft", "hard"], "default": "hard"}],
     "textures": [{"name": "wetTexture"}, {"name": "dampTexture", "is": "specularTexture"}],
     "attributes": [{"name": "wear", "at": "_WEAR", "type": "float"}],
     "derived": [{"name": "wetTwice", "type": "float", "value": "2 * wetness"}],
@@ -151,6 +152,7 @@ constexpr Case kCases[] = {
     {Place::Glsl, "/glsl", kBsdf},
     {Place::Parameter, "/parameters/0", kFeature},
     {Place::Parameter, "/parameters/1", kFeature},
+    {Place::Parameter, "/parameters/2", kFeature},
     {Place::Parameter, "/parameters/0", kBare},
     {Place::Parameter, "/parameters/0", kBsdf},
     {Place::Texture, "/textures/0", kFeature},
@@ -216,6 +218,8 @@ const std::map<std::string_view, std::vector<const char*>> kValues{
     {"at", {R"("moist")", R"("_MOIST")"}},
     {"type", {R"("vec2")", R"("float")", R"("color")"}},
     {"default", {"0.75", "1.75", "[1, 2]"}},
+    {"count", {"1"}},
+    {"values", {R"(["hard"])"}},
     {"range", {"[0, 2]"}},
     {"also", {"[7]"}},
     {"unit", {R"("metres")"}},
