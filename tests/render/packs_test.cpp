@@ -208,6 +208,45 @@ TEST(Packs, ThePageAddsALobe) {
     EXPECT_NEAR(pixel[0], 2.0 * 0.5 * l.z / std::numbers::pi, 1e-4);
 }
 
+// An array, an enum and a bool, as the page prints them, with its list of materials.
+TEST(Packs, ThePageAddsBandsOfColour) {
+    const test::TemporaryFolder folder;
+    test::writePrintedFiles("material_features.md", folder.path(),
+                            {"strata/strata.json", "strata/strata.glsl", "cliff.json"});
+    gltf::ImportOptions options;
+    options.materialModel =
+        must(materials::loadMaterialModel(std::vector{(folder.path() / "strata").string()}));
+    const gltf::Scene list = must(gltf::importScene(folder.path() / "cliff.json", options));
+    EXPECT_TRUE(list.warnings.empty());
+    EXPECT_EQ(list.animatedMaterials.at(0).edited, std::vector<std::string>{"strataTurns 0 to 1"});
+    materials::Material cliff = list.materials[0];
+    cliff["metallicFactor"] = 0.0F;
+    cliff.give("KHR_materials_specular");
+    cliff["specularFactor"] = 0.0F;
+    const auto pixelOf = [&](const std::function<void(materials::Material&)>& change) {
+        materials::Material material = cliff;
+        change(material);
+        gltf::Scene scene = sceneWithCamera();
+        addQuad(scene, material, {-4, -4, -4}, {8, 0, 0}, {0, 8, 0});
+        addDirectionalLight(scene, {0, 0, -1}, 2.0F);
+        compiler::CompileSettings settings;
+        settings.strategies = package::kStrategyUber;
+        settings.effects = {false, compiler::builtinEffects({})};
+        const LinearImage image = LoadedScene(scene, settings).render(package::kStrategyUber, darkSetup(scene, 16));
+        Pixel pixel = at(image, 8, 6);
+        for (float& channel : pixel) {
+            channel *= std::numbers::pi_v<float> / 2.0F;
+        }
+        return pixel;
+    };
+    // Pixel 6 of 16 is at the height 4 * (1 - 2 * 6.5 / 16).
+    expectColor(pixelOf([](materials::Material&) {}), {0.25F, 0.5F, 0.75F}, 1e-4F, "hard");
+    expectColor(pixelOf([](materials::Material& one) { one["strataEdge"] = 0.0; }),
+                {0.3125F, 0.4375F, 0.59375F}, 1e-4F, "soft");
+    expectColor(pixelOf([](materials::Material& one) { one["strataTurns"] = 1.0; }), {0.75F, 0.75F, 0.5F}, 1e-4F,
+                "turned");
+}
+
 TEST(Packs, ErrorsOfGlslNameTheFileTheLineAndTheFeature) {
     const test::TemporaryFolder folder;
     fs::copy(kPacks + "/retroreflection", folder.path() / "retroreflection");

@@ -141,7 +141,7 @@ TEST_F(MaterialPacks, AttributesOfVerticesAreAnApplicationsOwn) {
     const materials::MaterialModel* model = must(load());
     ASSERT_EQ(model->attributes.size(), 1U);
     const materials::VertexAttribute& wet = model->attributes.front();
-    EXPECT_EQ(wet.channels, 3);
+    EXPECT_EQ(wet.type->channels, 3);
     EXPECT_EQ(wet.fallback, (std::array<float, 4>{1, 2, 3, 0}));
     EXPECT_EQ(model->features[static_cast<std::size_t>(wet.feature)].name, "mud");
 
