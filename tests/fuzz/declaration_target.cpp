@@ -100,6 +100,10 @@ const glint::fuzz::InputSchema& glint::fuzz::inputSchema() {
                                       "texel(normalTexture).r == 1",
                                       "is {} at most",
                                       "_WEAR",
+                                      "enum",
+                                      "soft",
+                                      "rim == soft",
+                                      "rim",
                                       "radians",
                                       "infinity",
                                       "attribute(wear)"}};

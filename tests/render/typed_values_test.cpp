@@ -88,7 +88,8 @@ void writeModel(const std::filesystem::path& folder, const std::string& name) {
     for (char& c : upper) {
         c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     }
-    for (const auto& [file, text] : {std::pair{".json", kDeclaration}, {".glsl", kModel}, {"_surface.glsl", kSurface}}) {
+    for (const auto& [file, text] :
+         {std::pair{".json", kDeclaration}, {".glsl", kModel}, {"_surface.glsl", kSurface}}) {
         std::string made = std::regex_replace(std::string(text), std::regex("opal"), name);
         made = std::regex_replace(made, std::regex("Opal"), capital);
         made = std::regex_replace(made, std::regex("OPAL"), upper);
@@ -179,8 +180,8 @@ TEST_F(TypedValues, ChangeWhileAPackageIsInUse) {
     posed.update();
     const LinearImage after = drawn(*renderer, setup.frame);
     // The feature `worn` stays, since the package keeps it for all values.
-    expectColor(at(after, 4, 8), {0.75F + 8.0F, 0.25F + 1.0F + 2.0F, 0.25F * 37.0F + 0.5F * 44.0F + 0.75F}, 1e-6F,
-                "after");
+    expectColor(at(after, 4, 8), {0.75F + 8.0F, 0.25F + 1.0F + 2.0F, 0.25F * 37.0F + 0.5F * 44.0F + 0.75F},
+                1e-6F, "after");
     expectColor(at(after, 12, 8), kSecond, 1e-6F, "the other one");
 }
 

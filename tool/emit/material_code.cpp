@@ -207,9 +207,9 @@ std::string vertexAttributeCode(const materials::MaterialModel& model, materials
             "    if ({}) {{\n",
             hasFeature(model.features[static_cast<std::size_t>(attribute->feature)], Asked::OfAnyKey));
         for (int i = 0; i < attribute->type->channels; ++i) {
-            reads += fmt::format("        values.{}{} = vertexAttribute(geometry, corner, weights, {}u);\n",
-                                 attribute->name,
-                                 attribute->type->channels == 1 ? "" : fmt::format(".{}", kChannels[i]), offset++);
+            reads += fmt::format(
+                "        values.{}{} = vertexAttribute(geometry, corner, weights, {}u);\n", attribute->name,
+                attribute->type->channels == 1 ? "" : fmt::format(".{}", kChannels[i]), offset++);
         }
         reads += "    }\n";
     }

@@ -54,12 +54,13 @@ double derivedValue(const materials::MaterialFacts& facts, const materials::Deri
     return number.of[shared ? 0 : static_cast<std::size_t>(channel)].low;
 }
 
-// The macros that read a field of a record, and of the record of a hit's material.
+// The macros that read a field of a record, and of the record of a hit's material. Their arguments have names
+// that no field has.
 std::string fieldMacros(std::string_view name, bool isArray, std::string_view value) {
     const std::string macro = materials::fieldMacro(name);
-    const std::string_view index = isArray ? ", index" : "";
+    const std::string_view index = isArray ? ", index_" : "";
     return fmt::format(
-        "#define GLINT_RECORD_{0}(record{1}) {2}\n#define GLINT_MATERIAL_{0}(hit{1}) "
+        "#define GLINT_RECORD_{0}(record_{1}) {2}\n#define GLINT_MATERIAL_{0}(hit{1}) "
         "GLINT_RECORD_{0}(GLINT_MATERIAL(hit){1})\n",
         macro, index, value);
 }
@@ -74,7 +75,7 @@ std::string constantOf(const materials::ValueType& type, int count, std::span<co
     for (std::size_t first = 0; first < numbers.size(); first += channels) {
         text += (first == 0 ? "" : ", ") + literalOf(type, numbers.subspan(first, channels));
     }
-    return text + ")[index]";
+    return text + ")[index_]";
 }
 
 std::uint32_t ownIndex(const MaterialLayout& layout, const RecordField& field) {
@@ -87,30 +88,25 @@ std::string readOf(const MaterialLayout& layout, const RecordField& field) {
     const bool isArray = field.count > 0;
     const bool isShared = layout.isShared(field);
     if (isShared && !field.type->isMatrix()) {
-        return valueOfField(*field.type, fmt::format("(record).{}{}", field.name, isArray ? "[index]" : ""));
+        return valueOfField(*field.type,
+                            fmt::format("(record_).{}{}", field.name, isArray ? "[index_]" : ""));
     }
     const std::string_view array = isShared ? std::string_view(field.name) : "own";
-    const std::string stride =
-        !isArray ? "" : fmt::format(" + {} * int(index)", field.type->channels);
+    const std::string stride = !isArray ? "" : fmt::format(" + {} * int(index_)", field.type->channels);
     std::vector<std::string> floats;
     for (int i = 0; i < field.type->channels; ++i) {
         const std::uint32_t place = (isShared ? 0U : ownIndex(layout, field)) + static_cast<std::uint32_t>(i);
-        floats.push_back(fmt::format("(record).{}[{}{}]", array, place, stride));
+        floats.push_back(fmt::format("(record_).{}[{}{}]", array, place, stride));
     }
     return valueOfFloats(*field.type, floats);
 }
 
 // The type and the name of a member of records.
 std::string memberOf(const RecordField& field, RecordLanguage language) {
-    const bool isScalar = field.type->channels == 1 || field.type->isMatrix();
-    const std::string_view type = language == RecordLanguage::Glsl || field.type->field == "float"
-                                      ? field.type->field
-                                  : field.type->field == "int" ? "std::int32_t"
-                                  : isScalar                    ? "std::uint32_t"
-                                                                : "";
-    const std::uint32_t elements = field.numbers() / (isScalar ? 1U : static_cast<std::uint32_t>(field.type->channels));
-    return fmt::format("{} {}{}", type.empty() ? fmt::format("gpu::{}", field.type->field) : std::string(type), field.name,
-                       field.count > 0 || field.type->isMatrix() ? fmt::format("[{}]", elements) : "");
+    const std::uint32_t elements =
+        field.type->isMatrix() ? field.numbers() : static_cast<std::uint32_t>(field.count);
+    return fmt::format("{} {}{}", language == RecordLanguage::Glsl ? field.type->field : field.type->cpp,
+                       field.name, elements > 0 ? fmt::format("[{}]", elements) : "");
 }
 
 // Whether a frame may be that of a texture's coordinates though no key reads the texture.
@@ -407,9 +403,8 @@ std::string recordDeclarations(const MaterialLayout& layout, const materials::Fe
                                              model.models[static_cast<std::size_t>(owner)].feature)]
                                          .bit);
     };
-    std::string text =
-        "// The values of a material that the scenes of the package need.\n" +
-        recordStruct(layout, RecordLanguage::Glsl);
+    std::string text = "// The values of a material that the scenes of the package need.\n" +
+                       recordStruct(layout, RecordLanguage::Glsl);
     text +=
         "layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer MaterialArray { "
         "MaterialRecord "
@@ -445,10 +440,10 @@ std::string recordDeclarations(const MaterialLayout& layout, const materials::Fe
     for (const materials::DerivedField& field : model.derived) {
         const std::array<double, 4> zero{};
         if (isNamed(field.feature)) {
-            define(field.name,
-                   literalOf(*field.type,
-                             std::span(zero).first(static_cast<std::size_t>(field.type->channels))),
-                   false);
+            define(
+                field.name,
+                literalOf(*field.type, std::span(zero).first(static_cast<std::size_t>(field.type->channels))),
+                false);
         }
     }
     return text;

@@ -452,13 +452,15 @@ private:
                                        kExportMesh);
             }
             if (elements.components != static_cast<std::size_t>(declared.type->channels)) {
-                return document_.error("attribute-type", pointer,
-                                       fmt::format("has {} components; the pack's attribute \"{}\" has {}",
-                                                   elements.components, declared.name, declared.type->channels),
-                                       "export the mesh again, or correct the declaration");
+                return document_.error(
+                    "attribute-type", pointer,
+                    fmt::format("has {} components; the pack's attribute \"{}\" has {}", elements.components,
+                                declared.name, declared.type->channels),
+                    "export the mesh again, or correct the declaration");
             }
-            primitive_.attributes.push_back(
-                {declared.gltf, static_cast<std::uint32_t>(declared.type->channels), std::move(elements.values)});
+            primitive_.attributes.push_back({declared.gltf,
+                                             static_cast<std::uint32_t>(declared.type->channels),
+                                             std::move(elements.values)});
         }
         return okStatus();
     }

@@ -168,6 +168,13 @@ bool usesMaterial(const Scene& scene, std::size_t material) {
     });
 }
 
+std::string rangeText(const materials::Parameter& parameter, const materials::ValueInterval& range) {
+    return parameter.type->kind == materials::NumberKind::Truth ? "false or true"
+           : parameter.type->kind == materials::NumberKind::Name
+               ? fmt::format("{}", fmt::join(parameter.names, " or "))
+               : fmt::format("{:.4g} to {:.4g}", range.low, range.high);
+}
+
 // Planning takes the whole range of values that a program may set; pictures show those of the list.
 Status addRunTimeValues(const Document& document, Scene& scene) {
     for (const EditedValue& edited : document.edited()) {
@@ -185,16 +192,15 @@ Status addRunTimeValues(const Document& document, Scene& scene) {
         for (int i = 0; i < parameter.numbers; ++i) {
             const auto place = static_cast<std::size_t>(parameter.first + i);
             if (rest.values[place] < range.low || rest.values[place] > range.high) {
-                return document.error("material-list", edited.pointer,
-                                      fmt::format("{} is {}, which is not within {} to {}", parameter.declared,
-                                                  rest.values[place], range.low, range.high),
-                                      "give it a value within the range, or widen the range");
+                return document.error(
+                    "material-list", edited.pointer,
+                    fmt::format("{} is {}, which is not within {} to {}", parameter.declared,
+                                rest.values[place], range.low, range.high),
+                    "give it a value within the range, or widen the range");
             }
             animated.planned.ranges[place] = range;
         }
-        animated.edited.push_back(parameter.names.empty()
-                                      ? fmt::format("{} {:.4g} to {:.4g}", parameter.name, range.low, range.high)
-                                      : fmt::format("{} {}", parameter.name, fmt::join(parameter.names, " or ")));
+        animated.edited.push_back(fmt::format("{} {}", parameter.name, rangeText(parameter, range)));
     }
     return okStatus();
 }

@@ -34,8 +34,7 @@ public:
 
     ParameterInput() = default;  // an empty list
     template <typename Number>
-        requires std::is_arithmetic_v<Number>
-    ParameterInput(Number number) {
+    requires std::is_arithmetic_v<Number> ParameterInput(Number number) {
         if constexpr (std::same_as<Number, bool>) {
             value_ = number;
         } else {

@@ -219,8 +219,8 @@ struct SourceFile {
     std::uint64_t hash = 0;  // XXH3, 64 bits
 };
 
-// A material whose values animations change (KHR_animation_pointer), or a program at run time. Its features are
-// decided once for all of them.
+// A material whose values animations change (KHR_animation_pointer), or a program at run time. Its features
+// are decided once for all of them.
 struct AnimatedMaterial {
     int material = 0;          // index into Scene::materials
     materials::Material rest;  // as the file gives it

@@ -149,7 +149,8 @@ void ModelBuilder::collect(File& file) {
 const ValueType& ModelBuilder::vectorType(const Members& members) {
     const ValueType& type = choose(kTypes, members, "type", members.text("type"));
     if (!type.isVector()) {
-        failAt(members.at("type"), fmt::format("must be a number or a vector of floats, and not \"{}\"", type.name),
+        failAt(members.at("type"),
+               fmt::format("must be a number or a vector of floats, and not \"{}\"", type.name),
                "use float, vec2, vec3, color or vec4");
     }
     return type;
@@ -160,9 +161,10 @@ void ModelBuilder::readType(const Members& members, Parameter& parameter) {
     const bool isEnum = parameter.type->kind == NumberKind::Name;
     parameter.names = members.texts("values");
     if (isEnum == parameter.names.empty()) {
-        failAt(members.has("values") ? members.at("values") : members.where(),
-               isEnum ? "an enum has names: \"values\" must list them" : "lists names, which enums alone have",
-               isEnum ? "write \"values\": [\"soft\", \"hard\"]" : "make the type \"enum\", or leave them out");
+        failAt(
+            members.has("values") ? members.at("values") : members.where(),
+            isEnum ? "an enum has names: \"values\" must list them" : "lists names, which enums alone have",
+            isEnum ? "write \"values\": [\"soft\", \"hard\"]" : "make the type \"enum\", or leave them out");
     }
     if (members.has("count")) {
         const double count = members.number("count", 0.0);
@@ -185,8 +187,8 @@ void ModelBuilder::readRange(const Members& members, Parameter& parameter) {
     parameter.high = greatest;
     if (members.has("range")) {
         if (kind == NumberKind::Truth || kind == NumberKind::Name) {
-            failAt(members.at("range"), fmt::format("is for numbers, and this is a value of \"{}\"",
-                                                    parameter.type->name),
+            failAt(members.at("range"),
+                   fmt::format("is for numbers, and this is a value of \"{}\"", parameter.type->name),
                    "leave it out");
         }
         if (parameter.isAngle) {

@@ -269,7 +269,8 @@ private:
             accept({left}, false);
             return -1;
         }
-        return append({isDifferent ? Operation::Different : Operation::Equal, true, 1, {left, append(value), -1}});
+        return append(
+            {isDifferent ? Operation::Different : Operation::Equal, true, 1, {left, append(value), -1}});
     }
 
     int sum() {

@@ -285,9 +285,8 @@ std::optional<Symbol> ModelBuilder::resolve(std::string_view function,
     };
     if (function.empty()) {
         const int index = named(&MaterialModel::findParameter, names[0]);
-        return index < 0
-                   ? std::nullopt
-                   : std::optional(symbolOf(model_.parameters[static_cast<std::size_t>(index)], index));
+        return index < 0 ? std::nullopt
+                         : std::optional(symbolOf(model_.parameters[static_cast<std::size_t>(index)], index));
     }
     if (function == "has" && names.size() == 1) {
         const int index = named(&MaterialModel::findFeature, names[0]);
@@ -306,7 +305,8 @@ std::optional<Symbol> ModelBuilder::resolve(std::string_view function,
         return condition(index, model_.symbolOfAttribute(index));
     }
     if (function == "same" && names.size() == 2) {
-        const std::array<int, 2> pair{named(&MaterialModel::findTexture, names[0]), named(&MaterialModel::findTexture, names[1])};
+        const std::array<int, 2> pair{named(&MaterialModel::findTexture, names[0]),
+                                      named(&MaterialModel::findTexture, names[1])};
         if (pair[0] < 0 || pair[1] < 0) {
             return std::nullopt;
         }
@@ -451,7 +451,8 @@ void ModelBuilder::linkParameters(const File& file, const Members& members) {
     for (const auto& [json, where] : members.list("parameters")) {
         const Members row(*json, where, Place::Parameter);
         Parameter& parameter =
-            model_.parameters[static_cast<std::size_t>(named(&MaterialModel::findParameter, row.text("name")))];
+            model_
+                .parameters[static_cast<std::size_t>(named(&MaterialModel::findParameter, row.text("name")))];
         parameter.feature = row.has("of") ? featureNamed(row.text("of"), row.at("of")) : file.mainFeature;
     }
 }
@@ -472,10 +473,9 @@ void ModelBuilder::linkDerived(const File& file, const Members& members) {
     } else {
         field.channels.push_back(expression(members["value"], members.at("value"), false));
     }
-    const bool fits = field.channels.size() == 1
-                          ? field.channels[0].channels() == field.type->channels ||
-                                field.channels[0].channels() == 1
-                          : field.channels.size() == count;
+    const bool fits = field.channels.size() == 1 ? field.channels[0].channels() == field.type->channels ||
+                                                       field.channels[0].channels() == 1
+                                                 : field.channels.size() == count;
     if (!fits) {
         failAt(members.at("value"), fmt::format("must give {} channels", count));
     }

@@ -267,7 +267,7 @@ struct Parameter {
 
 // A field of the record that follows from parameters.
 struct DerivedField {
-    std::string name;                   // unique in all declarations
+    std::string name;                    // unique in all declarations
     const ValueType* type = &kTypes[0];  // one of kVectorTypes
     std::string unit{};
     std::string about{};
@@ -478,8 +478,8 @@ public:
     int findFeature(std::string_view name) const;
     int findObject(std::string_view name) const;
     int findAttribute(std::string_view name) const;
-    // The same for what materials of a model of a pack mean by a name: a thing of the model, or else one that all
-    // models share. `model` is an index into `models`; -1: of glTF's bases.
+    // The same for what materials of a model of a pack mean by a name: a thing of the model, or else one that
+    // all models share. `model` is an index into `models`; -1: of glTF's bases.
     int findParameter(std::string_view name, int model) const;
     int findTexture(std::string_view name, int model) const;
 

@@ -38,7 +38,8 @@ public:
             return ValueFault{"", fmt::format("must be an array of {} values", count)};
         }
         if (json.size() != count) {
-            return ValueFault{"", fmt::format("has {} values; it must be an array of {}", json.size(), count)};
+            return ValueFault{"",
+                              fmt::format("has {} values; it must be an array of {}", json.size(), count)};
         }
         for (std::size_t i = 0; i < count; ++i) {
             if (auto fault = readOne(json[i], fmt::format("/{}", i))) {

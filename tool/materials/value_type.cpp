@@ -17,11 +17,11 @@ struct Reading {
     const char* ofField;
 };
 constexpr Reading kReadings[] = {
-    {"{}", "{}"},                              // Real
-    {"floatBitsToInt({})", "{}"},              // Signed
-    {"floatBitsToUint({})", "{}"},             // Unsigned
+    {"{}", "{}"},                                   // Real
+    {"floatBitsToInt({})", "{}"},                   // Signed
+    {"floatBitsToUint({})", "{}"},                  // Unsigned
     {"(floatBitsToUint({}) != 0u)", "({} != 0u)"},  // Truth
-    {"floatBitsToUint({})", "{}"},             // Name
+    {"floatBitsToUint({})", "{}"},                  // Name
 };
 
 const Reading& readingOf(const ValueType& type) {

@@ -23,6 +23,7 @@ struct ValueType {
     std::string_view name;   // in declarations
     std::string_view glsl;   // of what GLSL reads
     std::string_view field;  // in GLSL, of a member of a record; matrices are arrays of it, by columns
+    std::string_view cpp;    // the same in C++, below the namespace glint
     NumberKind kind = NumberKind::Real;
     int channels = 1;  // the numbers of a value
 
@@ -34,17 +35,17 @@ struct ValueType {
     }
 };
 inline constexpr ValueType kTypes[] = {
-    {"float", "float", "float"},
-    {"vec2", "vec2", "vec2", NumberKind::Real, 2},
-    {"vec3", "vec3", "vec3", NumberKind::Real, 3},
-    {"color", "vec3", "vec3", NumberKind::Real, 3},
-    {"vec4", "vec4", "vec4", NumberKind::Real, 4},
-    {"int", "int", "int", NumberKind::Signed},
-    {"uint", "uint", "uint", NumberKind::Unsigned},
-    {"bool", "bool", "uint", NumberKind::Truth},
-    {"enum", "uint", "uint", NumberKind::Name},
-    {"mat3", "mat3", "float", NumberKind::Real, 9},
-    {"mat4", "mat4", "float", NumberKind::Real, 16},
+    {"float", "float", "float", "float"},
+    {"vec2", "vec2", "vec2", "gpu::vec2", NumberKind::Real, 2},
+    {"vec3", "vec3", "vec3", "gpu::vec3", NumberKind::Real, 3},
+    {"color", "vec3", "vec3", "gpu::vec3", NumberKind::Real, 3},
+    {"vec4", "vec4", "vec4", "gpu::vec4", NumberKind::Real, 4},
+    {"int", "int", "int", "std::int32_t", NumberKind::Signed},
+    {"uint", "uint", "uint", "std::uint32_t", NumberKind::Unsigned},
+    {"bool", "bool", "uint", "std::uint32_t", NumberKind::Truth},
+    {"enum", "uint", "uint", "std::uint32_t", NumberKind::Name},
+    {"mat3", "mat3", "float", "float", NumberKind::Real, 9},
+    {"mat4", "mat4", "float", "float", NumberKind::Real, 16},
 };
 // A number or a vector in floating point: what vertices have, derived fields are, textures scale and
 // animations change.

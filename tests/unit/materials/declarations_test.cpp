@@ -510,7 +510,8 @@ TEST(Declarations, TypesHaveValuesOfTheirOwn) {
               "/default: must be one of the names soft, hard"},
              {R"("type": "enum", "values": ["soft", "soft"], "default": "soft")",
               "/values/1: \"rimSoft\" is declared twice"},
-             {R"("type": "enum", "values": ["Soft"], "default": "Soft")", "/values/0: \"Soft\" must be letters"},
+             {R"("type": "enum", "values": ["Soft"], "default": "Soft")",
+              "/values/0: \"Soft\" must be letters"},
              {R"("type": "float", "values": ["soft"], "default": 1)", "/values: lists names"},
              {R"("type": "mat3", "default": [1, 0, 0])", "/default: must be an array of 9 numbers"},
              {R"("type": "float", "count": 0, "default": 1)", "/count: must be a whole number from 1 to 256"},
@@ -567,7 +568,8 @@ TEST(Declarations, ConditionsKnowWholeNumbersAndNames) {
         EXPECT_NE(refusedBy(edge, when).find("#/neutral/0/when: "), std::string::npos) << when;
     }
     EXPECT_NE(refusedBy(edge, "rim == hart").find("\"hart\" is none of soft, hard"), std::string::npos);
-    EXPECT_NE(refusedBy(edge, "rim > 0").find("is compared by == or != with one of soft, hard"), std::string::npos);
+    EXPECT_NE(refusedBy(edge, "rim > 0").find("is compared by == or != with one of soft, hard"),
+              std::string::npos);
     EXPECT_NE(refusedBy(flag, "rim + 1 == 2").find("with one of false, true"), std::string::npos);
     EXPECT_NE(refusedBy(R"("type": "mat3", "default": [1, 0, 0, 0, 1, 0, 0, 0, 1])", "rim == 0")
                   .find("\"rim\" is a matrix, which conditions can't name"),
@@ -580,12 +582,15 @@ TEST(Declarations, ConditionsKnowWholeNumbersAndNames) {
               std::string::npos);
     for (const std::string member : {R"("derived": [{"name": "damp", "type": "int", "value": "rim"}])",
                                      R"("attributes": [{"name": "damp", "at": "_DAMP", "type": "int"}])"}) {
-        EXPECT_NE(refusal(layerWith(step, ", " + member)).find("/0/type: must be a number or a vector of floats"),
-                  std::string::npos)
+        EXPECT_NE(
+            refusal(layerWith(step, ", " + member)).find("/0/type: must be a number or a vector of floats"),
+            std::string::npos)
             << member;
     }
     // Whole numbers take part in derived fields.
-    EXPECT_TRUE(modelWith(layerWith(step, R"(, "derived": [{"name": "damp", "type": "float", "value": "rim / 2"}])")).ok());
+    EXPECT_TRUE(
+        modelWith(layerWith(step, R"(, "derived": [{"name": "damp", "type": "float", "value": "rim / 2"}])"))
+            .ok());
 }
 
 // Models of packs have names of their own, which hide those that all models share.
@@ -598,7 +603,8 @@ TEST(Declarations, NamesAreUniqueInTheirModel) {
         }
         names.reserve(texts.size());
         for (const std::string& text : texts) {
-            files.push_back({names.emplace_back("pack/" + std::to_string(names.size()) + ".json"), text, true});
+            files.push_back(
+                {names.emplace_back("pack/" + std::to_string(names.size()) + ".json"), text, true});
         }
         return materials::readDeclarations(files);
     };
@@ -617,8 +623,9 @@ TEST(Declarations, NamesAreUniqueInTheirModel) {
     const Result<materials::MaterialModel> both = read({modelOf("opal"), modelOf("jade")});
     ASSERT_TRUE(both.ok()) << toString(both.error());
     const std::string defines = both->featureDefines();
-    for (const char* const macro : {"GLINT_HAS_OPAL_FRAME", "GLINT_HAS_JADE_FRAME", "GLINT_KEY_HAS_OPAL_PATHS",
-                                    "GLINT_HAS_JADE_SPECULAR_TEXTURE", "GLINT_HAS_SPECULAR_TEXTURE"}) {
+    for (const char* const macro :
+         {"GLINT_HAS_OPAL_FRAME", "GLINT_HAS_JADE_FRAME", "GLINT_KEY_HAS_OPAL_PATHS",
+          "GLINT_HAS_JADE_SPECULAR_TEXTURE", "GLINT_HAS_SPECULAR_TEXTURE"}) {
         EXPECT_NE(defines.find(fmt::format("#define {}(", macro)), std::string::npos) << macro;
     }
     for (std::size_t i = 0; i < 2; ++i) {
@@ -644,12 +651,14 @@ TEST(Declarations, NamesAreUniqueInTheirModel) {
                        R"({"name": "opalFrame", "stage": "surface"})"})
                   .find("\"opalFrame\" is declared twice"),
               std::string::npos);
-    EXPECT_NE(refused({modelOf("opal", R"(, "derived": [{"name": "opalColor", "type": "float", "value": "1"}])")})
-                  .find("\"opalColor\" is declared twice"),
-              std::string::npos);
+    EXPECT_NE(
+        refused({modelOf("opal", R"(, "derived": [{"name": "opalColor", "type": "float", "value": "1"}])")})
+            .find("\"opalColor\" is declared twice"),
+        std::string::npos);
     for (const std::string name : {"own", "textures"}) {
         EXPECT_NE(refused({R"({"name": "wet", "stage": "surface", "parameters": [
-                             {"name": ")" + name + R"(", "type": "float", "default": 0}]})"})
+                             {"name": ")" +
+                           name + R"(", "type": "float", "default": 0}]})"})
                       .find("is a member that all records have"),
                   std::string::npos);
     }

@@ -33,8 +33,8 @@ public:
         }
         for (const Parameter& one : model.parameters) {
             add(one.name, one.declared, one.object, one.place, one.typeText(), one.unit, one.about,
-                one.fallback, one.low, one.high, one.also.value_or(-99.0), one.isAngle, one.aliasOf, one.scaledBy,
-                one.scaledByChannels, one.feature, one.inRecord);
+                one.fallback, one.low, one.high, one.also.value_or(-99.0), one.isAngle, one.aliasOf,
+                one.scaledBy, one.scaledByChannels, one.feature, one.inRecord);
         }
         for (const DerivedField& one : model.derived) {
             add(one.name, one.type->name, one.unit, one.about, one.feature, one.channels.size());
@@ -50,8 +50,8 @@ public:
             }
         }
         for (const VertexAttribute& one : model.attributes) {
-            add(one.name, one.gltf, one.type->name, one.about, one.fallback.value_or(std::array<float, 4>{-99.0F}),
-                one.fallback.has_value(), one.feature);
+            add(one.name, one.gltf, one.type->name, one.about,
+                one.fallback.value_or(std::array<float, 4>{-99.0F}), one.fallback.has_value(), one.feature);
         }
         for (const Exclusion& one : model.exclusions) {
             add(one.by, one.excluded, one.because);

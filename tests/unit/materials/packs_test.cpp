@@ -247,9 +247,9 @@ TEST_F(MaterialPacks, AModelHas128FeaturesOfItsOwn) {
     const package::KeyWords last = model->words(model->mask("zincAlloy127"));
     EXPECT_EQ(last.own.words, (std::array<std::uint32_t, 4>{0, 0, 0, 1U << 31}));
     EXPECT_EQ(model->maskOf(last), model->mask("zinc") | model->mask("zincAlloy127"));
-    EXPECT_NE(
-        model->featureDefines().find("GLINT_HAS_ZINC_ALLOY_127(features) hasOwn(features, 1u, 3, 0x80000000u)"),
-        std::string::npos);
+    EXPECT_NE(model->featureDefines().find(
+                  "GLINT_HAS_ZINC_ALLOY_127(features) hasOwn(features, 1u, 3, 0x80000000u)"),
+              std::string::npos);
     write("zinc.json", zincWith(129));
     expectError("declaration", "zinc.json#/features/128", "zinc has more than 128 features of its own");
 }

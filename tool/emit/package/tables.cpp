@@ -144,7 +144,8 @@ std::vector<FeatureEntry> makeFeatures(const materials::MaterialModel& model, St
 std::uint32_t typeHash(const MaterialLayout& layout, const RecordField& field) {
     std::string text = fmt::format("{} {}", field.type->glsl, field.count);
     if (field.parameter >= 0) {
-        text += fmt::format(" {}", fmt::join(layout.model->parameters[static_cast<std::size_t>(field.parameter)].names, " "));
+        text += fmt::format(
+            " {}", fmt::join(layout.model->parameters[static_cast<std::size_t>(field.parameter)].names, " "));
     }
     return static_cast<std::uint32_t>(base::hashBytes(text));
 }

@@ -279,8 +279,7 @@ private:
         const materials::Parameter* found = nullptr;
         std::vector<std::string> names;
         for (const materials::Parameter& parameter : model_.parameters) {
-            const bool isBetter =
-                found == nullptr || fitOf(parameter.object) > fitOf(found->object);
+            const bool isBetter = found == nullptr || fitOf(parameter.object) > fitOf(found->object);
             found = parameter.declared == name && isBetter ? &parameter : found;
             names.push_back(parameter.declared);
         }
@@ -420,7 +419,8 @@ private:
             materials::ValueInterval range = whole;
             if (edited.range) {
                 range = {(*edited.range)[0], (*edited.range)[1]};
-                const bool isWhole = range.low == std::trunc(range.low) && range.high == std::trunc(range.high);
+                const bool isWhole =
+                    range.low == std::trunc(range.low) && range.high == std::trunc(range.high);
                 if (parameter->type->kind != materials::NumberKind::Real && !isWhole) {
                     fail(place, fmt::format("{} to {} is no range of whole numbers", range.low, range.high));
                     return;

@@ -85,7 +85,8 @@ using M = MaterialDescription;
 // The depth of an array of matrices.
 constexpr int kDeepest = 2;
 
-ParameterInput readInput(base::JsonReader& reader, const base::Json& json, const std::string& place, int depth) {
+ParameterInput readInput(base::JsonReader& reader, const base::Json& json, const std::string& place,
+                         int depth) {
     if (json.is_boolean()) {
         return json.get<bool>();
     }
@@ -119,8 +120,8 @@ void readValues(void* object, base::JsonReader& reader, const base::Json& json, 
 }
 
 base::Json schemaOfValues(const base::FieldTraits& /*traits*/) {
-    base::Json one = base::schemaOfAny({base::schemaOfNumber(false, {.least = -kMost}), {{"type", "boolean"}},
-                                        base::schemaOfText({})});
+    base::Json one = base::schemaOfAny(
+        {base::schemaOfNumber(false, {.least = -kMost}), {{"type", "boolean"}}, base::schemaOfText({})});
     base::Json value = one;
     for (int depth = 0; depth < kDeepest; ++depth) {
         value = base::schemaOfAny({one, base::schemaOfList(value, {.leastElements = 1})});

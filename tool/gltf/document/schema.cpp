@@ -116,15 +116,15 @@ Status checkParameter(const Json& value, const Rule& rule) {
     std::vector<double> numbers;
     if (const auto fault = readValue(*rule.parameter, value, numbers)) {
         const Json::json_pointer place(fault->place);
-        return isHugeNumber(value.at(place))
-                   ? within(fault->place, typeError(value.at(place), ""))
-                   : schemaError("json-type", fault->place, fault->message);
+        return isHugeNumber(value.at(place)) ? within(fault->place, typeError(value.at(place), ""))
+                                             : schemaError("json-type", fault->place, fault->message);
     }
     for (std::size_t i = 0; i < numbers.size(); ++i) {
         if (!(numbers[i] >= rule.min && numbers[i] <= rule.max)) {
-            return within(placeOfNumber(*rule.parameter, static_cast<int>(i)),
-                          schemaError("json-range", "",
-                                      fmt::format("is {}, outside of {} to {}", numbers[i], rule.min, rule.max)));
+            return within(
+                placeOfNumber(*rule.parameter, static_cast<int>(i)),
+                schemaError("json-range", "",
+                            fmt::format("is {}, outside of {} to {}", numbers[i], rule.min, rule.max)));
         }
     }
     return okStatus();

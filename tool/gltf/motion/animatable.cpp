@@ -215,7 +215,8 @@ void setMaterialProperty(materials::Material& material, int property, std::span<
     const materials::Parameter* const parameter = parameterOf(material.model(), property);
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (parameter != nullptr) {
-            material.values[static_cast<std::size_t>(parameter->first) + i] = heldValue(*parameter, values[i]);
+            material.values[static_cast<std::size_t>(parameter->first) + i] =
+                heldValue(*parameter, values[i]);
         } else {
             firstOfTransform(material, property)[i] = static_cast<float>(std::clamp(values[i], -kMax, kMax));
         }

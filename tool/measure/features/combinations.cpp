@@ -222,7 +222,8 @@ Combined combine(const materials::MaterialModel& model, const materials::Feature
         const materials::Parameter& parameter = *ingredients.parameters[i];
         const std::vector<double>& numbers = ingredients.values[i].of[choice[i]];
         made.material[parameter.name] = std::span(numbers);
-        made.place.parameters.emplace_back(parameter.name, std::vector<float>(numbers.begin(), numbers.end()));
+        made.place.parameters.emplace_back(parameter.name,
+                                           std::vector<float>(numbers.begin(), numbers.end()));
     }
     const int object = code.feature < 0 ? -1 : model.features[static_cast<std::size_t>(code.feature)].object;
     if (object >= 0) {
