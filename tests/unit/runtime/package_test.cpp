@@ -51,7 +51,7 @@ PackageSpec makeRichSpec() {
     spec.samplers = {{0, 1, 1, 1, 1, 1}};
     spec.materials[0].textures[0].textureIndex = 1;
     spec.primitives = {test::makePrimitive(0, 0, gpu::kGeometryAlphaTested), test::makePrimitive(2, 1)};
-    spec.fields = {{{}, 0, 4, 0}, {{}, 4, sizeof(gpu::TextureRecord), 0}};
+    spec.fields = {{{}, 0, 4, 0, 0}, {{}, 4, sizeof(gpu::TextureRecord), 0, 0}};
     return spec;
 }
 

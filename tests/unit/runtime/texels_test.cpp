@@ -1,4 +1,4 @@
-// Conversions of 16-bit texels.
+// Conversions of 16-bit texels, and records of materials.
 #include "data/materials.h"
 
 #include <gtest/gtest.h>
@@ -60,5 +60,14 @@ TEST(TexelsTest, NarrowsToTheNearest) {
     }
 }
 
+// An enum of other names, or a float in place of a whole number, has other bits for the same value.
+TEST(RecordFields, TakeOverValuesOfTheSameNameAndType) {
+    const RecordFields before{{{"bands", 0, 4, 0, 1}, {"edge", 4, 4, 0, 2}, {"step", 8, 4, 0, 3}}, {}};
+    const RecordFields after{{{"edge", 0, 4, 0, 9}, {"bands", 4, 4, 0, 1}, {"step", 8, 4, 0, 3}}, {}};
+    const std::vector<std::uint8_t> values{1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 3, 3};
+    std::vector<std::uint8_t> record(12);
+    carryFields(before, 0, values, after, 0, record);
+    EXPECT_EQ(record, (std::vector<std::uint8_t>{0, 0, 0, 0, 1, 1, 1, 1, 3, 3, 3, 3}));
+}
 }  // namespace
 }  // namespace glint
