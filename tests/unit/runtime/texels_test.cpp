@@ -69,5 +69,6 @@ TEST(RecordFields, TakeOverValuesOfTheSameNameAndType) {
     carryFields(before, 0, values, after, 0, record);
     EXPECT_EQ(record, (std::vector<std::uint8_t>{0, 0, 0, 0, 1, 1, 1, 1, 3, 3, 3, 3}));
 }
+
 }  // namespace
 }  // namespace glint
