@@ -217,8 +217,8 @@ void fillRunTimeImages(const ImportOptions& options, Scene& scene) {
         }
     }
     for (const materials::Material& material : scene.materials) {
-        for (std::size_t slot = 0; slot < material.textures.size(); ++slot) {
-            const int texture = material.textures[slot].texture;
+        for (const auto& [slot, info] : material.textures) {
+            const int texture = info.texture;
             if (texture >= 0 && material.readsOf(static_cast<int>(slot)).isNormals) {
                 Image& image = scene.images[static_cast<std::size_t>(
                     scene.textures[static_cast<std::size_t>(texture)].image)];

@@ -38,10 +38,10 @@ std::array<float, 2> pairAt(const Json& object, std::string_view name, std::arra
                                           static_cast<float>((*member)[1].get<double>())};
 }
 
-// Reads the texture info of that name into `info`. If there is none, or none that can be used, `info` stays
-// as it is.
+// Reads the texture info of that name into the slot. If there is none, or none that can be used, the slot
+// stays as it is.
 Status readTexture(const ObjectSource& object, std::string_view member, TextureTable& textures,
-                   materials::TextureInfo& info) {
+                   materials::TextureSlots& slots, std::size_t slot) {
     const Json* json = find(object.json, member);
     if (json == nullptr) {
         return okStatus();
@@ -66,13 +66,13 @@ Status readTexture(const ObjectSource& object, std::string_view member, TextureT
             fmt::format("uses UV set {}; Glint reads sets 0 and 1, and leaves the texture out",
                         read.texCoord),
             "move the coordinates to TEXCOORD_0 or TEXCOORD_1");
-        info.texCoord = read.texCoord;  // planning says why there is no texture
+        slots[slot].texCoord = read.texCoord;  // planning says why there is no texture
         return okStatus();
     }
     GLINT_TRY(const auto texture, textures.use((*json)["index"].get<int>()));
     if (texture >= 0) {
         read.texture = texture;
-        info = read;
+        slots[slot] = read;
     }
     return okStatus();
 }
@@ -101,7 +101,7 @@ Status readTextures(Document& document, TextureTable& textures, const Json& json
                 continue;
             }
             GLINT_TRY_DO(readTexture({document, *object, pointerOf(pointer, owner)}, place.member, textures,
-                                     material.textures[slot]));
+                                     material.textures, slot));
         }
     }
     return okStatus();
@@ -111,11 +111,11 @@ Status readTextures(Document& document, TextureTable& textures, const Json& json
 // agree.
 void checkTransfer(Document& document, const Scene& scene, const materials::Material& material,
                    const std::string& pointer) {
-    for (std::size_t slot = 0; slot < material.textures.size(); ++slot) {
-        if (material.textures[slot].texture < 0) {
+    for (const auto& [slot, info] : material.textures) {
+        if (info.texture < 0) {
             continue;
         }
-        const Texture& texture = scene.textures[static_cast<std::size_t>(material.textures[slot].texture)];
+        const Texture& texture = scene.textures[static_cast<std::size_t>(info.texture)];
         const Image& image = scene.images[static_cast<std::size_t>(texture.image)];
         const bool color = material.isColor(static_cast<int>(slot));
         if (image.transfer == (color ? Transfer::Linear : Transfer::Srgb)) {

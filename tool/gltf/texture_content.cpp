@@ -195,8 +195,7 @@ private:
             for (Primitive& primitive : mesh.primitives) {
                 std::array<std::optional<std::uint64_t>, 2> hashes;
                 const materials::Material& material = plannedMaterial(scene_, primitive.material);
-                for (std::size_t slot = 0; slot < material.textures.size(); ++slot) {
-                    const materials::TextureInfo& info = material.textures[slot];
+                for (const auto& [slot, info] : material.textures) {
                     const std::uint32_t channels =
                         info.texture < 0 ? 0
                                          : matter_[slot] & material.readsOf(static_cast<int>(slot)).channels;
@@ -400,8 +399,7 @@ private:
     }
 
     void tell(materials::Material& material) const {
-        for (std::size_t slot = 0; slot < material.textures.size(); ++slot) {
-            materials::TextureInfo& info = material.textures[slot];
+        for (auto& [slot, info] : material.textures) {
             if (info.texture >= 0) {
                 const int image = scene_.textures[static_cast<std::size_t>(info.texture)].image;
                 info.content = contentOf(works_[static_cast<std::size_t>(image)].whole.found, image,

@@ -84,7 +84,7 @@ namespace {
 using Constant = std::array<double, 4>;
 
 void renumber(materials::Material& material, const std::vector<int>& numbers) {
-    for (materials::TextureInfo& info : material.textures) {
+    for (auto& [slot, info] : material.textures) {
         info.texture = info.texture < 0 ? -1 : numbers[static_cast<std::size_t>(info.texture)];
     }
 }
@@ -211,11 +211,11 @@ void foldConstantTextures(Scene& scene) {
         if (isAnimated || primitives[i].empty()) {
             continue;
         }
-        for (std::size_t slot = 0; slot < material.textures.size(); ++slot) {
+        for (const auto& [slot, info] : material.textures) {
             const auto texture = static_cast<int>(slot);
             const materials::MaterialModel& model = material.model();
             const auto feature = static_cast<std::size_t>(model.textures[slot].feature);
-            if (material.textures[slot].texture < 0 || model.features[feature].hasOwnCoordinates) {
+            if (info.texture < 0 || model.features[feature].hasOwnCoordinates) {
                 continue;
             }
             const std::optional<std::uint32_t> channels = scaledChannels(material, texture);

@@ -263,6 +263,9 @@ MaterialModel ModelBuilder::build() {
         }
     }
     model_.code = orderCode(std::move(code));
+    for (const FeatureCode& row : model_.code) {
+        model_.opacity |= row.opacity.empty() || row.feature < 0 ? 0 : featureAt(row.feature).mask();
+    }
     excludeFromModels();
     keepPlacesOfUnlit();
     orderByDependence();

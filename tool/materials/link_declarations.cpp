@@ -43,14 +43,12 @@ void ModelBuilder::assignBits() {
         } else {
             row.feature.bit = row.feature.isLobe ? lobe++ : input < kFirstOfModels ? input++ : --further;
         }
-        if (lobe > further || own > FeatureMask::kBits) {
-            failAt(row.where,
-                   lobe > further
-                       ? fmt::format("there are more features than the {} bits that all models share",
-                                     kFirstOfModels)
-                       : fmt::format("the packs have more than {} features", FeatureMask::kBits));
+        if (lobe > further) {
+            failAt(row.where, fmt::format("there are more features than the {} bits that all models share",
+                                          kFirstOfModels));
         }
         model_.lobes |= row.feature.isLobe ? row.feature.mask() : 0;
+        model_.bases |= row.feature.stage == Stage::Base ? row.feature.mask() : 0;
         indexOf[static_cast<std::size_t>(i)] = index;
         model_.unlit |= row.light == Light::None ? row.feature.mask() : 0;
         model_.bothSides |= row.light == Light::Both ? row.feature.mask() : 0;
@@ -149,7 +147,7 @@ void ModelBuilder::excludeFromModels() {
         const FeatureMask own = code.feature < 0 ? 0 : featureAt(code.feature).mask();
         ofBase = code.layer.empty() ? ofBase | (code.bsdf.empty() ? 0 : own) : ofBase & ~own;
     }
-    const FeatureMask models = model_.baseModels() & ~model_.unlit;
+    const FeatureMask models = model_.bases & ~model_.unlit;
     FeatureMask later = models;
     for (std::size_t i = 0; i < model_.features.size(); ++i) {
         const Feature& feature = model_.features[i];

@@ -46,10 +46,7 @@ TransformRows rowsOf(const TextureTransform& transform) {
 }
 
 Material::Material(const MaterialModel& model)
-    : values(static_cast<std::size_t>(model.valueCount)),
-      textures(model.textures.size()),
-      given(model.objects.size()),
-      model_(&model) {
+    : values(static_cast<std::size_t>(model.valueCount)), given(model.objects.size()), model_(&model) {
     for (const Parameter& parameter : model.parameters) {
         if (parameter.aliasOf < 0) {
             std::ranges::copy(parameter.fallback, values.begin() + parameter.first);
@@ -67,6 +64,12 @@ ConstParameterValue Material::operator[](std::string_view parameter) const {
     const Parameter& row = parameterOf(*this, parameter);
     return ConstParameterValue(std::span(values).subspan(static_cast<std::size_t>(row.first),
                                                          static_cast<std::size_t>(row.numbers)));
+}
+
+const TextureInfo& TextureSlots::operator[](std::size_t slot) const {
+    static const TextureInfo empty;
+    const auto found = slots_.find(slot);
+    return found == slots_.end() ? empty : found->second;
 }
 
 TextureInfo& Material::texture(std::string_view texture) {
@@ -405,8 +408,8 @@ Certainty MaterialFacts::fact(Fact fact) const {
                        isMoved(material_.textures[static_cast<std::size_t>(feature.texture)]);
             }));
         case Fact::GivesTransforms:
-            return certain(std::ranges::any_of(material_.textures, [](const TextureInfo& info) {
-                return info.hasTransform || isMoved(info);
+            return certain(std::ranges::any_of(material_.textures, [](const auto& slot) {
+                return slot.second.hasTransform || isMoved(slot.second);
             }));
         case Fact::NeedsTangents:
             return certain(std::ranges::any_of(model.features, [&](const Feature& feature) {
@@ -417,7 +420,7 @@ Certainty MaterialFacts::fact(Fact fact) const {
         case Fact::TurnsTangents:
             return certain(turnsTangents());
         case Fact::ChangesOpacity:
-            return certain((key_ & model.opacityFeatures()) != 0);
+            return certain((key_ & model.opacity) != 0);
         case Fact::ModelOfPack:
             return certain(model.modelOf(key_) >= 0);
         case Fact::Color:

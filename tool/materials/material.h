@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -69,6 +70,32 @@ struct TextureInfo {
     // The texture was constant where the material shows it, and its product is in the parameters that it
     // scales. So the slot is empty.
     bool isFolded = false;
+};
+
+// The textures of a material, by index into MaterialModel::textures. A slot that is never named is empty, and
+// takes no memory.
+class TextureSlots {
+public:
+    const TextureInfo& operator[](std::size_t slot) const;
+    TextureInfo& operator[](std::size_t slot) {
+        return slots_[slot];
+    }
+    // The slots that are not empty, and some that are, as pairs of number and texture, by number.
+    auto begin() const {
+        return slots_.begin();
+    }
+    auto end() const {
+        return slots_.end();
+    }
+    auto begin() {
+        return slots_.begin();
+    }
+    auto end() {
+        return slots_.end();
+    }
+
+private:
+    std::map<std::size_t, TextureInfo> slots_;
 };
 
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
@@ -130,8 +157,8 @@ public:
     std::string name;
     AlphaMode alphaMode = AlphaMode::Opaque;
     bool doubleSided = false;
-    std::vector<double> values;         // by Parameter::first; floats and whole numbers of 32 bits
-    std::vector<TextureInfo> textures;  // by index into MaterialModel::textures
+    std::vector<double> values;  // by Parameter::first; floats and whole numbers of 32 bits
+    TextureSlots textures;
     std::vector<std::uint8_t> given;  // by index into MaterialModel::objects: 1 if the file gives the object
     // The values that an animation gives each number, by its index in `values`; empty if none changes.
     // Planning reads them in place of the numbers.

@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cctype>
 #include <cmath>
+#include <functional>
 #include <interop/models.h>
 #include <limits>
 #include <numbers>
@@ -22,13 +24,106 @@ int indexOf(const Rows& rows, std::string_view name) {
 
 }  // namespace
 
+std::uint64_t FeatureMask::wordAt(int place) const {
+    if (place == 0) {
+        return shared_;
+    }
+    const auto found = std::ranges::lower_bound(own_, place, {}, &Word::place);
+    return found != own_.end() && found->place == place ? found->bits : fill_;
+}
+
+FeatureMask FeatureMask::ofBit(int bit) {
+    const Word word{bit / kWordBits, std::uint64_t{1} << static_cast<unsigned>(bit % kWordBits)};
+    FeatureMask mask;
+    if (word.place == 0) {
+        mask.shared_ = word.bits;
+    } else {
+        mask.own_.push_back(word);
+    }
+    return mask;
+}
+
+int FeatureMask::count() const {
+    int sum = 0;
+    forEach([&sum](int) { ++sum; });
+    return sum;
+}
+
+// Sets each word to combine(own, other's).
+template <typename Combine>
+void FeatureMask::combine(const FeatureMask& other, const Combine& combine) {
+    const std::uint64_t fill = combine(fill_, other.fill_);
+    if (!own_.empty() || !other.own_.empty()) {
+        std::vector<Word> combined;
+        combined.reserve(own_.size() + other.own_.size());
+        auto mine = own_.begin();
+        auto theirs = other.own_.begin();
+        while (mine != own_.end() || theirs != other.own_.end()) {
+            const bool isMine =
+                mine != own_.end() && (theirs == other.own_.end() || mine->place <= theirs->place);
+            const bool isTheirs =
+                theirs != other.own_.end() && (mine == own_.end() || theirs->place <= mine->place);
+            const Word word{isMine ? mine->place : theirs->place,
+                            combine(isMine ? mine->bits : fill_, isTheirs ? theirs->bits : other.fill_)};
+            if (word.bits != fill) {
+                combined.push_back(word);
+            }
+            mine += isMine ? 1 : 0;
+            theirs += isTheirs ? 1 : 0;
+        }
+        own_ = std::move(combined);
+    }
+    shared_ = combine(shared_, other.shared_);
+    fill_ = fill;
+}
+
+FeatureMask& FeatureMask::operator&=(const FeatureMask& other) {
+    combine(other, std::bit_and<>());
+    return *this;
+}
+
+FeatureMask& FeatureMask::operator|=(const FeatureMask& other) {
+    combine(other, std::bit_or<>());
+    return *this;
+}
+
+FeatureMask FeatureMask::operator~() const {
+    FeatureMask result = *this;
+    result.combine({}, [](std::uint64_t word, std::uint64_t) { return ~word; });
+    return result;
+}
+
+std::strong_ordering operator<=>(const FeatureMask& a, const FeatureMask& b) {
+    if (a.fill_ != b.fill_) {
+        return a.fill_ <=> b.fill_;
+    }
+    // From the highest word that either lists.
+    auto ofA = a.own_.rbegin();
+    auto ofB = b.own_.rbegin();
+    while (ofA != a.own_.rend() || ofB != b.own_.rend()) {
+        const int place =
+            std::max(ofA != a.own_.rend() ? ofA->place : 0, ofB != b.own_.rend() ? ofB->place : 0);
+        const bool isOfA = ofA != a.own_.rend() && ofA->place == place;
+        const bool isOfB = ofB != b.own_.rend() && ofB->place == place;
+        const std::uint64_t left = isOfA ? ofA->bits : a.fill_;
+        const std::uint64_t right = isOfB ? ofB->bits : b.fill_;
+        if (left != right) {
+            return left <=> right;
+        }
+        ofA += isOfA ? 1 : 0;
+        ofB += isOfB ? 1 : 0;
+    }
+    return a.shared_ <=> b.shared_;
+}
+
 std::string toHex(const FeatureMask& mask) {
-    std::string text = "0x";
-    for (std::size_t i = mask.words().size(); i-- > 0;) {
-        const std::uint64_t word = mask.words()[i];
-        text += i == 0 || text.size() > 2 ? fmt::format("{:016x}", word)
-                : word != 0               ? fmt::format("{:x}", word)
-                                          : "";
+    assert(mask.fill_ == 0);
+    if (mask.own_.empty()) {
+        return fmt::format("0x{:016x}", mask.shared_);
+    }
+    std::string text = fmt::format("0x{:x}", mask.own_.back().bits);
+    for (int place = mask.own_.back().place - 1; place >= 0; --place) {
+        text += fmt::format("{:016x}", mask.wordAt(place));
     }
     return text;
 }
@@ -108,16 +203,6 @@ FeatureMask MaterialModel::withBases(FeatureMask mask) const {
     return mask;
 }
 
-FeatureMask MaterialModel::opacityFeatures() const {
-    FeatureMask mask = 0;
-    for (const FeatureCode& row : code) {
-        mask |= row.opacity.empty() || row.feature < 0
-                    ? 0
-                    : features[static_cast<std::size_t>(row.feature)].mask();
-    }
-    return mask;
-}
-
 FeatureMask MaterialModel::mask(std::string_view feature) const {
     const int index = findFeature(feature);
     return index < 0 ? 0 : features[static_cast<std::size_t>(index)].mask();
@@ -133,18 +218,19 @@ std::vector<std::string_view> MaterialModel::names(FeatureMask mask) const {
     return names;
 }
 
-FeatureMask MaterialModel::baseModels() const {
-    FeatureMask mask = 0;
-    for (const Feature& feature : features) {
-        mask |= feature.stage == Stage::Base ? feature.mask() : 0;
-    }
-    return mask;
+int MaterialModel::modelOfBit(int bit) const {
+    // The base of a model comes before its first bit.
+    const auto after = std::ranges::upper_bound(models, bit + 1, {}, &BaseModel::firstBit);
+    return static_cast<int>(after - models.begin()) - 1;
 }
 
 int MaterialModel::modelOf(const FeatureMask& key) const {
-    const auto found =
-        std::ranges::find_if(models, [&](const BaseModel& row) { return key.has(row.firstBit - 1); });
-    return found == models.end() ? -1 : static_cast<int>(found - models.begin());
+    int found = -1;
+    key.forEach([&](int bit) {
+        const int model = found < 0 && bit >= kFirstOfModels ? modelOfBit(bit) : -1;
+        found = model >= 0 && bit == models[static_cast<std::size_t>(model)].firstBit - 1 ? model : found;
+    });
+    return found;
 }
 
 FeatureMask MaterialModel::featuresOf(int model) const {
@@ -154,7 +240,9 @@ FeatureMask MaterialModel::featuresOf(int model) const {
     }
     const BaseModel& row = models[static_cast<std::size_t>(model)];
     for (const Exclusion& exclusion : exclusions) {
-        mask &= exclusion.by == row.feature ? ~exclusion.excluded : kAllFeatures;
+        if (exclusion.by == row.feature) {
+            mask &= ~exclusion.excluded;
+        }
     }
     for (int bit = row.firstBit - 1; bit < row.firstBit + row.bits; ++bit) {
         mask |= FeatureMask::ofBit(bit);
@@ -197,15 +285,13 @@ package::KeyWords MaterialModel::words(const FeatureMask& mask) const {
     package::KeyWords words{static_cast<std::uint32_t>(mask.shared()),
                             static_cast<std::uint32_t>(mask.shared() >> 32U)};
     mask.forEach([&](int bit) {
-        const auto model = std::ranges::find_if(models, [bit](const BaseModel& row) {
-            return bit >= row.firstBit - 1 && bit < row.firstBit + row.bits;
-        });
-        if (bit < kFirstOfModels || model == models.end()) {
+        if (bit < kFirstOfModels) {
             return;
         }
-        package::KeyWords one{0, 0, modelWord(static_cast<int>(model - models.begin()))};
-        if (bit >= model->firstBit) {
-            one.own.add(bit - model->firstBit);
+        const int model = modelOfBit(bit);
+        package::KeyWords one{0, 0, modelWord(model)};
+        if (const int own = bit - models[static_cast<std::size_t>(model)].firstBit; own >= 0) {
+            one.own.add(own);
         }
         words |= one;
     });
@@ -230,7 +316,7 @@ std::pair<package::KeyWords, package::KeyWords> MaterialModel::caseWords(const F
     package::KeyWords least = words(always);
     package::KeyWords some = words(sometimes);
     const std::uint32_t any = words(always | sometimes).model;
-    const bool isKnown = any == 0 || (any != gpu::kAnyModel && (always & baseModels()) != 0 &&
+    const bool isKnown = any == 0 || (any != gpu::kAnyModel && (always & bases) != 0 &&
                                       maskOf({0, 0, any}) == (maskOf({0, 0, any}) & always));
     least.model = isKnown ? any : gpu::kAnyModel;
     least.own = isKnown ? least.own : package::OwnWords{};

@@ -103,90 +103,77 @@ package::Effect findEffect(const std::vector<EffectDeclaration>& effects, std::s
 //   bits 64...   features of base models that packs declare: of each model, its base and then its others
 //
 // If packs have more inputs than fit, these take bits from 31 downwards. A number stands for the first 64
-// bits.
+// bits. A set may be the complement of one, and then has no end: kAllFeatures.
 class FeatureMask {
 public:
-    static constexpr int kBits = 4096;
+    FeatureMask() = default;
+    FeatureMask(std::uint64_t shared) : shared_(shared) {}
+    static FeatureMask ofBit(int bit);
 
-    constexpr FeatureMask() = default;
-    constexpr FeatureMask(std::uint64_t shared) : words_{shared} {}
-    static constexpr FeatureMask ofBit(int bit) {
-        FeatureMask mask;
-        mask.words_[static_cast<std::size_t>(bit) / 64] = std::uint64_t{1} << static_cast<unsigned>(bit % 64);
-        return mask;
+    bool has(int bit) const {
+        return (wordAt(bit / kWordBits) >> static_cast<unsigned>(bit % kWordBits) & 1U) != 0;
     }
-
-    constexpr bool has(int bit) const {
-        return (words_[static_cast<std::size_t>(bit) / 64] >> static_cast<unsigned>(bit % 64) & 1U) != 0;
+    // Requires a set with an end, as count() does.
+    bool isEmpty() const {
+        return shared_ == 0 && own_.empty();
     }
-    constexpr int count() const {
-        int sum = 0;
-        for (const std::uint64_t word : words_) {
-            sum += std::popcount(word);
-        }
-        return sum;
-    }
+    int count() const;
     // Calls use(bit) for each bit, the lowest first.
     template <typename Use>
-    constexpr void forEach(const Use& use) const {
-        for (std::size_t i = 0; i < words_.size(); ++i) {
-            for (std::uint64_t rest = words_[i]; rest != 0; rest &= rest - 1) {
-                use(static_cast<int>(i * 64) + std::countr_zero(rest));
-            }
+    void forEach(const Use& use) const {
+        assert(fill_ == 0);
+        forEachOf({0, shared_}, use);
+        for (const Word& word : own_) {
+            forEachOf(word, use);
         }
     }
     // The first 64 bits.
-    constexpr std::uint64_t shared() const {
-        return words_[0];
-    }
-    constexpr const std::array<std::uint64_t, kBits / 64>& words() const {
-        return words_;
+    std::uint64_t shared() const {
+        return shared_;
     }
 
-    constexpr FeatureMask& operator&=(const FeatureMask& other) {
-        for (std::size_t i = 0; i < words_.size(); ++i) {
-            words_[i] &= other.words_[i];
-        }
-        return *this;
-    }
-    constexpr FeatureMask& operator|=(const FeatureMask& other) {
-        for (std::size_t i = 0; i < words_.size(); ++i) {
-            words_[i] |= other.words_[i];
-        }
-        return *this;
-    }
-    friend constexpr FeatureMask operator&(FeatureMask a, const FeatureMask& b) {
+    FeatureMask& operator&=(const FeatureMask& other);
+    FeatureMask& operator|=(const FeatureMask& other);
+    friend FeatureMask operator&(FeatureMask a, const FeatureMask& b) {
         return a &= b;
     }
-    friend constexpr FeatureMask operator|(FeatureMask a, const FeatureMask& b) {
+    friend FeatureMask operator|(FeatureMask a, const FeatureMask& b) {
         return a |= b;
     }
-    constexpr FeatureMask operator~() const {
-        FeatureMask result;
-        for (std::size_t i = 0; i < words_.size(); ++i) {
-            result.words_[i] = ~words_[i];
-        }
-        return result;
-    }
-    friend constexpr bool operator==(const FeatureMask& a, const FeatureMask& b) = default;
+    FeatureMask operator~() const;
+    friend bool operator==(const FeatureMask& a, const FeatureMask& b) = default;
     // As numbers.
-    friend constexpr std::strong_ordering operator<=>(const FeatureMask& a, const FeatureMask& b) {
-        for (std::size_t i = a.words_.size(); i-- > 0;) {
-            if (a.words_[i] != b.words_[i]) {
-                return a.words_[i] <=> b.words_[i];
-            }
-        }
-        return std::strong_ordering::equal;
-    }
+    friend std::strong_ordering operator<=>(const FeatureMask& a, const FeatureMask& b);
+    friend std::string toHex(const FeatureMask& mask);
 
 private:
-    std::array<std::uint64_t, kBits / 64> words_{};
+    static constexpr int kWordBits = 64;
+    struct Word {
+        int place = 0;
+        std::uint64_t bits = 0;
+
+        bool operator==(const Word&) const = default;
+    };
+
+    template <typename Use>
+    static void forEachOf(const Word& word, const Use& use) {
+        for (std::uint64_t rest = word.bits; rest != 0; rest &= rest - 1) {
+            use(word.place * kWordBits + std::countr_zero(rest));
+        }
+    }
+    std::uint64_t wordAt(int place) const;
+    template <typename Combine>
+    void combine(const FeatureMask& other, const Combine& combine);
+
+    std::uint64_t shared_ = 0;  // word 0
+    std::uint64_t fill_ = 0;    // the further words that are not listed: 0, or all bits of a complement
+    std::vector<Word> own_;     // the words that differ from it, by place
 };
 
 // Returns the set as a hexadecimal number of at least 16 digits.
 std::string toHex(const FeatureMask& mask);
 
-inline constexpr FeatureMask kAllFeatures = ~FeatureMask();
+inline const FeatureMask kAllFeatures = ~FeatureMask();
 inline constexpr int kFirstInput = 32;
 inline constexpr int kFirstOfModels = 64;
 inline constexpr int kOwnFeatures = package::OwnWords::kBits;  // of a model, at most
@@ -469,6 +456,8 @@ public:
     FeatureMask bothSides = 0;               // features that let light through to the far side
     FeatureMask ownModels = 0;               // models whose GLSL stands in place of glTF's base
     FeatureMask lobes = 0;                   // features that are lobes
+    FeatureMask bases = 0;                   // base models; every hit needs one
+    FeatureMask opacity = 0;                 // features with GLSL at the stage opacity
     int valueCount = 0;                      // length of Material::values
     std::vector<std::array<int, 2>> pairs;   // textures that same() compares
 
@@ -491,10 +480,10 @@ public:
     int baseOf(const Feature& feature) const {
         return models[static_cast<std::size_t>(feature.model)].feature;
     }
-    // Returns the base models. Every hit needs one.
-    FeatureMask baseModels() const;
     // Returns the model of a pack that a key has, as an index into `models`, or -1: one of glTF's bases.
     int modelOf(const FeatureMask& key) const;
+    // Returns the model that a bit from kFirstOfModels on belongs to.
+    int modelOfBit(int bit) const;
     // Returns the features that keys of a model may have; -1: of glTF's bases.
     FeatureMask featuresOf(int model) const;
     // Returns whether materials of a model have a value of a parameter that belongs to no feature. They have
@@ -502,8 +491,6 @@ public:
     bool hasParameter(int model, int parameter) const;
     // Returns the set with the base of each feature of a model.
     FeatureMask withBases(FeatureMask mask) const;
-    // Returns the features that have GLSL at the stage opacity.
-    FeatureMask opacityFeatures() const;
     // Returns a key as packages and shaders have it. If `mask` has no base of a pack, its model is 0.
     package::KeyWords words(const FeatureMask& mask) const;
     // Returns the set that the words of a key stand for.

@@ -22,7 +22,8 @@ double idleShare(double p) {
 // Calls use(feature) for each feature of `mask`, the lowest bit first. Bits that the model does not have are
 // skipped.
 template <typename Use>
-void forEachFeature(const materials::MaterialModel& model, materials::FeatureMask mask, const Use& use) {
+void forEachFeature(const materials::MaterialModel& model, const materials::FeatureMask& mask,
+                    const Use& use) {
     // Those of models come last, and follow each other as their bits do.
     const int ofModels = model.models.empty() ? 0
                                               : model.models.back().firstBit + model.models.back().bits -
@@ -52,14 +53,14 @@ double surplusOf(const materials::Feature& feature, bool isUnlit, double p) {
 }
 
 template <typename ShareWith>
-double surplus(const materials::MaterialModel& model, double share, materials::FeatureMask sometimes,
+double surplus(const materials::MaterialModel& model, double share, const materials::FeatureMask& sometimes,
                const ShareWith& shareWith) {
     if (share <= 0.0) {
         return 0.0;
     }
     double cost = 0.0;
     forEachFeature(model, sometimes, [&](const materials::Feature& feature) {
-        const double with = shareWith(static_cast<std::size_t>(feature.bit));
+        const double with = shareWith(feature.bit);
         cost += surplusOf(feature, model.unlit.has(feature.bit), with / share);
     });
     return share * cost;
@@ -67,21 +68,20 @@ double surplus(const materials::MaterialModel& model, double share, materials::F
 
 // Returns the instructions that the hits of keys run if each key has a shader of its own, times their share.
 template <typename ShareWith>
-double ownCode(const materials::MaterialModel& model, double share, materials::FeatureMask any,
+double ownCode(const materials::MaterialModel& model, double share, const materials::FeatureMask& any,
                const ShareWith& shareWith) {
     double code = share * (fitted::kUnlitInstructions + fitted::kLitInstructions);
     forEachFeature(model, any, [&](const materials::Feature& feature) {
         const bool isUnlit = model.unlit.has(feature.bit);
-        code += shareWith(static_cast<std::size_t>(feature.bit)) *
-                (feature.cost.instructions + kFetchCost * feature.cost.fetches -
-                 (isUnlit ? fitted::kLitInstructions : 0.0));
+        code += shareWith(feature.bit) * (feature.cost.instructions + kFetchCost * feature.cost.fetches -
+                                          (isUnlit ? fitted::kLitInstructions : 0.0));
     });
     return code;
 }
 
 template <typename ShareWith>
-double mergingCost(const KeySet& like, double share, materials::FeatureMask always,
-                   materials::FeatureMask any, const ShareWith& shareWith) {
+double mergingCost(const KeySet& like, double share, const materials::FeatureMask& always,
+                   const materials::FeatureMask& any, const ShareWith& shareWith) {
     const materials::FeatureMask sometimes = any & ~always;
     const double inVain = surplus(*like.model, share, sometimes, shareWith);
     if (like.branchFactor <= 1.0 || sometimes == 0) {
@@ -93,6 +93,30 @@ double mergingCost(const KeySet& like, double share, materials::FeatureMask alwa
 
 }  // namespace
 
+double FeatureShares::operator[](int bit) const {
+    const auto found = std::ranges::lower_bound(shares_, bit, {}, &std::pair<int, double>::first);
+    return found != shares_.end() && found->first == bit ? found->second : 0.0;
+}
+
+void FeatureShares::add(int bit, double share) {
+    const auto found = std::ranges::lower_bound(shares_, bit, {}, &std::pair<int, double>::first);
+    if (found != shares_.end() && found->first == bit) {
+        found->second += share;
+    } else {
+        shares_.insert(found, {bit, share});
+    }
+}
+
+void FeatureShares::add(const FeatureShares& other) {
+    for (const auto& [bit, share] : other.shares_) {
+        add(bit, share);
+    }
+}
+
+void FeatureShares::remove(int bit) {
+    std::erase_if(shares_, [bit](const std::pair<int, double>& row) { return row.first == bit; });
+}
+
 KeySet toSet(const WeightedKey& key) {
     KeySet set;
     set.share = key.share;
@@ -100,7 +124,7 @@ KeySet toSet(const WeightedKey& key) {
     set.any = key.mask;
     set.model = key.model;
     set.branchFactor = key.branchFactor;
-    key.mask.forEach([&](int bit) { set.shareWith[static_cast<std::size_t>(bit)] = key.share; });
+    key.mask.forEach([&](int bit) { set.shareWith.add(bit, key.share); });
     return set;
 }
 
@@ -115,7 +139,7 @@ KeySet toSet(std::span<const int> indices, std::span<const WeightedKey> keys) {
         set.share += key.share;
         set.always &= key.mask;
         set.any |= key.mask;
-        key.mask.forEach([&](int bit) { set.shareWith[static_cast<std::size_t>(bit)] += key.share; });
+        key.mask.forEach([&](int bit) { set.shareWith.add(bit, key.share); });
     }
     return set;
 }
@@ -127,28 +151,26 @@ KeySet unionOf(const KeySet& a, const KeySet& b) {
     set.any = a.any | b.any;
     set.model = a.model;
     set.branchFactor = a.branchFactor;
-    for (std::size_t place = 0; place < set.shareWith.size(); ++place) {
-        set.shareWith[place] = a.shareWith[place] + b.shareWith[place];
-    }
+    set.shareWith = a.shareWith;
+    set.shareWith.add(b.shareWith);
     return set;
 }
 
 double mergingCost(const KeySet& keys) {
-    return mergingCost(keys, keys.share, keys.always, keys.any,
-                       [&](std::size_t place) { return keys.shareWith[place]; });
+    return mergingCost(keys, keys.share, keys.always, keys.any, [&](int bit) { return keys.shareWith[bit]; });
 }
 
 double mergingCost(const KeySet& a, const KeySet& b) {
     return mergingCost(a, a.share + b.share, a.always & b.always, a.any | b.any,
-                       [&](std::size_t place) { return a.shareWith[place] + b.shareWith[place]; });
+                       [&](int bit) { return a.shareWith[bit] + b.shareWith[bit]; });
 }
 
 double branchCost(const KeySet& keys, const materials::Feature& feature) {
     return surplus(*keys.model, keys.share, keys.any & ~keys.always & feature.mask(),
-                   [&](std::size_t place) { return keys.shareWith[place]; });
+                   [&](int bit) { return keys.shareWith[bit]; });
 }
 
-CodeEstimate estimateCode(materials::FeatureMask always, materials::FeatureMask sometimes,
+CodeEstimate estimateCode(const materials::FeatureMask& always, const materials::FeatureMask& sometimes,
                           const materials::MaterialModel& model) {
     CodeEstimate estimate;
     estimate.instructions = fitted::kUnlitInstructions;
@@ -170,7 +192,7 @@ CaseCode codeOf(const KeySet& keys) {
     const materials::FeatureMask sometimes = keys.any & ~keys.always;
     const double factor = sometimes != 0 ? keys.branchFactor : 1.0;
     const auto shareOf = [&](const materials::Feature& feature) {
-        return keys.share > 0.0 ? keys.shareWith[static_cast<std::size_t>(feature.bit)] / keys.share : 1.0;
+        return keys.share > 0.0 ? keys.shareWith[feature.bit] / keys.share : 1.0;
     };
     CaseCode code{estimateCode(keys.always, sometimes, *keys.model), {}};
     forEachFeature(*keys.model, sometimes, [&](const materials::Feature& feature) {

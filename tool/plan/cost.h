@@ -24,8 +24,8 @@
 
 #include "materials/material_model.h"
 
-#include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace glint::compiler {
@@ -54,13 +54,26 @@ struct WeightedKey {
     double branchFactor = 1.0;
 };
 
+// A share for each feature by its bit. What is not added is 0.
+class FeatureShares {
+public:
+    double operator[](int bit) const;
+    void add(int bit, double share);
+    void add(const FeatureShares& other);
+    void remove(int bit);
+
+    bool operator==(const FeatureShares&) const = default;
+
+private:
+    std::vector<std::pair<int, double>> shares_;  // by bit
+};
+
 // The facts about a set of keys that the model needs.
 struct KeySet {
     double share = 0.0;
     materials::FeatureMask always = 0;
     materials::FeatureMask any = 0;
-    std::array<double, materials::FeatureMask::kBits>
-        shareWith{};  // by bit: the total share of the keys that have it
+    FeatureShares shareWith;  // the total share of the keys that have a feature
     const materials::MaterialModel* model = &materials::builtinMaterialModel();
     double branchFactor = 1.0;
 };
@@ -85,7 +98,7 @@ struct CodeEstimate {
     int inputBranches = 0;
     int lobeBranches = 0;
 };
-CodeEstimate estimateCode(materials::FeatureMask always, materials::FeatureMask sometimes,
+CodeEstimate estimateCode(const materials::FeatureMask& always, const materials::FeatureMask& sometimes,
                           const materials::MaterialModel& model = materials::builtinMaterialModel());
 
 // Code that some hits of a case run, and others don't.

@@ -114,7 +114,7 @@ std::vector<KeySet> caseKeys(std::span<const CaseFeatures> cases, std::span<cons
             // Being unlit is the feature that leaves code out.
             for (const materials::Feature& feature : model.features) {
                 if (model.unlit.has(feature.bit) && cases[i].sometimes.has(feature.bit)) {
-                    set.shareWith[static_cast<std::size_t>(feature.bit)] = 0.0;
+                    set.shareWith.remove(feature.bit);
                 }
             }
         }

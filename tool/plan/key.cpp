@@ -111,7 +111,7 @@ public:
           material_(material),
           primitive_(primitive),
           options_(options),
-          kept_(~model_.lobes | options.keptLobes | model_.baseModels()),
+          kept_(~model_.lobes | options.keptLobes | model_.bases),
           facts_(material, primitive, options, key_),
           texels_(material, primitive, options, key_, materials::MaterialFacts::Textures::Texels),
           blind_(material, primitive, options, key_, materials::MaterialFacts::Textures::Unknown) {}
@@ -137,10 +137,7 @@ private:
     // A file requests only textures that it has. A lobe is present by its values, whether or not the file
     // gives its extension.
     Presence decide(const materials::Feature& feature) const {
-        const bool isOfOther =
-            feature.model >= 0 && !has(model_.baseOf(feature)) &&
-            feature.bit != model_.features[static_cast<std::size_t>(model_.baseOf(feature))].bit;
-        if (isOfOther) {
+        if (isOfOtherModel(feature)) {
             return {};
         }
         const materials::TextureInfo* const info =
@@ -164,6 +161,11 @@ private:
         }
         const bool reports = given || !neutral;
         return {false, !reports ? "" : excluded ? *excluded : neutral.value_or("")};
+    }
+
+    bool isOfOtherModel(const materials::Feature& feature) const {
+        return feature.model >= 0 && !has(model_.baseOf(feature)) &&
+               &feature != &model_.features[static_cast<std::size_t>(model_.baseOf(feature))];
     }
 
     bool isGiven(const materials::Feature& feature) const {
@@ -252,7 +254,7 @@ materials::FeatureMask makeKey(const materials::Material& material,
         keepsAll ? whole : KeyMaker(material, primitive, options).make(nullptr);
     if (dropped != nullptr) {
         for (const materials::Feature& feature : model.features) {
-            if ((whole & ~kept & feature.mask()) != 0) {
+            if (whole.has(feature.bit) && !kept.has(feature.bit)) {
                 dropped->emplace_back(feature.name, feature.isLobe
                                                         ? "hits do not keep it (--hit-lobes)"
                                                         : "nothing that hits keep reads it (--hit-lobes)");

@@ -42,7 +42,7 @@ int shifted(int index, int offset) {
 }
 
 materials::Material shifted(materials::Material material, const Offsets& by) {
-    for (materials::TextureInfo& info : material.textures) {
+    for (auto& [slot, info] : material.textures) {
         info.texture = shifted(info.texture, by.textures);
     }
     return material;

@@ -108,8 +108,8 @@ Result<MaterialSourceData> LiveScene::sourceOf(const gltf::Scene& scene, int ind
                                                const std::vector<AttributeMask>& attributes) {
     const materials::Material& material = scene.materials[asIndex(index)];
     std::vector<EditedTextures> textures(scene.textures.size());
-    for (std::size_t i = 0; i < material.textures.size(); ++i) {
-        const int texture = material.textures[i].texture;
+    for (const auto& [i, info] : material.textures) {
+        const int texture = info.texture;
         if (texture < 0 || data_.materialLayout.slotOf(static_cast<int>(i), modelOf(material)) < 0) {
             continue;
         }

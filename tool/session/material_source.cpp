@@ -74,8 +74,7 @@ MaterialSourceData makeMaterialSource(const Package& package, const compiler::Ma
     MaterialSourceData data;
     data.record = compiler::makeMaterialRecord(material, layout);
     const int model = modelOf(material);
-    for (std::size_t i = 0; i < material.textures.size(); ++i) {
-        const materials::TextureInfo& info = material.textures[i];
+    for (const auto& [i, info] : material.textures) {
         const int slot = layout.slotOf(static_cast<int>(i), model);
         if (info.texture < 0 || info.texCoord > 1 || slot < 0) {
             continue;

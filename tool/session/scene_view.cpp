@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <interop/models.h>
+#include <interop/scene.h>
 #include <limits>
 
 namespace glint::session {

@@ -27,7 +27,7 @@ Settings::Settings() {
 
 materials::FeatureMask baseLobes() {
     const materials::MaterialModel& model = materials::builtinMaterialModel();
-    materials::FeatureMask mask = model.baseModels();
+    materials::FeatureMask mask = model.bases;
     for (const materials::Feature& feature : model.features) {
         mask |= feature.isOfBase ? feature.mask() : 0;
     }

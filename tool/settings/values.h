@@ -299,12 +299,12 @@ inline void setHitLobes(Settings& settings, std::string_view text) {
     eachWord(text, [&](std::string_view word) {
         if (word != kAll && word != "base" && (model.mask(word) & model.lobes) == 0) {
             settings.packLobes.emplace_back(word);
-            kept |= model.baseModels();
+            kept |= model.bases;
             return;
         }
         kept |= word == kAll     ? materials::kAllFeatures
                 : word == "base" ? baseLobes()
-                                 : model.baseModels() | model.mask(word);
+                                 : model.bases | model.mask(word);
     });
 }
 

@@ -269,9 +269,10 @@ CaseMaterial makeFloorMaterial(const CaseMaterial& like, Coherence coherence) {
     }
     // 8 bits have no exact middle, so the normal would lean by a quarter of a degree.
     material["normalScale"] = kFaint;
-    for (materials::TextureInfo& info : material.textures) {
+    const auto normal = static_cast<std::size_t>(material.model().findTexture("normalTexture"));
+    for (auto& [slot, info] : material.textures) {
         if (info.texture >= 0) {
-            info.texture = &info == &material.texture("normalTexture") ? kFlat : kWhite;
+            info.texture = slot == normal ? kFlat : kWhite;
         }
     }
     return made;

@@ -196,8 +196,8 @@ TEST(MaterialTables, TexturesOfColorsAreSrgb) {
         if (specularGlossiness) {
             scene.materials[0].give("KHR_materials_pbrSpecularGlossiness");
         }
-        for (materials::TextureInfo& info : scene.materials[0].textures) {
-            info.texture = 0;
+        for (std::size_t slot = 0; slot < materials::builtinMaterialModel().textures.size(); ++slot) {
+            scene.materials[0].textures[slot].texture = 0;
         }
         const compiler::MaterialTables tables = makeMaterialTables(scene, wholeLayout());
         EXPECT_EQ(tables.textures.size(), 2U);

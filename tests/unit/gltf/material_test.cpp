@@ -46,7 +46,7 @@ TEST(GltfMaterials, HaveTheDefaultsOfTheSpecification) {
     EXPECT_EQ(read.alphaMode, materials::AlphaMode::Opaque);
     EXPECT_FALSE(read.doubleSided);
     EXPECT_FALSE(read.isUnlit());
-    for (const materials::TextureInfo& info : read.textures) {
+    for (const auto& [slot, info] : read.textures) {
         EXPECT_EQ(info.texture, -1);
     }
     EXPECT_EQ(scene.defaultMaterial, -1);

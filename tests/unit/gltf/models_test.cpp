@@ -62,7 +62,7 @@ void expectSound(const gltf::Scene& scene) {
         }
     }
     for (const materials::Material& material : scene.materials) {
-        for (const materials::TextureInfo& info : material.textures) {
+        for (const auto& [slot, info] : material.textures) {
             EXPECT_TRUE(inRange(info.texture, scene.textures.size()));
         }
     }

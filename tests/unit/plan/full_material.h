@@ -72,7 +72,7 @@ inline materials::Material fullMaterial() {
     material.alphaMode = materials::AlphaMode::Mask;
     setLobes(material);
     for (int slot = 0; slot < static_cast<int>(materials::builtinMaterialModel().textures.size()); ++slot) {
-        material.textures[slot].texture = slot;
+        material.textures[static_cast<std::size_t>(slot)].texture = slot;
     }
     material.texture("occlusionTexture").texCoord = 1;
     material.texture("baseColorTexture").transform.rotation = 0.5F;

@@ -137,7 +137,7 @@ TEST(LobeKey, AnisotropyWithoutTangentsReadsTextureCoordinates) {
 TEST(LobeKey, EveryTextureCountsForUvSetsAndTransforms) {
     for (std::size_t slot = 0; slot < materials::builtinMaterialModel().textures.size(); ++slot) {
         materials::Material material = fullMaterial();
-        for (materials::TextureInfo& info : material.textures) {
+        for (auto& [number, info] : material.textures) {
             info.transform = {};
             info.texCoord = 0;
         }

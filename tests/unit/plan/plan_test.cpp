@@ -209,7 +209,8 @@ TEST(Plan, ExcessSaysWhatToDo) {
 materials::Material randomMaterial(std::mt19937& random) {
     const auto coin = [&] { return (random() & 1U) != 0; };
     materials::Material material;
-    for (materials::TextureInfo& info : material.textures) {
+    for (std::size_t slot = 0; slot < material.model().textures.size(); ++slot) {
+        materials::TextureInfo& info = material.textures[slot];
         info.texture = coin() ? 0 : -1;
         info.texCoord = coin() ? 1 : 0;
         info.transform.rotation = coin() ? 1.0F : 0.0F;

@@ -402,7 +402,7 @@ static base::Fields fieldsOf(const ManifestScene*) {
 static base::Fields fieldsOf(const ManifestFeature*) {
     using T = ManifestFeature;
     return {field<&T::name>("name", "Name of the feature."),
-            field<&T::bit>("bit", "The feature's bit in masks.", {.most = materials::FeatureMask::kBits - 1}),
+            field<&T::bit>("bit", "The feature's bit in masks."),
             field<&T::lobe>("lobe", "Whether it is a lobe; else it is an input."),
             output<&T::macro>("macro", "Name of the GLSL macro."),
             output<&T::gltf>("gltf", "Property of glTF that holds it."),

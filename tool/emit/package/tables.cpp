@@ -2,6 +2,7 @@
 
 #include "emit/context.h"
 #include "emit/material_code.h"
+#include "resolve/build.h"
 #include "scene/deformed.h"
 
 #include <fmt/format.h>
@@ -286,7 +287,7 @@ Status checkScene(const gltf::Scene& scene) {
         }
     }
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-        for (const materials::TextureInfo& info : scene.materials[i].textures) {
+        for (const auto& [slot, info] : scene.materials[i].textures) {
             if (info.texture >= 0 && !within(info.texture, scene.textures.size())) {
                 return indexError(scene, fmt::format("material {} has no texture {}", i, info.texture));
             }
@@ -412,8 +413,7 @@ MaterialTables makeMaterialTables(const gltf::Scene& scene, const MaterialLayout
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> indexOf;
     for (const materials::Material& material : scene.materials) {
         std::vector<std::uint8_t> record = makeMaterialRecord(material, layout);
-        for (std::size_t i = 0; i < material.textures.size(); ++i) {
-            const materials::TextureInfo& info = material.textures[i];
+        for (const auto& [i, info] : material.textures) {
             if (info.texture < 0) {
                 continue;
             }

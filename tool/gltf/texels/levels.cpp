@@ -256,13 +256,13 @@ std::vector<ImageUse> imageUses(const Scene& scene) {
     std::vector<std::array<std::uint32_t, 2>> others(scene.images.size());
     for (const materials::Material& material : scene.materials) {
         const int emission = material.model().findTexture("emissiveTexture");
-        for (std::size_t slot = 0; slot < material.textures.size(); ++slot) {
-            if (material.textures[slot].texture < 0) {
+        for (const auto& [slot, info] : material.textures) {
+            if (info.texture < 0) {
                 continue;
             }
             const int texture = static_cast<int>(slot);
-            const auto image = static_cast<std::size_t>(
-                scene.textures[static_cast<std::size_t>(material.textures[slot].texture)].image);
+            const auto image =
+                static_cast<std::size_t>(scene.textures[static_cast<std::size_t>(info.texture)].image);
             const materials::TextureReads reads = material.readsOf(texture);
             ImageUse& use = uses[image];
             use.isNormals = reads.isNormals && (!isUsed[image] || use.isNormals);
