@@ -224,7 +224,7 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
         {"shadow rays", &Frame::shadows, shadowBytes, kStorage},
         {"shadow dispatch", &Frame::shadowDispatch, shadowLists * sizeof(gpu::DispatchArguments), kIndirect},
         {"first shadow counts", &Frame::firstShadowCounts, firstShadows * sizeof(std::uint32_t), kCleared},
-        {"hits", &Frame::hits, hits * size.hitBytes, kStorage, MemoryUse::Device,
+        {"hits", &Frame::hits, hits * size.hitBytes, kRead, MemoryUse::Device,
          firstShadows > 0 && !size.deferredShadows},
         {"ordered hits", &Frame::orderedHits, slots * sizeof(std::uint32_t), kStorage},
         {"visited hits", &Frame::visitedHits, visitedWords * sizeof(std::uint32_t), kCleared},
