@@ -2,15 +2,6 @@
 #include "hit/bindings.glsl"
 #include "hit/stage.glsl"
 
-// Returns whether the list is a host's: the rays of its own, and not those of further bounces.
-bool isHostsList() {
-#if GLINT_STEPS && GLINT_PATHS
-    return GLINT_FRAME.bounce <= 1u;
-#else
-    return GLINT_STEPS != 0;
-#endif
-}
-
 // Returns the arguments for one workgroup for every `groupSize` elements, in two dimensions if one is not enough, and
 // for one ray generation thread for each element.
 DispatchArguments listDispatch(uint count, uint groupSize) {

@@ -1,5 +1,5 @@
 // The samples of effects in memory: the rays of primary surfaces, and the light that comes back.
-#include "hit/list.glsl"
+#include "hit/bindings.glsl"
 #include "packed/hit_codes.glsl"
 #if GLINT_PATHS
 #include "hit/path.glsl"
