@@ -145,7 +145,7 @@ void Engine::State::record(std::uint32_t number, const std::vector<std::array<fl
 
     glint::RayBatch batch;
     batch.rays = rays.address;
-    batch.countBuffer = rayCount.handle;
+    batch.countAddress = rayCount.address;
     batch.answers = answers.address;
     expect(steps->record(commands, batch));
 

@@ -46,7 +46,7 @@ struct GlintSide {
 
         // The package has one material. Each object has values of its own.
         std::vector<glint::scene_materials::MaterialRecord> records(objects.size());
-        std::vector<glint::MaterialView> values;
+        std::vector<glint::EngineSceneView::Material> values;
         std::vector<glint::EngineSceneView::Geometry> geometries(objects.size());
         for (std::uint32_t i = 0; i < objects.size(); ++i) {
             const Object& object = objects[i];

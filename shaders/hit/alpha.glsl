@@ -24,8 +24,8 @@ void countAlphaTest() {
 // module's own cases do not matter here: a ray of any case meets masks of all cases.
 vec2 alphaAndCutoff(HostGeometry geometry, uint primitive, vec2 barycentrics) {
     Features features = Features(GLINT_ALPHA_ALL, GLINT_KEY(geometry));
-    MaterialRecord material = hostMaterials().data[geometry.materialIndex];
     SurfacePoint point = surfacePoint(geometry, primitive, barycentrics, features);
+    MaterialRecord material = hostMaterials().data[point.material];
     runMaskCoordinates(point, features);
     float alpha = GLINT_BASE_ALPHA(material, features.model);
     if (inputOfKey(features, GLINT_BASE_COLOR_TEXTURE)) {

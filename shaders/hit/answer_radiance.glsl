@@ -47,7 +47,7 @@ ShadeResult shadeUnknown() {
 void resolveEnd(uint target, vec3 radiance, uint path) {
 #if GLINT_PATHS
     uint place = samplePlace(target);
-    storeRadiance(target, radiance * GLINT_FRAME.paths.data[place].throughput, path);
+    storeRadiance(target, radiance * pathSoFar(place).throughput, path);
     endPath(place);
 #else
     storeRadiance(target, radiance, path);

@@ -12,6 +12,15 @@ layout(push_constant, scalar) uniform PushBlock {
 
 #define GLINT_FRAME pushed.frame.data
 
+// Returns whether the list is a host's: the rays of its own, and not those of further bounces.
+bool isHostsList() {
+#if GLINT_STEPS && GLINT_PATHS
+    return GLINT_FRAME.bounce <= 1u;
+#else
+    return GLINT_STEPS != 0;
+#endif
+}
+
 // Whether rays of lights and of occlusion are counted (RendererOptions::countsLight). It is a specialisation constant, so
 // that drivers leave no code of counters in pipelines that do not count.
 layout(constant_id = 1) const bool kCountsLight = false;

@@ -5,6 +5,7 @@
 #include "generated/attributes.glsl"
 #include "hit/geometry.glsl"
 #include "hit/lod.glsl"
+#include "hit/primitive_material.glsl"
 #include "hit/triangle.glsl"
 #if GLINT_PATHS
 #include "hit/path.glsl"
@@ -78,8 +79,8 @@ TriangleCorners vertexPositions(HostGeometry geometry, uint primitive) {
 
 // Fetches the attributes that `features` may need. rayDirection is a unit vector; coneWidth is that of the ray cone at
 // the hit.
-Hit fetchHitAt(HostGeometry geometry, vec2 barycentrics, vec3 rayDirection, float coneWidth, uint target,
-               Features features, TriangleCorners triangle) {
+Hit fetchHitAt(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 rayDirection, float coneWidth,
+               uint target, Features features, TriangleCorners triangle) {
     InstanceRecord instance = hostInstance(geometry);
     uvec3 corner = triangle.vertices;
     vec3 weights = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
@@ -87,7 +88,7 @@ Hit fetchHitAt(HostGeometry geometry, vec2 barycentrics, vec3 rayDirection, floa
 
     Hit hit;
     hit.view = -rayDirection;
-    hit.material = geometry.materialIndex;
+    hit.material = materialOf(geometry, primitive);
     hit.target = target;
 
     // The position and the plane of the triangle. In object space, the front is counter-clockwise.
@@ -189,5 +190,5 @@ Hit fetchHit(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 rayD
 #else
     TriangleCorners triangle = vertexPositions(geometry, primitive);
 #endif
-    return fetchHitAt(geometry, barycentrics, rayDirection, coneWidth, target, features, triangle);
+    return fetchHitAt(geometry, primitive, barycentrics, rayDirection, coneWidth, target, features, triangle);
 }

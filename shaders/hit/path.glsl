@@ -54,15 +54,29 @@ uint dimensionOfBounce(uint dimension) {
     return dimension + kDimensionsOfBounce * (max(GLINT_FRAME.bounce, 1u) - 1u);
 }
 
-// `place` is that of the sample (samplePlace()).
-PathArrival arrivalOf(uint place, vec3 start, float coneWidth, float coneSpread) {
-    PathState path = GLINT_FRAME.paths.data[place];
-    return PathArrival(start, path.throughput, uvec2(path.media[0], path.media[1]), coneWidth, coneSpread);
+// The path of a sample before its first hit.
+PathState newPath() {
+    return PathState(vec3(1.0), uint[2](0u, 0u));
 }
 
-// The path of a sample before its first hit.
 void beginPath(uint place) {
-    GLINT_FRAME.paths.data[place] = PathState(vec3(1.0), uint[2](0u, 0u));
+    GLINT_FRAME.paths.data[place] = newPath();
+}
+
+// The path that has led to the hits that are being shaded. `place` is that of the sample (samplePlace()). A host's
+// rays begin their paths.
+PathState pathSoFar(uint place) {
+#if GLINT_STEPS
+    if (GLINT_FRAME.bounce <= 1u) {
+        return newPath();
+    }
+#endif
+    return GLINT_FRAME.paths.data[place];
+}
+
+PathArrival arrivalOf(uint place, vec3 start, float coneWidth, float coneSpread) {
+    PathState path = pathSoFar(place);
+    return PathArrival(start, path.throughput, uvec2(path.media[0], path.media[1]), coneWidth, coneSpread);
 }
 
 void endPath(uint place) {

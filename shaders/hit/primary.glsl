@@ -14,5 +14,5 @@ Hit primaryHit(HostGeometry geometry, uint primitive, CameraRay ray, uint pixel,
     vec3 position = corners[0] + barycentrics.x * (corners[1] - corners[0]) +
                     barycentrics.y * (corners[2] - corners[0]);
     float coneWidth = GLINT_FRAME.pixelWidth + GLINT_FRAME.pixelSpread * distance(position, ray.origin);
-    return fetchHitAt(geometry, barycentrics, ray.direction, coneWidth, pixel, features, triangle);
+    return fetchHitAt(geometry, primitive, barycentrics, ray.direction, coneWidth, pixel, features, triangle);
 }

@@ -142,8 +142,10 @@ vec3 sampleWeight(uint target) {
 // Returns a ray of the list.
 RayRecord listedRay(uint index) {
 #if GLINT_STEPS
-    return GLINT_FRAME.rays.data[index];
-#else
+    if (isHostsList()) {
+        return GLINT_FRAME.rays.data[index];
+    }
+#endif
     uint target = GLINT_FRAME.listed.data[index];
     uint place = samplePlace(target);
 #if GLINT_TALLIES
@@ -155,7 +157,6 @@ RayRecord listedRay(uint index) {
     SampleAim aim = GLINT_FRAME.sampleAims.data[place];
     return RayRecord(GLINT_FRAME.sampleStarts.data[place].origin_orRadiance, target, aim.direction, aim.coneWidth,
                      GLINT_FRAME.sampleWeights.data[place].coneSpread);
-#endif
 #endif
 }
 
@@ -172,10 +173,11 @@ vec3 sampleDirection(uint target) {
 // Returns the number of the sample that a ray of the list belongs to.
 uint listedTarget(uint index) {
 #if GLINT_STEPS
-    return GLINT_FRAME.rays.data[index].target;
-#else
-    return GLINT_FRAME.listed.data[index];
+    if (isHostsList()) {
+        return GLINT_FRAME.rays.data[index].target;
+    }
 #endif
+    return GLINT_FRAME.listed.data[index];
 }
 
 #if GLINT_HITS_IN_SAMPLES

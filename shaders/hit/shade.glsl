@@ -172,7 +172,7 @@ LightSample foundOnPath(Hit hit, Surface surface, Features features, BsdfSample 
     }
     light.chance = leafChance(receiverOf(hit, features), number);
 #endif
-    float part = lobesFind(light) ? drawn.pdf / (drawn.pdf + lightPointDensity(light, centre)) : 0.0;
+    float part = lobesFind(light) ? drawn.pdf / (drawn.pdf + lightPointDensity(light, centre, point.direction)) : 0.0;
     point.irradiance *= drawn.weight * part;
     return point;
 }

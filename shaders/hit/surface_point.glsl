@@ -6,6 +6,7 @@
 #include "bsdf/features.glsl"
 #include "generated/attributes.glsl"
 #include "hit/geometry.glsl"
+#include "hit/primitive_material.glsl"
 #include "hit/triangle.glsl"
 
 struct SurfacePoint {
@@ -22,7 +23,7 @@ SurfacePoint surfacePoint(HostGeometry geometry, uint primitive, vec2 barycentri
     uvec3 corner = hostTriangle(geometry, primitive);
     vec3 weights = vec3(1.0 - barycentrics.x - barycentrics.y, barycentrics);
     SurfacePoint point;
-    point.material = geometry.materialIndex;
+    point.material = materialOf(geometry, primitive);
     point.position = vec3(0.0);
 #if GLINT_MASK_STAGES
     vec3 places[3];

@@ -20,6 +20,19 @@ InstanceRecord hostInstance(HostGeometry geometry) {
     return GLINT_FRAME.instances.data[geometry.instanceIndex];
 }
 
+#if GLINT_STEPS
+// The index of a triangle's material, for hosts whose triangles may have materials of their own.
+#define GLINT_HOST_PRIMITIVE_MATERIALS
+
+uint hostMaterial(HostGeometry geometry, uint primitive) {
+    if (geometry.primitiveMaterials == 0u) {
+        return geometry.materialIndex;
+    }
+    PrimitiveMaterials materials = GLINT_FRAME.primitiveMaterials.data[geometry.primitiveMaterials - 1u];
+    return geometry.materialIndex + materials.numbers.data[primitive];
+}
+#endif
+
 #if GLINT_ANSWERS_SURFACE
 // The instance of the previous frame, for the motion of its points.
 InstanceRecord hostPreviousInstance(HostGeometry geometry) {

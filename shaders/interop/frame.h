@@ -92,6 +92,14 @@ struct PathState {
     uint media[2];    // volumes that the ray is in (materials/volume/media.glsl)
 };
 
+// A ray of a host's own that only asks whether something is in its way. 32 bytes.
+struct VisibilityRay {
+    vec3 origin;
+    uint target;     // number of the answer
+    vec3 direction;  // unit vector
+    float distance;  // metres; what is beyond does not count
+};
+
 // The hit of a ray. Its index is that of the ray in the list. 20 bytes.
 struct HitRecord {
     uint geometry;   // GeometryRecord index, or kMissGeometry
@@ -205,6 +213,8 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleWeight
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer TargetArray { uint data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer RadianceArray { vec4 data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer RayArray { RayRecord data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer VisibilityRayArray { VisibilityRay data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer VisibilityArray { float data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer PathArray { PathState data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LobeRayArray { LobeRay data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SkyShareArray { float data[]; };
@@ -342,7 +352,8 @@ struct FrameConstants {
     GLINT_ADDRESS(Radiance) radiance;  // the radiance that rays bring, with paths of several bounces in the order of
                                        // samples, and by slot if the rays are a host's; kPath* as a float
     GLINT_ADDRESS(Ray) rays;           // the list, if it is a host's
-    GLINT_ADDRESS(Target) listed;      // the list otherwise: the numbers of the samples that send the rays
+    GLINT_ADDRESS(Target) listed;      // the list otherwise, and of further bounces: the numbers of the samples that
+                                       // send the rays
     GLINT_ADDRESS(Hit) hits;
     GLINT_ADDRESS(PackedHit) packedHits;  // the same memory as hits
     GLINT_ADDRESS(Ordered) orderedHits;  // hit indices, bucket by bucket; kNoHit in the gaps of alignment
@@ -367,6 +378,12 @@ struct FrameConstants {
     uint recordsBy;
     uint rayMask;  // instances that share no bit with it are not hit
     uvec2 tlasAddress;  // of the acceleration structure, in packages that have it by address
+    GLINT_ADDRESS(Counter) rayCount;   // the length of the list
+    GLINT_ADDRESS(Hit) givenHits;      // the hits of the rays, if givesHits
+    GLINT_ADDRESS(VisibilityRay) visibilityRays;  // the list, if its rays only ask for visibility
+    GLINT_ADDRESS(Visibility) visibilities;       // their answers: a float each, or three where shadow rays pass glass
+    GLINT_ADDRESS(PrimitiveMaterials) primitiveMaterials;  // see GeometryRecord::primitiveMaterials
+    uint givesHits;  // 1: no ray is traced for the first hits
     uint lightTreeNodes;   // nodes of the tree
     uint lightsApart;  // leaves after them
     // The members for packages with paths of several bounces:

@@ -6,10 +6,11 @@
 
 GLINT_INTEROP_BEGIN
 
-// LightRecord::type, in the order of the text of KHR_lights_punctual
+// LightRecord::type, in the order of the text of KHR_lights_punctual; glTF has no disk
 GLINT_CONSTANT(kLightDirectional, 0u);
 GLINT_CONSTANT(kLightPoint, 1u);
 GLINT_CONSTANT(kLightSpot, 2u);
+GLINT_CONSTANT(kLightDisk, 3u);  // shines on one side, by Lambert's law
 
 // Beside emissive triangles, up to as many point and spot lights are apart from the hierarchy: every surface takes them
 // all, because samples that a few lights share with many triangles would only add noise.
@@ -17,11 +18,11 @@ GLINT_CONSTANT(kMostLightsApart, 16u);
 
 // A punctual light in world space (KHR_lights_punctual).
 struct LightRecord {
-    vec3 position;   // point and spot
+    vec3 position;   // of all but directional ones
     uint type;       // kLight*
-    vec3 direction;  // unit vector along which the light travels; directional and spot
+    vec3 direction;  // unit vector along which the light travels; directional and spot; of a disk, its normal
     float range;     // metres; 0 means unlimited
-    vec3 intensity;  // colour times intensity: lux (directional) or candela
+    vec3 intensity;  // colour times intensity: lux (directional) or candela; of a disk, along its normal
     float spotScale;   // 1 / max(0.001, cos(inner) - cos(outer))
     float spotOffset;  // -cos(outer) * spotScale
     float size;  // radius, metres; directional: sine of half its angular diameter; 0 for hard shadows

@@ -37,6 +37,11 @@ GLINT_CONSTANT(kGeometryPackedPositions, 4096u);
 GLINT_CONSTANT(kGeometryShortIndices, 8192u);  // 16 bits each
 GLINT_CONSTANT(kGeometryHostFlagsShift, 16u);  // the flags from this bit on are the host's own
 
+// The materials of a geometry's triangles, for hosts: each number is added to GeometryRecord::materialIndex.
+struct PrimitiveMaterials {
+    GLINT_ADDRESS(Uint) numbers;
+};
+
 // One geometry of one instance. A hit finds it at instanceCustomIndex + geometryIndex. The address of a missing
 // attribute is 0, and featureInputs then lacks its bit.
 struct GeometryRecord {
@@ -48,7 +53,7 @@ struct GeometryRecord {
     uvec4 featureOwn;    // and its own features
     uint instanceIndex;  // index into FrameConstants::instances
     uint flags;          // kGeometry*
-    uint pad;
+    uint primitiveMaterials;  // 0: all triangles have materialIndex; else 1 + the index of a PrimitiveMaterials
     GLINT_ADDRESS(Uint) indices;     // 3 for each triangle
     GLINT_ADDRESS(Vec3) positions;   // object space
     GLINT_ADDRESS(Vec3) normals;     // object space, unit vectors
@@ -64,6 +69,9 @@ GLINT_INTEROP_END
 #ifndef __cplusplus
 // MaterialRecord and MaterialArray: a package has the values that its scenes need.
 #include "generated/material_record.glsl"
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer PrimitiveMaterialsArray {
+    PrimitiveMaterials data[];
+};
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer GeometryArray { GeometryRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer InstanceArray { InstanceRecord data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer LightArray { LightRecord data[]; };

@@ -26,15 +26,17 @@ void keepLobesOfLight(Features features, HostLight light, vec3 direction, float 
 #if GLINT_SIZED_LIGHTS
 
 // The density, by solid angle, of the samples of a light that rays of lobes find, too; 0 for other lights.
-float densityOfPoints(HostLight light, LightSample centre, uint points) {
-    return lobesFind(light) ? float(points) * lightPointDensity(light, centre) : 0.0;
+float densityOfPoints(HostLight light, LightSample centre, vec3 direction, uint points) {
+    return lobesFind(light) ? float(points) * lightPointDensity(light, centre, direction) : 0.0;
 }
 
 // Returns the point of the light that the ray of an effect meets, with the light that it brings to the viewer.
-LightSample foundPoint(HostLight light, LightSample centre, uint slot, float density) {
+// The surface takes `points` samples of the light.
+LightSample foundPoint(HostLight light, LightSample centre, uint slot, uint points) {
 #if GLINT_RAY_EFFECTS > 0
     FindingRay ray = findingRays[slot];
     LightSample point = lightAlong(light, centre, ray.direction);
+    float density = densityOfPoints(light, centre, ray.direction, points);
     point.irradiance *= ray.weight * (ray.density > 0.0 ? ray.density / (ray.density + density) : 1.0);
     return point;
 #else
@@ -96,8 +98,7 @@ vec3 foundLight(Hit hit, Features features, inout ShadowCounts counts) {
             LightSample centre = hostSampleLight(light, hit.position);
             if (lightAlong(light, centre, findingRays[slot].direction).irradiance != vec3(0.0)) {
                 light.chance = leafChance(receiver, leaf);
-                float density = densityOfPoints(light, centre, lightPointCount(light));
-                LightSample point = foundPoint(light, centre, slot, density);
+                LightSample point = foundPoint(light, centre, slot, lightPointCount(light));
                 sum += sendLight(
                     hit, surfaceShadow(point.direction, point.distance, point.irradiance, kShadowOfLight), counts);
             }
@@ -140,13 +141,10 @@ vec3 lightOfEach(Hit hit, Surface surface, Features features, SkyShares sky, ino
             points = lightPointCount(light);
             centre.irradiance /= float(points);
         }
-#if GLINT_SIZED_LIGHTS
-        float density = shares ? 0.0 : densityOfPoints(light, centre, points);
-#endif
 #if GLINT_SIZED_LIGHTS && GLINT_LIGHT_SAMPLES == 0
-        uint found = density > 0.0 ? GLINT_RAY_EFFECTS : 0u;
+        uint found = !shares && lobesFind(light) ? GLINT_RAY_EFFECTS : 0u;
         for (uint j = 0u; j < found; ++j) {
-            LightSample point = foundPoint(light, centre, j, density);
+            LightSample point = foundPoint(light, centre, j, points);
             if (point.irradiance != vec3(0.0)) {
                 vec3 arriving = float(points) * point.irradiance;
                 sum += sendLight(hit, surfaceShadow(point.direction, point.distance, arriving, sees), counts);
@@ -166,6 +164,7 @@ vec3 lightOfEach(Hit hit, Surface surface, Features features, SkyShares sky, ino
                 point = lightPoint(hit, light, centre, i, j);
                 direction = point.direction;
 #if GLINT_SIZED_LIGHTS
+                float density = densityOfPoints(light, centre, direction, points);
                 if (density > 0.0) {
                     keepLobesOfLight(features, light, direction, density, sky, lit);
                 }

@@ -69,7 +69,8 @@ DrawnLight drawPunctual(Hit hit, HostLight light) {
     result.density = 0.0;
     result.emitter = kNoEmitter;
 #if GLINT_SIZED_LIGHTS
-    result.density = lobesFind(light) ? lightPointDensity(light, hostSampleLight(light, hit.position)) : 0.0;
+    result.density =
+        lobesFind(light) ? lightPointDensity(light, hostSampleLight(light, hit.position), result.direction) : 0.0;
 #endif
 #endif
     return result;

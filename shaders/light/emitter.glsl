@@ -155,7 +155,7 @@ SharedSample sampleEmitter(uint emitter, vec3 position, vec2 u) {
     HostGeometry geometry = triangle.geometry;
     Features features = Features(GLINT_EMITTER_ALL, GLINT_KEY(geometry));
     // A cone without width reads the finest level of textures.
-    Hit hit = fetchHitAt(geometry, barycentrics, result.direction, 0.0, 0u, features,
+    Hit hit = fetchHitAt(geometry, triangle.primitive, barycentrics, result.direction, 0.0, 0u, features,
                          vertexPositions(geometry, triangle.primitive));
     if (!hit.frontFace && (geometry.flags & kGeometryDoubleSided) == 0u) {
         result.density = 0.0;

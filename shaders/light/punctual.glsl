@@ -1,4 +1,4 @@
-// Punctual lights: KHR_lights_punctual.
+// Punctual lights: KHR_lights_punctual, and disks.
 #include "interop/lights.h"
 #include "bsdf/constants.glsl"
 #include "hit/geometry.glsl"
@@ -14,6 +14,17 @@ struct LightSample {
 // irradiance on one that touches a light, and the importances of the hierarchy (kMaxIntensity), finite.
 const float kMinSquaredDistance = 1e-20;
 
+// The inverse square law, windowed to reach 0 at the range (the extension's recommended formula).
+float attenuationAt(LightRecord light, float squared, float distance) {
+    float attenuation = 1.0 / max(squared, kMinSquaredDistance);
+    if (light.range > 0.0) {
+        float ratio = min(distance / light.range, 1.0);
+        float ratio2 = ratio * ratio;
+        attenuation *= 1.0 - ratio2 * ratio2;
+    }
+    return attenuation;
+}
+
 LightSample sampleLight(LightRecord light, vec3 position) {
     if (light.type == kLightDirectional) {
         return LightSample(-light.direction, kFarDistance, light.intensity, kRaySent);
@@ -23,29 +34,58 @@ LightSample sampleLight(LightRecord light, vec3 position) {
     precise float distance = sqrt(squared);
     // A light at the point itself lights neither side.
     precise vec3 direction = distance > 0.0 ? toLight / distance : vec3(0.0);
-    // The inverse square law, windowed to reach 0 at the range (the extension's recommended formula).
-    float attenuation = 1.0 / max(squared, kMinSquaredDistance);
-    if (light.range > 0.0) {
-        float ratio = min(distance / light.range, 1.0);
-        float ratio2 = ratio * ratio;
-        attenuation *= 1.0 - ratio2 * ratio2;
-    }
+    float attenuation = attenuationAt(light, squared, distance);
     uint gate = attenuation > 0.0 ? kRaySent : kRayRange;
     if (light.type == kLightSpot) {
         float cone = clamp(dot(light.direction, -direction) * light.spotScale + light.spotOffset, 0.0, 1.0);
         attenuation *= cone * cone;
         gate = gate == kRaySent && cone <= 0.0 ? kRayCone : gate;
     }
+    if (light.type == kLightDisk) {
+        float facing = max(dot(light.direction, -direction), 0.0);
+        attenuation *= facing;
+        gate = gate == kRaySent && facing <= 0.0 ? kRayCone : gate;
+    }
     return LightSample(direction, distance, light.intensity * attenuation, gate);
 }
 
-// Samples a point of an area light, uniformly by the solid angle that it fills: a sphere, or a disk infinitely far
-// away. `centre` comes from sampleLight(), and u is uniform in [0, 1)². Shirley, Wang and Zimmerman, "Monte Carlo
+// The factor of the irradiance at a disk's centre that gives the disk's intensity. `centre` comes from sampleLight(),
+// which some light has passed, and its irradiance may have been divided.
+float perCentre(LightRecord disk, LightSample centre) {
+    float squared = centre.distance * centre.distance;
+    return 1.0 / (attenuationAt(disk, squared, centre.distance) * dot(disk.direction, -centre.direction));
+}
+
+// Samples a point of a disk uniformly by area. A surface that its centre shines on is on its front, as for all of its
+// points.
+LightSample sampleDisk(LightRecord light, LightSample centre, vec2 u) {
+    if (centre.gate != kRaySent) {
+        return centre;
+    }
+    vec3 tangent;
+    vec3 bitangent;
+    buildBasis(light.direction, tangent, bitangent);
+    precise float radius = light.size * sqrt(u.x);
+    precise float phi = 2.0 * kPi * u.y;
+    precise vec3 toPoint = centre.distance * centre.direction + radius * (cos(phi) * tangent + sin(phi) * bitangent);
+    precise float squared = dot(toPoint, toPoint);
+    precise float distance = sqrt(squared);
+    precise vec3 direction = toPoint / distance;
+    float facing = max(dot(light.direction, -direction), 0.0);
+    float part = attenuationAt(light, squared, distance) * facing * perCentre(light, centre);
+    return LightSample(direction, distance, centre.irradiance * part, centre.gate);
+}
+
+// Samples a point of an area light: of a disk by area; else uniformly by the solid angle that it fills, of a sphere or
+// of a disk infinitely far away. `centre` comes from sampleLight(), and u is uniform in [0, 1)². Shirley, Wang and Zimmerman, "Monte Carlo
 // Techniques for Direct Lighting Calculations" (1996). A sphere shines equally in all directions, so on a surface that
 // faces its centre its irradiance is that of a light without a size, π sine² times its radiance. The sample's is the
 // whole solid angle 2 π height times that radiance. From inside of the sphere nothing can block the light, so the
 // distance is 0.
 LightSample sampleLightArea(LightRecord light, LightSample centre, vec2 u) {
+    if (light.type == kLightDisk) {
+        return sampleDisk(light, centre, u);
+    }
     LightSample result = centre;
     bool sphere = light.type != kLightDirectional;
     float sine = sphere ? light.size / max(centre.distance, 1e-18) : light.size;

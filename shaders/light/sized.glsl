@@ -47,7 +47,7 @@ LightSearch lightsOnRay(vec3 origin, vec3 direction, float end, bool looks) {
 #endif
 }
 
-// 1 - the cosine of half the angle that the light fills; 0 from within it.
+// 1 - the cosine of half the angle that a sphere or the sun fills; 0 from within it.
 float seenHeight(HostLight light, LightSample centre) {
     LightRecord punctual = GLINT_PUNCTUAL(light);
     precise float sine = punctual.type != kLightDirectional ? punctual.size / max(centre.distance, 1e-18)
@@ -56,14 +56,45 @@ float seenHeight(HostLight light, LightSample centre) {
     return sine < 1.0 ? height : 0.0;
 }
 
-// The density, by solid angle, of a point that hostSampleLightPoint() gives, for all samples of the light that a surface
-// expects to take; 0 from within the light.
-float lightPointDensity(HostLight light, LightSample centre) {
-    float height = seenHeight(light, centre);
+// A point of the plane of a disk, along a direction.
+struct DiskPoint {
+    float distance;  // metres; 0 if the direction does not meet the plane from its front
+    float facing;    // cosine between the disk's normal and the way to the surface
+    bool isInside;   // of the disk
+};
+
+DiskPoint diskPointAlong(LightRecord disk, LightSample centre, vec3 direction) {
+    precise vec3 toCentre = centre.distance * centre.direction;
+    precise float facing = -dot(disk.direction, direction);
+    precise float above = -dot(disk.direction, toCentre);
+    DiskPoint point = DiskPoint(0.0, facing, false);
+    if (facing > 0.0 && above > 0.0) {
+        precise float distance = above / facing;
+        precise vec3 offset = distance * direction - toCentre;
+        point.distance = distance;
+        point.isInside = dot(offset, offset) <= disk.size * disk.size;
+    }
+    return point;
+}
+
+// The density, by solid angle, of the point in that direction that hostSampleLightPoint() gives, for all samples of the
+// light that a surface expects to take; 0 from within the light.
+float lightPointDensity(HostLight light, LightSample centre, vec3 direction) {
+    LightRecord punctual = GLINT_PUNCTUAL(light);
+    float density;
+    if (punctual.type == kLightDisk) {
+        DiskPoint point = diskPointAlong(punctual, centre, direction);
+        density = point.distance > 0.0 ? point.distance * point.distance /
+                                             (kPi * punctual.size * punctual.size * point.facing)
+                                       : 0.0;
+    } else {
+        float height = seenHeight(light, centre);
+        density = height > 0.0 ? 1.0 / (2.0 * kPi * height) : 0.0;
+    }
 #if GLINT_LIGHT_SAMPLES > 0
-    return height > 0.0 ? light.chance / (2.0 * kPi * height) : 0.0;
+    return light.chance * density;
 #else
-    return height > 0.0 ? 1.0 / (2.0 * kPi * height) : 0.0;
+    return density;
 #endif
 }
 
@@ -71,6 +102,18 @@ float lightPointDensity(HostLight light, LightSample centre) {
 // direction passes the light.
 LightSample lightAlong(HostLight light, LightSample centre, vec3 direction) {
     LightSample point = LightSample(direction, centre.distance, vec3(0.0), centre.gate);
+    if (GLINT_PUNCTUAL(light).type == kLightDisk) {
+        LightRecord disk = GLINT_PUNCTUAL(light);
+        DiskPoint met = diskPointAlong(disk, centre, direction);
+        if (met.isInside && centre.gate == kRaySent) {
+            precise float squared = met.distance * met.distance;
+            point.distance = met.distance;
+            // Without the inverse square, of which the radiance knows nothing.
+            float part = attenuationAt(disk, squared, met.distance) * squared * perCentre(disk, centre);
+            point.irradiance = centre.irradiance * (part / (kPi * disk.size * disk.size));
+        }
+        return point;
+    }
     float height = seenHeight(light, centre);
     // Half of the squared chord is 1 - cosine, and keeps the digits of a small sun.
     precise vec3 chord = direction - centre.direction;

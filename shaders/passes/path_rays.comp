@@ -10,7 +10,7 @@ layout(local_size_x = kRayGroupSize) in;
 void main() {
     uint index = listIndex();
     bool inside = index < GLINT_FRAME.rayDispatch.data[0].elementCount;
-    uint target = GLINT_FRAME.listed.data[inside ? index : 0u];
+    uint target = listedTarget(inside ? index : 0u);
     bool goesOn = inside && sampleOutcome(target) == kRaySent;
     uint slot;
     if (GLINT_FRAME.binning == kBinningNone) {

@@ -5,6 +5,11 @@
 layout(local_size_x = 1) in;
 
 void main() {
+#if GLINT_STEPS
+    if (isHostsList()) {
+        GLINT_FRAME.counters.data[kCounterRays] = min(GLINT_FRAME.rayCount.data[0], GLINT_FRAME.width);
+    }
+#endif
     uint count = GLINT_FRAME.counters.data[kCounterRays];
     GLINT_FRAME.rayDispatch.data[0] = listDispatch(count, kRayGroupSize);
 #if GLINT_PATHS

@@ -1,18 +1,13 @@
 #version 460
-// Traces the ray list into hit records, and stores the bucket of each hit.
+// Traces the ray list into hit records, unless a host gives the hits, and stores the bucket of each hit.
 #define GLINT_MODULE_ALWAYS_LOBES GLINT_HIT_ALWAYS_LOBES
 #define GLINT_MODULE_ALWAYS_INPUTS GLINT_HIT_ALWAYS_INPUTS
 #define GLINT_MODULE_ANY_LOBES (GLINT_HIT_ALWAYS_LOBES | GLINT_HIT_SOMETIMES_LOBES)
 #define GLINT_MODULE_ANY_INPUTS (GLINT_HIT_ALWAYS_INPUTS | GLINT_HIT_SOMETIMES_INPUTS)
 #define GLINT_MODULE_MODEL GLINT_HIT_MODEL
 #include "order/bucket_key.glsl"
-#include "hit/list.glsl"
 #include "order/bucket.glsl"
-#include "hit/trace.glsl"
-#include "hit/path_ray.glsl"
-#if GLINT_LAYER_RAYS
-#include "layers/traced_hits.glsl"
-#endif
+#include "hit/found.glsl"
 
 GLINT_RAY_WORKGROUP
 
@@ -30,11 +25,8 @@ void main() {
     if (index < GLINT_FRAME.rayDispatch.data[0].elementCount) {
         RayRecord ray = listedRay(index);
         GLINT_CLOCK_START
-        TracedHit hit = traceRay(ray, rayFlags(ray.target));
-#if GLINT_LAYER_RAYS
-        keepTracedHit(ray, hit);
-#endif
-        storeHit(index, recordOf(hit));
+        HitRecord hit = hitOfRay(index, ray);
+        storeHit(index, hit);
         storeKey(index, bucketOfGeometry(hit.geometry));
         GLINT_CLOCK_STOP
     }

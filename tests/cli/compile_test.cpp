@@ -35,7 +35,7 @@ TEST_F(CompileCommand, DryRunRefusesWhatIsRefusedWithoutIt) {
     writeText(path("precious/file"), "mine");
     const std::vector<std::vector<std::string>> lines{
         {"-o", "package", "--max-shaders", "1"},
-        {"-o", "package", "--passes", "steps", "--bounces", "2"},
+        {"-o", "package", "--passes", "steps", "--answer", "surface", "--bounces", "2"},
         {"-o", "package", "--answer", "surface"},
         {"-o", "package", "--layers", "no-such-layer"},
         {"-o", "package", "--depfile", "a.d", "--depfile-target", "a*b"},

@@ -1,6 +1,9 @@
 // An engine's scene whose content changes while frames are in flight, and RaySteps that replace their
 // package.
+#include "steps/engine_scene.h"
+
 #include "context/commands.h"
+#include "package/package.h"
 #include "render/edited_scene.h"
 #include "render/harness.h"
 #include "render/replacement.h"
@@ -155,6 +158,11 @@ public:
                           VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
         return status;
     }
+    Buffer upload(std::span<const std::uint32_t> words) {
+        Buffer buffer = make(words.size_bytes(), MemoryUse::Upload);
+        std::memcpy(buffer.mapped, words.data(), words.size_bytes());
+        return buffer;
+    }
     void submit() {
         frames_.submit();
     }
@@ -301,7 +309,8 @@ TEST(EngineSceneContent, MaterialsHaveTheHostsValues) {
     const Content otherWanted = contentOf(*otherRepainted, repaint(changed), keepAll);
     ASSERT_TRUE(content.gpu != nullptr && wanted.gpu != nullptr && otherWanted.gpu != nullptr);
     const std::span<const std::uint8_t> record = repainted->scene(0).materials.part(kGlossy, 1).bytes;
-    const MaterialView values[] = {{0, repainted->scene(0).materials.part(0, 1).bytes}, {kGlossy, record}};
+    using Material = EngineSceneView::Material;
+    const Material values[] = {{0, repainted->scene(0).materials.part(0, 1).bytes}, {kGlossy, record}};
     std::vector<EngineSceneView::Geometry> geometries = content.geometries;
     std::size_t named = 0;
     for (EngineSceneView::Geometry& geometry : geometries) {
@@ -336,17 +345,192 @@ TEST(EngineSceneContent, MaterialsHaveTheHostsValues) {
     for (std::size_t i = 0; i < light.size(); ++i) {
         EXPECT_EQ(engine.answers(i), light[i]) << "batch " << i;
     }
-    const auto refusal = [&](std::span<const MaterialView> materials) {
+    const auto refusal = [&](std::span<const Material> materials) {
         view.materials = materials;
         return scene->update(VK_NULL_HANDLE, *original, view, engine.frame()).error().id;
     };
-    const MaterialView unknown[] = {values[1], values[1], {99, record}};
+    const Material unknown[] = {values[1], values[1], {99, record}};
     EXPECT_EQ(refusal(unknown), "scene-material");
-    const MaterialView shorter[] = {values[1], {kGlossy, record.first(8)}};
+    const Material shorter[] = {values[1], {kGlossy, record.first(8)}};
     EXPECT_EQ(refusal(shorter), "scene-material");
     EXPECT_EQ(refusal(std::span(values).first(1)), "engine-scene") << "a geometry names the second";
-    const MaterialView otherMaterial[] = {values[0], values[0]};
+    const Material otherMaterial[] = {values[0], values[0]};
     EXPECT_EQ(refusal(otherMaterial), "engine-scene");
+    const Material unused[] = {values[0], {}};
+    EXPECT_EQ(refusal(unused), "engine-scene") << "a geometry names a number that is not in use";
+}
+
+// Records of a package's materials, in which a host sets textures of its own.
+struct TexturedMaterials {
+    TexturedMaterials(const Package& package, const Content& content) : known(package.scene(0)) {
+        for (std::uint32_t i = 0; i < known.materials.size(); ++i) {
+            const auto bytes = known.materials.part(i, 1).bytes;
+            records.emplace_back(bytes.begin(), bytes.end());
+            for (std::uint32_t slot = 0; slot < known.materials.textureCount; ++slot) {
+                set(i, slot, content.textures, textureAt(known.materials, i, slot).textureIndex);
+            }
+        }
+    }
+    void set(std::uint32_t material, std::uint32_t slot, std::span<const EngineSceneView::Texture> textures,
+             std::uint32_t texture) {
+        gpu::TextureRecord record = textureAt(known.materials, material, slot);
+        record.textureIndex = textures[texture].index;
+        record.texels = {static_cast<float>(textures[texture].width),
+                         static_cast<float>(textures[texture].height)};
+        record.anisotropy = sharedContext().state().limits.samplerAnisotropy;
+        std::memcpy(&records[material][placeOfTexture(known.materials, 0, slot)], &record, sizeof record);
+    }
+    EngineSceneView::Material of(std::uint32_t material) const {
+        return {material, records[material], true};
+    }
+
+    PackageScene known;
+    std::vector<std::vector<std::uint8_t>> records;
+};
+
+// Materials have the host's own textures, which change by one record at a time, and materials come and go by
+// their numbers. Another package has the same textures, until its turn is over.
+TEST(EngineSceneContent, MaterialsHaveTheHostsTextures) {
+    const gltf::Scene room = texturedRoom();
+    const auto [changed, settings] = otherCompilation();
+    const std::shared_ptr<const Package> package = packageOf(room, roomSteps());
+    const std::shared_ptr<const Package> other = packageOf(changed, settings);
+    const Content content = contentOf(*package, room, keepAll);
+    const auto swap = [](session::SceneViewData& data) { std::swap(data.images[0], data.images[1]); };
+    const Content swapped = contentOf(*package, room, swap);
+    const Content otherSwapped = contentOf(*other, changed, swap);
+    ASSERT_EQ(content.textures.size(), 2U);
+    // The last two materials are textured. Each gets the other's texture.
+    const auto last = static_cast<std::uint32_t>(room.materials.size()) - 1;
+    TexturedMaterials own(*package, content);
+    const std::uint32_t slot = 0;
+    ASSERT_EQ(package->scene(0).materials.textureCount, 1U);
+    constexpr package::Strategy kUber = package::kStrategyUber;
+    Engine engine(*content.gpu);
+    const std::vector<float> before = engine.expected(*package, *content.gpu, kUber);
+    const std::vector<float> after = engine.expected(*package, *swapped.gpu, kUber);
+    const std::vector<float> otherAfter = engine.expected(*other, *otherSwapped.gpu, kUber);
+    expectOthers(before, after);
+
+    EngineSceneView view = content.view();
+    std::vector<EngineSceneView::Geometry> geometries = content.geometries;
+    for (EngineSceneView::Geometry& geometry : geometries) {
+        const std::uint32_t material =
+            package->scene(0).findPrimitive(geometry.mesh, geometry.primitive)->materialIndex;
+        geometry.material = material + 1 >= last ? 7 + last - material : geometry.material;
+    }
+    view.geometries = geometries;
+    std::vector<EngineSceneView::Material> materials(9);
+    materials[7] = own.of(last);
+    materials[8] = own.of(last - 1);
+    view.materials = materials;
+    VkCommandBuffer commands = engine.begin();
+    auto scene = must(EngineScene::record(sharedContext(), *package, view, commands, engine.frame()));
+    const auto steps = engine.makeSteps(*package, *scene, kUber);
+    ASSERT_TRUE(engine.ask(*steps, *content.gpu));
+    engine.submit();
+    commands = engine.begin();
+    own.set(last, slot, content.textures, textureAt(own.known.materials, last - 1, slot).textureIndex);
+    own.set(last - 1, slot, content.textures, textureAt(own.known.materials, last, slot).textureIndex);
+    must(scene->updateMaterial(commands, 7, own.of(last), engine.frame()));
+    EXPECT_TRUE(scene->state().arrays[EngineScene::State::Materials].store.dirty().empty());
+    must(scene->updateMaterial(commands, 8, own.of(last - 1), engine.frame()));
+    ASSERT_TRUE(engine.ask(*steps, *content.gpu));
+    ASSERT_TRUE(steps->replacePackage(other));
+    ASSERT_TRUE(engine.ask(*steps, *content.gpu));
+    ASSERT_TRUE(steps->replacePackage(package));
+    ASSERT_TRUE(engine.ask(*steps, *content.gpu));
+    // Materials that no geometry names come and go.
+    must(scene->updateMaterial(commands, 20, own.of(0), engine.frame()));
+    must(scene->updateMaterial(commands, 20, own.of(1), engine.frame()));
+    EXPECT_EQ(scene->state().arrays[EngineScene::State::Materials].store.count(), last + 1 + 21);
+    must(scene->updateMaterial(commands, 20, {}, engine.frame()));
+    EXPECT_EQ(scene->state().arrays[EngineScene::State::Materials].store.count(), last + 1 + 9);
+    ASSERT_TRUE(engine.ask(*steps, *content.gpu));
+    engine.submit();
+    engine.drain();
+    EXPECT_EQ(engine.answers(0), before);
+    EXPECT_EQ(engine.answers(1), after);
+    EXPECT_EQ(engine.answers(2), otherAfter);
+    EXPECT_EQ(engine.answers(3), after);
+    EXPECT_EQ(engine.answers(4), after);
+
+    const auto refusal = [&](std::uint32_t number, const EngineSceneView::Material& material) {
+        return mustFail(scene->updateMaterial(VK_NULL_HANDLE, number, material, engine.frame())).id;
+    };
+    EXPECT_EQ(refusal(7, {}), "engine-scene") << "a geometry names it";
+    EXPECT_EQ(refusal(7, own.of(0)), "engine-scene") << "its geometry has another case";
+    EXPECT_EQ(refusal(3, {99, own.records[0], true}), "scene-material");
+    const EngineSceneView::Texture empty[] = {{0, 0, 0}};
+    own.set(last, slot, empty, 0);
+    EXPECT_EQ(refusal(7, own.of(last)), "scene-material") << "a texture without texels";
+    gltf::Scene trusted = room;
+    trusted.trustsTextures = true;
+    const std::shared_ptr<const Package> trusting = packageOf(trusted, roomSteps());
+    ASSERT_TRUE(trusting->trustTextures());
+    EXPECT_EQ(mustFail(EngineScene::record(sharedContext(), *trusting, view, VK_NULL_HANDLE, 0)).id,
+              "texture-trusted");
+}
+
+// Each triangle of a geometry names a material of the host's own.
+TEST(EngineSceneContent, TrianglesHaveMaterialsOfTheirOwn) {
+    const gltf::Scene room = roomScene();
+    gltf::Scene painted = room;
+    painted.materials[kGlossy]["baseColorFactor"] = {0.1F, 0.9F, 0.3F, 1.0F};
+    const std::shared_ptr<const Package> package = packageOf(room, roomSteps());
+    const std::shared_ptr<const Package> repainted = packageOf(painted, roomSteps());
+    const Content content = contentOf(*package, room, keepAll);
+    const Content wanted = contentOf(*repainted, painted, keepAll);
+    const EngineSceneView::Material materials[] = {
+        {kGlossy, package->scene(0).materials.part(kGlossy, 1).bytes},
+        {kGlossy, repainted->scene(0).materials.part(kGlossy, 1).bytes}};
+    for (const package::Strategy strategy : strategiesOfDevice()) {
+        Engine engine(*content.gpu);
+        const std::vector<float> first = engine.expected(*package, *content.gpu, strategy);
+        const std::vector<float> second = engine.expected(*repainted, *wanted.gpu, strategy);
+        // A list for each geometry and batch, in one buffer.
+        constexpr std::uint32_t kBatches[][2] = {{0, 0}, {1, 1}, {0, 1}};
+        std::vector<std::uint32_t> numbers;
+        for (const auto& batch : kBatches) {
+            numbers.insert(numbers.end(), std::begin(batch), std::end(batch));
+        }
+        const Buffer lists = engine.upload(numbers);
+        std::unique_ptr<EngineScene> scene;
+        std::unique_ptr<RaySteps> steps;
+        for (std::uint32_t batch = 0; batch < std::size(kBatches); ++batch) {
+            std::vector<EngineSceneView::Geometry> geometries = content.geometries;
+            for (EngineSceneView::Geometry& geometry : geometries) {
+                const auto* const entry = package->scene(0).findPrimitive(geometry.mesh, geometry.primitive);
+                if (entry->materialIndex == kGlossy) {
+                    geometry.primitiveMaterials = lists.address + batch * sizeof kBatches[0];
+                }
+            }
+            EngineSceneView view = content.view();
+            view.geometries = geometries;
+            view.materials = materials;
+            const VkCommandBuffer commands = engine.begin();
+            if (batch == 0) {
+                scene = must(EngineScene::record(sharedContext(), *package, view, commands, engine.frame()));
+                steps = engine.makeSteps(*package, *scene, strategy);
+            } else {
+                must(scene->update(commands, *package, view, engine.frame()));
+            }
+            ASSERT_TRUE(engine.ask(*steps, *content.gpu));
+            engine.submit();
+        }
+        engine.drain();
+        EXPECT_EQ(engine.answers(0), first);
+        EXPECT_EQ(engine.answers(1), second);
+        const std::vector<float> mixed = engine.answers(2);
+        std::array<std::size_t, 2> kept{};
+        for (std::size_t i = 0; i < mixed.size(); ++i) {
+            EXPECT_TRUE(mixed[i] == first[i] || mixed[i] == second[i]) << i;
+            kept[0] += mixed[i] != second[i] ? 1 : 0;
+            kept[1] += mixed[i] != first[i] ? 1 : 0;
+        }
+        EXPECT_GT(kept[0], 0U);
+        EXPECT_GT(kept[1], 0U);
+    }
 }
 
 TEST(RayStepsReplacement, BatchesUseTheNewPackageAtOnce) {

@@ -2,6 +2,7 @@
 #include "base/files.h"
 #include "context/commands.h"
 #include "render/harness.h"
+#include "render/light_pictures.h"
 #include "render/rooms.h"
 #include "render/scene_builder.h"
 #include "render/traced_frame.h"
@@ -25,9 +26,10 @@ namespace {
 using namespace glint;
 using namespace glint::testing;
 
-// Rays of a Renderer, and the light that it found for them, by slot.
+// Rays of a Renderer with their hits, and the light that it found for them, by slot.
 struct KnownRays {
     std::vector<EngineRay> rays;
+    std::vector<EngineHit> hits;
     std::vector<EngineRadiance> answers;
 };
 
@@ -38,32 +40,38 @@ std::vector<T> arrayOf(const std::vector<std::uint8_t>& bytes, std::size_t count
     return result;
 }
 
-// Traces the reflections of a scene as Renderer does.
-KnownRays knownRays(const gltf::Scene& scene, const RenderSetup& setup) {
+// Traces the reflections of a scene as Renderer does, in paths of that many bounces.
+KnownRays knownRays(const gltf::Scene& scene, const RenderSetup& setup, std::uint32_t bounces) {
     compiler::CompileSettings settings;
-    settings.strategies = package::kStrategyUber;
+    settings.strategies = package::kStrategyVisibility;
     settings.tracers = package::kAllTracers;
     settings.plan.merge = compiler::MergePolicy::All;
     settings.plan.keys.alpha = package::AlphaPolicy::Tested;
-    // Rays keep their origins in packages for several bounces. The frame has one.
-    settings.maxBounces = 2;
+    // Rays keep their origins in packages for several bounces, if the frame has one. So the answers to longer
+    // paths come from another frame.
+    settings.maxBounces = std::max(bounces, 2U);
+    settings.hitRecord = package::HitRecordFormat::Full;
     settings.emissiveLights = compiler::EmissiveLights::Off;
     settings.skyLight = compiler::SkyLight::Off;
     const LoadedScene loaded(scene, settings);
     KnownRays known;
     RendererOptions options;
-    options.strategy = package::kStrategyUber;
+    options.strategy = package::kStrategyVisibility;
     options.width = setup.width;
     options.height = setup.height;
     const auto renderer = loaded.makeRenderer(options);
-    if (!renderer || !renderer->render(setup.frame)) {
+    options.bounces = bounces;
+    const auto deeper = loaded.makeRenderer(options);
+    if (!renderer || !deeper || !renderer->render(setup.frame) || !deeper->render(setup.frame)) {
         return known;
     }
     Renderer::State& state = renderer->state();
     Result<CommandRunner> runner = CommandRunner::create(state.context);
     const auto rays = readRays(*renderer, renderer->counters()->rays);
-    const auto radiance = readFrameBuffer(state, *runner, state.frame.radiance);
-    EXPECT_TRUE(rays && radiance);
+    const auto hits = readFrameBuffer(state, *runner, state.frame.hits);
+    const auto radiance = readFrameBuffer(deeper->state(), *runner, deeper->state().frame.radiance);
+    EXPECT_TRUE(rays && hits && radiance);
+    known.hits = arrayOf<EngineHit>(*hits, rays->size());
     for (const gpu::RayRecord& ray : *rays) {
         known.rays.push_back({{ray.origin.x, ray.origin.y, ray.origin.z},
                               ray.target,
@@ -80,49 +88,47 @@ KnownRays knownRays(const gltf::Scene& scene, const RenderSetup& setup) {
     return known;
 }
 
+// What a host asks of its steps.
+struct Asked {
+    bool apart = false;       // the steps one by one, with the count on the device
+    bool givesHits = false;   // those of the host's list
+    bool visibility = false;  // the rays of the other list
+    std::uint32_t bounces = 0;
+};
+
 // A host: a pipeline layout with Glint's scene in set 2 and push constants at byte 16, a list of rays and
 // its answers. For a package without textures that takes its structure by address, the layout has no set.
 class Host {
 public:
     Host(const LoadedScene& loaded, const std::vector<EngineRay>& rays, std::size_t slots,
          std::size_t answerBytes)
-        : context_(sharedContext().state()),
-          pool_(context_),
-          loaded_(loaded),
-          rays_(rays),
-          slots_(slots),
-          hasSet_(loaded.package().bindings().tlas != package::Bindings::kByAddress ||
-                  !loaded.package().scene(0).textures.empty()) {
-        empty_ = must(createSetLayout(context_, {}));
-        const VkDescriptorSetLayout sets[] = {empty_.get(), empty_.get(),
-                                              loaded.gpuScene().descriptorSetLayout()};
-        layout_ = must(createPipelineLayout(context_, std::span(sets).first(hasSet_ ? 3 : 0),
-                                            {kStages, 0, 16 + RaySteps::kPushBytes}));
-        list_ = make(rays.size() * sizeof(EngineRay), MemoryUse::Upload);
-        std::memcpy(list_.mapped, rays.data(), rays.size() * sizeof(EngineRay));
-        count_ = make(sizeof(std::uint32_t), MemoryUse::Upload);
-        const auto count = static_cast<std::uint32_t>(rays.size());
-        std::memcpy(count_.mapped, &count, sizeof count);
-        answers_ = make(slots * answerBytes, MemoryUse::Readback);
+        : Host(loaded, slots, answerBytes) {
+        list_ = upload(rays);
+        count(rays.size());
+    }
+    // A host that asks for visibility, with a float or more for each slot.
+    Host(const LoadedScene& loaded, const std::vector<EngineVisibilityRay>& rays, std::size_t answerBytes)
+        : Host(loaded, rays.size(), answerBytes) {
+        list_ = upload(rays);
+        count(rays.size());
     }
 
-    // Records the steps and waits. `apart` records them one by one, with the count on the device.
-    template <typename Answer>
-    std::vector<Answer> answers(RayStepsOptions options, const FrameOptions& frame, bool apart,
-                                RaySteps::Counters* counters = nullptr) {
+    void give(const std::vector<EngineHit>& hits) {
+        hits_ = upload(hits);
+    }
+
+    std::unique_ptr<RaySteps> makeSteps(RayStepsOptions options) {
+        scene_ = must(EngineScene::share(sharedContext(), loaded_.gpuScene()));
         options.layout = layout_.get();
         options.pushStages = kStages;
         options.maxRays = static_cast<std::uint32_t>(slots_);
-        const auto scene = EngineScene::share(sharedContext(), loaded_.gpuScene());
-        const auto steps = must(RaySteps::create(sharedContext(), loaded_.package(), **scene, options));
-        RayBatch batch;
-        batch.rays = list_.address;
-        batch.answers = answers_.address;
-        batch.rayCount = static_cast<std::uint32_t>(rays_.size());
-        batch.sky = frame.sky;
-        batch.sampleIndex = frame.sampleIndex;
-        batch.seed = frame.seed;
-        batch.tlas = loaded_.gpuScene().state().tlas.address;
+        return must(RaySteps::create(sharedContext(), loaded_.package(), *scene_, options));
+    }
+
+    // Records the steps and waits.
+    template <typename Answer>
+    std::vector<Answer> ask(RaySteps& steps, const FrameOptions& frame, const Asked& asked) {
+        RayBatch batch = batchOf(frame, asked);
         Result<CommandRunner> runner = CommandRunner::create(context_);
         const Result<VkCommandBuffer> commands = runner->begin();
         const VkDescriptorSet set = loaded_.gpuScene().descriptorSet();
@@ -132,26 +138,51 @@ public:
              hasSet_ ? std::span(points) : std::span<const VkPipelineBindPoint>()) {
             context_.vk.CmdBindDescriptorSets(*commands, point, layout_.get(), 2, 1, &set, 0, nullptr);
         }
-        if (apart) {
+        if (asked.apart) {
             batch.rayCount = 0;
-            batch.countBuffer = count_.handle.get();
-            must(steps->begin(*commands, batch));
-            steps->trace(*commands);
-            steps->order(*commands);
-            steps->shade(*commands);
+            batch.countAddress = count_.address;
+            must(steps.begin(*commands, batch));
+            steps.trace(*commands);
+            steps.order(*commands);
+            steps.shade(*commands);
         } else {
-            must(steps->record(*commands, batch));
+            must(steps.record(*commands, batch));
         }
         recordDependency(context_, *commands,
                          {VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_ACCESS_2_MEMORY_WRITE_BIT,
                           VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT});
         EXPECT_TRUE(runner->submitAndWait());
-        if (counters != nullptr) {
-            *counters = *steps->counters();
-        }
         std::vector<Answer> read(slots_);
         std::memcpy(read.data(), answers_.mapped, slots_ * sizeof(Answer));
         return read;
+    }
+
+    // Does so with steps of its own.
+    template <typename Answer>
+    std::vector<Answer> answers(const RayStepsOptions& options, const FrameOptions& frame) {
+        return ask<Answer>(*makeSteps(options), frame, {});
+    }
+
+    RayBatch batchOf(const FrameOptions& frame, const Asked& asked) const {
+        RayBatch batch;
+        batch.rays = list_.address;
+        batch.hits = asked.givesHits ? hits_.address : 0;
+        batch.visibility = asked.visibility;
+        batch.bounces = asked.bounces;
+        batch.answers = answers_.address;
+        batch.rayCount = rays_;
+        batch.sky = frame.sky;
+        batch.sampleIndex = frame.sampleIndex;
+        batch.seed = frame.seed;
+        batch.tlas = loaded_.gpuScene().state().tlas.address;
+        return batch;
+    }
+
+    // Makes another layout with the same set, and lets the steps use it.
+    void changeLayout(RaySteps& steps) {
+        UniquePipelineLayout next = makeLayout(32 + RaySteps::kPushBytes);
+        must(steps.setLayout(next.get(), kStages));
+        layout_ = std::move(next);
     }
 
     VkPipelineLayout layout() const {
@@ -160,20 +191,53 @@ public:
     static constexpr VkShaderStageFlags kStages = VK_SHADER_STAGE_ALL;
 
 private:
+    Host(const LoadedScene& loaded, std::size_t slots, std::size_t answerBytes)
+        : context_(sharedContext().state()),
+          pool_(context_),
+          loaded_(loaded),
+          slots_(slots),
+          hasSet_(loaded.package().bindings().tlas != package::Bindings::kByAddress ||
+                  !loaded.package().scene(0).textures.empty()) {
+        empty_ = must(createSetLayout(context_, {}));
+        layout_ = makeLayout(16 + RaySteps::kPushBytes);
+        answers_ = make(slots * answerBytes, MemoryUse::Readback);
+    }
+
+    UniquePipelineLayout makeLayout(std::uint32_t pushBytes) const {
+        const VkDescriptorSetLayout sets[] = {empty_.get(), empty_.get(),
+                                              loaded_.gpuScene().descriptorSetLayout()};
+        return must(
+            createPipelineLayout(context_, std::span(sets).first(hasSet_ ? 3 : 0), {kStages, 0, pushBytes}));
+    }
+
     Buffer make(std::size_t bytes, MemoryUse use) {
         return must(createBuffer(context_, pool_, std::max<std::size_t>(bytes, 16),
-                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT, use));
+                                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, use));
+    }
+
+    template <typename T>
+    Buffer upload(const std::vector<T>& values) {
+        Buffer buffer = make(values.size() * sizeof(T), MemoryUse::Upload);
+        std::memcpy(buffer.mapped, values.data(), values.size() * sizeof(T));
+        return buffer;
+    }
+
+    void count(std::size_t rays) {
+        rays_ = static_cast<std::uint32_t>(rays);
+        count_ = upload(std::vector{rays_});
     }
 
     Context::State& context_;
     MemoryPool pool_;
     const LoadedScene& loaded_;
-    const std::vector<EngineRay>& rays_;
+    std::uint32_t rays_ = 0;
     std::size_t slots_;
     bool hasSet_;
     UniqueSetLayout empty_;
     UniquePipelineLayout layout_;
+    std::unique_ptr<EngineScene> scene_;
     Buffer list_;
+    Buffer hits_;
     Buffer count_;
     Buffer answers_;
 };
@@ -213,45 +277,135 @@ std::vector<Way> ways() {
     return result;
 }
 
-TEST(RaySteps, AnswerAHostsRaysAsARendererDoes) {
+// Returns how many answers differ from those of a renderer.
+std::size_t countFar(const KnownRays& known, const std::vector<EngineRadiance>& answers, float tolerance) {
+    std::size_t far = 0;
+    for (const EngineRay& ray : known.rays) {
+        const EngineRadiance& mine = answers.at(ray.slot);
+        const EngineRadiance& renderer = known.answers[ray.slot];
+        bool near = mine.path == renderer.path;
+        for (std::size_t i = 0; i < 3; ++i) {
+            near = near && std::abs(mine.radiance[i] - renderer.radiance[i]) <=
+                               tolerance * std::max(1.0F, renderer.radiance[i]);
+        }
+        far += near ? 0 : 1;
+    }
+    return far;
+}
+
+// The rays are traced, and then their hits are given, by whatever strategy takes them.
+TEST(RaySteps, AnswerAHostsRaysAndHitsAsARendererDoes) {
     const gltf::Scene scene = roomWithFence();
     const RenderSetup setup = defaultSetup(scene, 48, 27);
-    const KnownRays known = knownRays(scene, setup);
+    const KnownRays known = knownRays(scene, setup, 1);
     ASSERT_GT(known.rays.size(), 100U);
     for (const auto record : {package::HitRecordFormat::Full, package::HitRecordFormat::Packed}) {
         compiler::CompileSettings settings = stepSettings();
         settings.hitRecord = record;
         const LoadedScene loaded(scene, settings);
         Host host(loaded, known.rays, known.answers.size(), sizeof(EngineRadiance));
+        host.give(known.hits);
         for (const Way& way : ways()) {
             const bool packed = record == package::HitRecordFormat::Packed;
             if (packed && way.strategy != package::kStrategySortedUber) {
                 continue;
             }
+            SCOPED_TRACE(std::string(nameOf(way.strategy)) + ", " + std::string(nameOf(way.tracer)));
             RayStepsOptions options;
             options.strategy = way.strategy;
             options.tracer = way.tracer;
             options.checkOrder = true;
-            RaySteps::Counters counters;
-            const auto answers = host.answers<EngineRadiance>(
-                options, setup.frame, way.strategy == package::kStrategyVisibility, &counters);
-            ASSERT_EQ(answers.size(), known.answers.size());
-            EXPECT_EQ(counters.rays, known.rays.size());
-            EXPECT_EQ(counters.orderErrors, 0U);
-            EXPECT_EQ(counters.unknownShader, 0U);
-            std::size_t far = 0;
-            for (const EngineRay& ray : known.rays) {
-                const EngineRadiance& mine = answers[ray.slot];
-                const EngineRadiance& renderer = known.answers[ray.slot];
-                bool near = mine.path == renderer.path;
-                for (std::size_t i = 0; i < 3; ++i) {
-                    near = near && std::abs(mine.radiance[i] - renderer.radiance[i]) <=
-                                       (packed ? 1e-2F : 1e-4F) * std::max(1.0F, renderer.radiance[i]);
+            const auto steps = host.makeSteps(options);
+            for (const bool givesHits : {false, true}) {
+                const Asked asked{way.strategy == package::kStrategyVisibility, givesHits};
+                if (givesHits && way.strategy == package::kStrategyHitShaders) {
+                    EXPECT_EQ(mustFail(steps->begin(VK_NULL_HANDLE, host.batchOf(setup.frame, asked))).id,
+                              "ray-steps");
+                    continue;
                 }
-                far += near ? 0 : 1;
+                const auto answers = host.ask<EngineRadiance>(*steps, setup.frame, asked);
+                const RaySteps::Counters counters = must(steps->counters());
+                EXPECT_EQ(counters.rays, known.rays.size());
+                EXPECT_EQ(counters.furtherRays, 0U);
+                EXPECT_EQ(counters.orderErrors, 0U);
+                EXPECT_EQ(counters.unknownShader, 0U);
+                // Packed records round the place on a triangle, which a shadow's edge shows.
+                EXPECT_LE(countFar(known, answers, packed ? 1e-2F : 1e-4F),
+                          packed ? known.rays.size() / 50 : 0)
+                    << (givesHits ? "given" : "traced");
             }
-            // Packed records round the place on a triangle, which a shadow's edge shows.
-            EXPECT_LE(far, packed ? known.rays.size() / 50 : 0) << nameOf(way.strategy);
+        }
+    }
+}
+
+// Of a ray whose hit is given nothing is traced: here all leave the scene.
+TEST(RaySteps, TraceNoRayWhoseHitIsGiven) {
+    const gltf::Scene scene = roomWithFence();
+    const RenderSetup setup = defaultSetup(scene, 16, 9);
+    const KnownRays known = knownRays(scene, setup, 1);
+    compiler::CompileSettings settings = stepSettings();
+    settings.strategies = package::kStrategyUber | package::kStrategyVisibility;
+    const LoadedScene loaded(scene, settings);
+    Host host(loaded, known.rays, known.answers.size(), sizeof(EngineRadiance));
+    host.give(std::vector<EngineHit>(known.rays.size()));
+    for (const package::Strategy strategy : {package::kStrategyUber, package::kStrategyVisibility}) {
+        RayStepsOptions options;
+        options.strategy = strategy;
+        const auto steps = host.makeSteps(options);
+        const auto answers = host.ask<EngineRadiance>(*steps, setup.frame, {.givesHits = true});
+        for (const EngineRay& ray : known.rays) {
+            EXPECT_EQ(answers[ray.slot].path, 3.0F);
+        }
+    }
+}
+
+// Paths of three bounces bring the light that a renderer's bring, and with a limit of one bounce the light of
+// the first hits. Afterwards the pipelines are made for another layout.
+TEST(RaySteps, FollowPathsAsARendererDoes) {
+    const gltf::Scene scene = roomWithFence();
+    const RenderSetup setup = defaultSetup(scene, 32, 18);
+    const KnownRays known = knownRays(scene, setup, 3);
+    const KnownRays first = knownRays(scene, setup, 1);
+    ASSERT_GT(known.rays.size(), 50U);
+    compiler::CompileSettings settings = stepSettings();
+    settings.maxBounces = 3;
+    settings.shadows = package::ShadowPlacement::Deferred;
+    const LoadedScene loaded(scene, settings);
+    Host host(loaded, known.rays, known.answers.size(), sizeof(EngineRadiance));
+    host.give(known.hits);
+    for (const Way& way : ways()) {
+        const bool isSorted = way.strategy == package::kStrategySortedUber;
+        if (way.strategy == package::kStrategyVisibility && way.tracer == package::kTracerRayPipeline) {
+            continue;  // the shading passes are those of ray queries
+        }
+        SCOPED_TRACE(std::string(nameOf(way.strategy)) + ", " + std::string(nameOf(way.tracer)));
+        RayStepsOptions options;
+        options.strategy = way.strategy;
+        options.tracer = way.tracer;
+        const auto steps = host.makeSteps(options);
+        const auto answers = host.ask<EngineRadiance>(*steps, setup.frame, {.givesHits = isSorted});
+        EXPECT_EQ(countFar(known, answers, 1e-4F), 0U);
+        const RaySteps::Counters counters = must(steps->counters());
+        EXPECT_EQ(counters.rays, known.rays.size());
+        EXPECT_GT(counters.furtherRays, known.rays.size() / 4);
+        if (!counters.bucketCounts.empty()) {
+            std::uint32_t hits = 0;
+            for (const std::uint32_t count : counters.bucketCounts) {
+                hits += count;
+            }
+            EXPECT_EQ(hits, counters.rays + counters.furtherRays);
+        }
+        if (isSorted) {
+            host.changeLayout(*steps);
+            EXPECT_EQ(countFar(known, host.ask<EngineRadiance>(*steps, setup.frame, {}), 1e-4F), 0U);
+        }
+        if (way.strategy == package::kStrategyUber) {
+            const auto direct = host.ask<EngineRadiance>(*steps, setup.frame, {.bounces = 1});
+            EXPECT_EQ(must(steps->counters()).furtherRays, 0U);
+            EXPECT_GT(countFar(first, answers, 1e-4F), 0U);
+            EXPECT_EQ(countFar(first, direct, 1e-4F), 0U);
+            EXPECT_EQ(mustFail(steps->begin(VK_NULL_HANDLE, host.batchOf(setup.frame, {.bounces = 4}))).id,
+                      "package-bounces");
         }
     }
 }
@@ -287,7 +441,7 @@ TEST(RaySteps, AnswerWithSurfaces) {
         RayStepsOptions options;
         options.strategy = way.strategy;
         options.tracer = way.tracer;
-        const auto answers = host.answers<EngineSurface>(options, {}, false);
+        const auto answers = host.answers<EngineSurface>(options, {});
         ASSERT_EQ(answers.size(), 3U);
         const EngineSurface& wall = answers[2];
         const auto expectVector = [](const std::array<float, 3>& v, const std::array<float, 3>& truth) {
@@ -338,7 +492,7 @@ TEST(RaySteps, PointsOfDeformingMeshesHaveMotionOfTheirOwn) {
     Host host(loaded, rays, 1, sizeof(EngineSurface));
     RayStepsOptions options;
     options.strategy = package::kStrategyUber;
-    const auto answers = host.answers<EngineSurface>(options, {}, false);
+    const auto answers = host.answers<EngineSurface>(options, {});
     ASSERT_EQ(answers.size(), 1U);
     EXPECT_NEAR(answers[0].motion[0], 0.25F, 1e-6F);
     EXPECT_NEAR(answers[0].motion[1], 0.5F, 1e-6F);
@@ -373,8 +527,8 @@ TEST(RaySteps, TakeAStructureByItsAddress) {
         RayStepsOptions options;
         options.strategy = way.strategy;
         options.tracer = way.tracer;
-        const auto truth = withSet.answers<EngineRadiance>(options, {}, false);
-        const auto found = without.answers<EngineRadiance>(options, {}, false);
+        const auto truth = withSet.answers<EngineRadiance>(options, {});
+        const auto found = without.answers<EngineRadiance>(options, {});
         ASSERT_EQ(found.size(), truth.size());
         std::array<std::size_t, 4> paths{};
         for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -399,6 +553,113 @@ TEST(RaySteps, TakeAStructureByItsAddress) {
     batch.rays = batch.answers = 64;
     const Diagnostic refused = mustFail(steps->begin(VK_NULL_HANDLE, batch));
     EXPECT_NE(toString(refused).find("RayBatch::tlas is 0"), std::string::npos);
+}
+
+// A white wall, before it a tinted pane on the right, a mask that lets everything through above, and one that
+// lets nothing through below.
+gltf::Scene wallBehindPanes() {
+    gltf::Scene scene = emptyScene();
+    addQuad(scene, matte(0.5F), {-4, -4, -4}, {8, 0, 0}, {0, 8, 0});
+    materials::Material glass = matte(0.0F);
+    glass["baseColorFactor"] = {0.25F, 0.5F, 0.75F, 1.0F};
+    glass["roughnessFactor"] = 0.0F;
+    glass["transmissionFactor"] = 1.0F;
+    glass["ior"] = 1.0F;
+    addQuad(scene, glass, {1, -0.5F, -2}, {2, 0, 0}, {0, 1, 0});
+    for (const float y : {1.0F, -2.0F}) {
+        materials::Material mask = matte(0.5F);
+        mask.alphaMode = materials::AlphaMode::Mask;
+        mask["baseColorFactor"] = {0.5F, 0.5F, 0.5F, y > 0.0F ? 0.25F : 0.75F};
+        addQuad(scene, mask, {-0.5F, y, -2}, {1, 0, 0}, {0, 1, 0});
+    }
+    return scene;
+}
+
+// Distances, both sides of a surface, alpha, and with --shadow-through glass the colour of glass, for
+// packages with either answer.
+TEST(RaySteps, AskForVisibility) {
+    const auto ray = [](std::uint32_t slot, float x, float y, float distance, float from = 0.0F) {
+        const float z = from < -1.0F ? 1.0F : -1.0F;
+        return EngineVisibilityRay{{x, y, from}, slot, {0, 0, z}, distance};
+    };
+    const std::vector<EngineVisibilityRay> rays{ray(3, -2, 0, 3.9F), ray(0, -2, 0, 4.1F),
+                                                ray(1, 2.3F, 0.1F, 3),     ray(2, 0, 1.5F, 3),
+                                                ray(5, 0, -1.5F, 3), ray(4, -2, 0, 9, -8)};
+    const std::vector<float> shares{0, 0, 1, 1, 0, 0};  // by slot
+    for (const auto through : {package::ShadowThrough::Alpha, package::ShadowThrough::Glass}) {
+        const bool isGlass = through == package::ShadowThrough::Glass;
+        compiler::CompileSettings settings = stepSettings();
+        settings.shadowThrough = through;
+        settings.answer = isGlass ? package::HitAnswer::Surface : package::HitAnswer::Radiance;
+        const LoadedScene loaded(wallBehindPanes(), settings);
+        ASSERT_EQ(loaded.package().shadowThrough(), through);
+        Host host(loaded, rays, sizeof(std::array<float, 3>));
+        for (const Way& way : ways()) {
+            if (way.strategy != package::kStrategyUber && way.strategy != package::kStrategyHitShaders) {
+                continue;  // the pass is that of uber
+            }
+            SCOPED_TRACE(std::string(nameOf(way.strategy)) + ", " + std::string(nameOf(way.tracer)));
+            RayStepsOptions options;
+            options.strategy = way.strategy;
+            options.tracer = way.tracer;
+            const auto steps = host.makeSteps(options);
+            const Asked asked{.apart = true, .visibility = true};
+            if (isGlass) {
+                const auto found = host.ask<std::array<float, 3>>(*steps, {}, asked);
+                for (std::size_t slot = 0; slot < shares.size(); ++slot) {
+                    for (std::size_t channel = 0; channel < 3; ++channel) {
+                        const float tint = 0.25F * static_cast<float>(channel + 1);
+                        EXPECT_NEAR(found[slot][channel], slot == 1 ? tint : shares[slot], 1e-5F) << slot;
+                    }
+                }
+            } else {
+                EXPECT_EQ(host.ask<float>(*steps, {}, asked), shares);
+            }
+            EXPECT_EQ(must(steps->counters()).rays, rays.size());
+        }
+    }
+}
+
+// The irradiance below the middle of a disk is intensity / (height² + radius²), on its front. A disk without
+// a size lights a place to the side by the squares of its cosine.
+TEST(RaySteps, ADiskLightsByLambertsLaw) {
+    gltf::Scene scene = emptyScene();
+    addQuad(scene, matte(0.5F), {-5, -5, -4}, {10, 0, 0}, {0, 10, 0});
+    gltf::Light lamp;
+    lamp.type = gltf::LightType::Point;
+    lamp.intensity = 3.0F;
+    lamp.position = {0, 0, -2};
+    scene.lights.push_back(lamp);
+    compiler::CompileSettings settings = stepSettings();
+    settings.strategies = package::kStrategyUber;
+    constexpr std::uint32_t kSlots = 2048;
+    for (const auto& [radius, x, front] : {std::array{0.0F, 0.0F, -1.0F}, std::array{0.0F, 2.0F, -1.0F},
+                                           std::array{1.5F, 0.0F, -1.0F}, std::array{1.5F, 0.0F, 1.0F}}) {
+        const LoadedScene loaded(scene, settings, [&](session::SceneViewData& data) {
+            LightView& light = data.lights.at(0);
+            light.type = LightView::Type::Disk;
+            light.direction = {0, 0, front};
+            light.size = radius;
+        });
+        std::vector<EngineRay> rays;
+        for (std::uint32_t slot = 0; slot < kSlots; ++slot) {
+            rays.push_back({{x, 0, 0}, slot, {0, 0, -1}});
+        }
+        Host host(loaded, rays, kSlots, sizeof(EngineRadiance));
+        RayStepsOptions options;
+        options.strategy = package::kStrategyUber;
+        FrameOptions frame;
+        frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+        double mean = 0.0;
+        for (const EngineRadiance& answer : host.answers<EngineRadiance>(options, frame)) {
+            mean += static_cast<double>(answer.radiance[0]) / kSlots;
+        }
+        const double squared = 4.0 + static_cast<double>(x * x);
+        const double facing = 4.0 / squared;
+        const double irradiance = 3.0 * facing / (squared + static_cast<double>(radius * radius));
+        const double expected = front < 0.0F ? 0.5 / 3.14159265 * irradiance : 0.0;
+        EXPECT_NEAR(mean, expected, (radius > 0.0F ? 0.02 : 1e-4) * expected) << radius << ", " << x;
+    }
 }
 
 TEST(RaySteps, RefuseWhatTheyCannotDo) {

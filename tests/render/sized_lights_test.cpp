@@ -65,6 +65,17 @@ void sizeLights(session::SceneViewData& data) {
     }
 }
 
+// Makes disks of lamps, which shine along a direction.
+void makeDisks(session::SceneViewData& data, const std::array<float, 3>& normal) {
+    sizeLights(data);
+    for (LightView& light : data.lights) {
+        if (light.type == LightView::Type::Point) {
+            light.type = LightView::Type::Disk;
+            light.direction = normal;
+        }
+    }
+}
+
 LoadedScene load(const gltf::Scene& scene, const SizedWays& ways) {
     return LoadedScene(scene, settingsOf(ways), sizeLights);
 }
@@ -150,6 +161,27 @@ TEST(FoundLights, MirrorsShowLamps) {
     const LoadedScene unseen = load(scene, {SizedLights::Off});
     EXPECT_FALSE(unseen.package().sizedLights());
     EXPECT_LT(meanOf(render(unseen, setupOf(scene, 16, 1), 1), 0), 0.1 * meanOfSphere(2.0, 3.5));
+}
+
+// A disk between mirrors is seen from its front alone: at first from 3.5 m, or only by paths, from 6.5
+// and 9.5.
+TEST(FoundLights, MirrorsShowTheFrontsOfDisks) {
+    gltf::Scene scene = mirrors();
+    addLamp(scene, {0, 0, -0.5F}, 2.0F);
+    const double area = std::numbers::pi * kLampRadius * kLampRadius;
+    const auto seen = [&](double distance) { return meanOfDisk(2.0 / area, kLampRadius / distance); };
+    for (const float front : {-1.0F, 1.0F}) {
+        for (const std::uint32_t lights : {0U, 1U}) {
+            const LoadedScene loaded(
+                scene, settingsOf({SizedLights::On, 2, package::ShadowThrough::Alpha, false, lights}),
+                [&](session::SceneViewData& data) {
+                    makeDisks(data, {0, 0, front});
+                });
+            const double expected = front < 0.0F ? seen(3.5) + seen(9.5) : seen(6.5);
+            EXPECT_NEAR(meanOf(render(loaded, setupOf(scene, 256, 1), 2), 0), expected, 0.02 * expected)
+                << front << ", " << lights << " lights";
+        }
+    }
 }
 
 // A mirror takes no samples, so what it shows depends on the search for lights alone. All of a few hundred
@@ -289,6 +321,18 @@ TEST(FoundLights, TheMeanIsThatOfLightSamples) {
                            fmt::format("{} bounces, shadow rays through {}, {} lights", one.bounces,
                                        static_cast<unsigned>(one.through), lights));
         }
+    }
+}
+
+TEST(FoundLights, TheMeanOfDisksIsThatOfTheirSamples) {
+    const gltf::Scene scene = room(false);
+    const auto disks = [](session::SceneViewData& data) { makeDisks(data, {0.6F, -0.8F, 0}); };
+    const LoadedScene sampled(scene, settingsOf({SizedLights::Off, 2}), disks);
+    const MeanEstimate expected = estimate(sampled, scene, 2, 64);
+    for (const std::uint32_t lights : {0U, 1U}) {
+        const LoadedScene found(
+            scene, settingsOf({SizedLights::On, 2, package::ShadowThrough::Alpha, false, lights}), disks);
+        expectSameMean(estimate(found, scene, 2, 64), expected, fmt::format("disks, {} lights", lights));
     }
 }
 

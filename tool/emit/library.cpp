@@ -31,6 +31,7 @@ Result<SourceSet> librarySources(const gltf::SceneList& scenes, Plan plan, Compi
     settings.host.clear();
     settings.precision = package::ShadingPrecision::Single;
     settings.answer = package::HitAnswer::Radiance;
+    settings.maxBounces = 1;
     settings.emissiveLights = EmissiveLights::Off;
     settings.skyLight = SkyLight::Off;
     settings.sizedLights = SizedLights::Off;

@@ -150,7 +150,8 @@ compiler::BenchFacts factsOf(const compiler::Build& build, std::size_t index) {
     }
     facts.textures = !scene.textures.empty();
     facts.effects = namesOfChosen(build.plan.effects);
-    facts.sendsRays = build.plan.effects.effects.rays != 0;
+    facts.sendsRays =
+        build.plan.effects.effects.rays != 0 || build.settings.compile.passes == package::Passes::Steps;
     facts.rayEffects = rayEffects(settings.compile.effects);
     facts.emits = compiler::countEmitters(*build.scenes, index) > 0;
     addAlternatives(build, facts);

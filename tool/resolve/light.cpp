@@ -340,7 +340,9 @@ EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan,
 package::ShadowThrough shadowThroughOf(const gltf::SceneList& scenes, const Plan& plan,
                                        const CompileSettings& settings) {
     using enum package::ShadowThrough;
-    if (settings.shadowThrough == Alpha || plan.effects.effects.lights == 0) {
+    // Rays of a host's own ask for visibility without an effect.
+    const bool tracesLight = plan.effects.effects.lights != 0 || settings.passes == package::Passes::Steps;
+    if (settings.shadowThrough == Alpha || !tracesLight) {
         return Alpha;
     }
     const bool passesBlended = settings.plan.keys.alpha == package::AlphaPolicy::Stochastic;

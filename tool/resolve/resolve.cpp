@@ -110,9 +110,9 @@ Status checkSettings(const CompileSettings& settings, const std::string& where) 
                          fmt::format("paths of {} bounces cannot be followed", settings.maxBounces),
                          fmt::format("choose 1 to {}", package::kMaxBounces));
     }
-    if (settings.passes == package::Passes::Steps && settings.maxBounces > 1) {
-        return makeError("bounces", where, "the rays of an engine's own end at their first hit",
-                         "leave out --bounces, or --passes steps");
+    if (settings.answer == package::HitAnswer::Surface && settings.maxBounces > 1) {
+        return makeError("bounces", where, "rays that are answered with a surface end there",
+                         "leave out --bounces, or --answer surface");
     }
     if (settings.bindings.pushOffset % 8 != 0) {
         return makeError("bindings", where,

@@ -164,6 +164,8 @@ double illuminanceAt(const LightView& light, const SurfacePoint& point) {
         const double width = std::max(0.001, std::cos(light.innerConeAngle) - outer);
         const double cone = std::clamp((-glm::dot(way, direction) - outer) / width, 0.0, 1.0);
         share *= cone * cone;
+    } else if (light.type == LightView::Type::Disk) {
+        share *= std::max(-glm::dot(way, direction), 0.0);
     }
     return intensity * share;
 }

@@ -214,17 +214,20 @@ struct ImageView {
 };
 
 struct LightView {
-    enum class Type : std::uint32_t { Directional, Point, Spot };
+    // A disk shines on one side, equally in all directions (Lambert's law). Its intensity is that along its
+    // normal: its radiance times its area.
+    enum class Type : std::uint32_t { Directional, Point, Spot, Disk };
     Type type = Type::Directional;
     std::array<float, 3> intensity{1, 1, 1};  // colour times intensity, lux (directional) or candela
-    std::array<float, 3> position{};
-    std::array<float, 3> direction{0, -1, 0};  // unit vector along which the light travels
-    float range = 0.0F;                        // metres; 0 means unlimited
-    float innerConeAngle = 0.0F;               // radians
+    std::array<float, 3> position{};          // of a disk, its centre
+    // Unit vector along which the light travels; of a disk, its normal.
+    std::array<float, 3> direction{0, -1, 0};
+    float range = 0.0F;           // metres; 0 means unlimited
+    float innerConeAngle = 0.0F;  // radians
     float outerConeAngle = 0.7853982F;
-    // The size of the light, for soft shadows. It is the radius in metres of a point or spot light. For a
-    // directional light it is half the angular diameter in radians, below a quarter turn. 0 makes hard
-    // shadows.
+    // The size of the light, for soft shadows. It is the radius in metres of a point or spot light, which is
+    // then a sphere, or of a disk. For a directional light it is half the angular diameter in radians, below
+    // a quarter turn. 0 makes hard shadows.
     float size = 0.0F;
 };
 

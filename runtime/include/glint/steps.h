@@ -51,10 +51,15 @@ struct EngineSceneView {
         // Bits for a host's own functions (`glint compile --host`), such as the format of its vertices. They
         // are the upper half of GeometryRecord::flags.
         std::uint16_t hostFlags = 0;
-        // Index into EngineSceneView::materials, whose entry must be of the primitive's material. kOfPackage:
-        // the values that the package has.
+        // The host's own number of the material: an index into EngineSceneView::materials, whose entry must
+        // be of the primitive's material. kOfPackage: the values that the package has.
         std::uint32_t material = kOfPackage;
         static constexpr std::uint32_t kOfPackage = 0xFFFFFFFF;
+        // If not 0, the address of such a number for each triangle, one uint32 each, aligned to 4 bytes;
+        // `material` is then not used. Nothing checks the numbers: their entries must be of the primitive's
+        // material, because the geometry's case shades all of its triangles. The host may write others at any
+        // time between batches.
+        VkDeviceAddress primitiveMaterials = 0;
     };
 
     // A texture of the package's scene (PackageScene::textures) as the host has it.
@@ -68,6 +73,21 @@ struct EngineSceneView {
     struct Sampler {
         std::uint32_t index = 0;     // in the host's array of samplers, Bindings::samplers
         float maxAnisotropy = 1.0F;  // of its filter; 1 without
+    };
+
+    // A material of the host's own: values, and with ownTextures also textures, for a material of the
+    // package.
+    struct Material {
+        // Number of the package's material (PrimitiveEntry::materialIndex), whose case shades it.
+        std::uint32_t material = 0;
+        // The bytes of a record in the package's layout (MaterialRecord of its C++ header).
+        std::span<const std::uint8_t> record{};
+        // If true, the TextureRecords of `record` count as they are: textureIndex and samplerIndex are
+        // indices into the host's arrays, texels is the size of mip 0, anisotropy that of the sampler (1
+        // without), and texCoord the UV set. Shaders read those for which the package's material has a
+        // texture; the others may be 0. If false, the textures are those of the package's material. UV
+        // transforms always count, if the package's material has one.
+        bool ownTextures = false;
     };
 
     // The rule by which the shaders find the geometry of a hit. A geometry's index in
@@ -91,9 +111,9 @@ struct EngineSceneView {
     // number of the geometry that it is for. A hit's record is instanceShaderBindingTableRecordOffset plus
     // the index of the geometry in its BLAS. If empty, record i is for geometry i.
     std::span<const std::uint32_t> hitRecords{};
-    // Values of the host's own for materials of the package, any number for each, in any order. Geometries
-    // name them. MaterialView::material is the material whose shader and textures they go with.
-    std::span<const MaterialView> materials{};
+    // The host's own materials by its own numbers. Geometries name them, and any number of them may be of one
+    // material of the package. A number that is not in use may have an entry with an empty record.
+    std::span<const Material> materials{};
 };
 
 // The tables that Glint's shaders read of such a scene: a record for each geometry, instance, material and
@@ -105,8 +125,9 @@ public:
     // spans are not kept. Errors: "position-fetch" and "half-precision" (the device was created without what
     // the package needs), "scene-package" (the package has no such scene or primitive), "engine-scene" (a
     // number is out of range, an attribute that a key needs is missing, or a transform is not finite),
-    // "scene-light", "scene-material" (the package has no such material, or records of another size), and
-    // those of memory and Vulkan's calls.
+    // "scene-light", "scene-material" (the package has no such material, or records of another size, or a
+    // texture of a material has no texels), "texture-trusted" (a material has own textures, and
+    // Package::trustTextures() is true), and those of memory and Vulkan's calls.
     static Result<std::unique_ptr<EngineScene>> record(Context& context, const Package& package,
                                                        const EngineSceneView& scene, VkCommandBuffer commands,
                                                        std::uint64_t frame);
@@ -148,6 +169,15 @@ public:
                   std::span<const LightView> lights, std::uint64_t frame,
                   const std::array<double, 3>& originMoved = {});
 
+    // Sets the host's own material of a number, and records the copy of its record alone. A number beyond
+    // those of the present content adds it, and all numbers between have no material. An empty record removes
+    // the material. Takes constant time, unless the number gets another material of the package or none: then
+    // no geometry may name it. The next update() with an EngineSceneView replaces all materials. Errors:
+    // "scene-material", "texture-trusted", "engine-scene" (a geometry names the number, the scene is shared,
+    // or `frame` has fallen), and those of memory.
+    Status updateMaterial(VkCommandBuffer commands, std::uint32_t number,
+                          const EngineSceneView::Material& material, std::uint64_t frame);
+
     // The address of the material records, with the host's numbers of textures and samplers:
     // glintHostMaterials() of the library. Commands that were recorded before an update use the old one.
     VkDeviceAddress materials() const;
@@ -166,12 +196,33 @@ private:
 // A ray of the host's list.
 struct EngineRay {
     std::array<float, 3> origin{};
-    std::uint32_t slot = 0;            // where its answer goes
+    // Where its answer goes. It must be below RayStepsOptions::maxRays in packages with several bounces.
+    std::uint32_t slot = 0;
     std::array<float, 3> direction{};  // unit
     float coneWidth = 0.0F;   // footprint at the origin, metres; 0 reads the finest level of textures
     float coneSpread = 0.0F;  // growth of the footprint in a metre
 };
 static_assert(sizeof(EngineRay) == 36);
+
+// The first hit of a ray, if the host has found it itself: by rasterising, or by rays of its own.
+struct EngineHit {
+    std::uint32_t geometry = kMiss;       // index into EngineSceneView::geometries
+    std::uint32_t primitive = 0;          // triangle within the geometry
+    std::array<float, 2> barycentrics{};  // weights of the second and the third corner
+    float coneWidth = 0.0F;  // footprint at the hit, metres; 0 reads the finest level of textures
+
+    static constexpr std::uint32_t kMiss = 0xFFFFFFFF;  // the ray leaves the scene
+};
+static_assert(sizeof(EngineHit) == 20);
+
+// A ray of a batch with RayBatch::visibility.
+struct EngineVisibilityRay {
+    std::array<float, 3> origin{};
+    std::uint32_t slot = 0;            // where its answer goes
+    std::array<float, 3> direction{};  // unit
+    float distance = 0.0F;             // metres; what is beyond does not count
+};
+static_assert(sizeof(EngineVisibilityRay) == 32);
 
 // The answer of a package with HitAnswer::Radiance: radiance, and how it was found.
 struct EngineRadiance {
@@ -222,13 +273,23 @@ struct RayStepsOptions {
 
 // The rays of one call.
 struct RayBatch {
-    VkDeviceAddress rays = 0;    // EngineRay[], aligned to 4 bytes
+    VkDeviceAddress rays = 0;  // EngineRay[], or with `visibility` EngineVisibilityRay[]; aligned to 4 bytes
     std::uint32_t rayCount = 0;  // at most RayStepsOptions::maxRays
-    // If not null, the device knows the number of rays: a uint32 at countOffset, at most maxRays. rayCount is
-    // then not used. The buffer needs VK_BUFFER_USAGE_TRANSFER_SRC_BIT.
-    VkBuffer countBuffer = VK_NULL_HANDLE;
-    VkDeviceSize countOffset = 0;
+    // If not 0, the device knows the number of rays: a uint32 at this address, aligned to 4 bytes. rayCount
+    // is then not used, and rays beyond maxRays are left out.
+    VkDeviceAddress countAddress = 0;
+    // If not 0, EngineHit[], aligned to 4 bytes: entry i is the first hit of ray i, which is then not traced.
+    // Of the ray its slot and direction count, and with several bounces its origin and coneSpread. The host
+    // decides which surfaces there are: neither `mask` nor alpha changes a hit that is given. Strategies with
+    // a pipeline of their own, which shade where they trace, take no hits.
+    VkDeviceAddress hits = 0;
+    // True: the rays only ask whether light arrives along them, up to EngineVisibilityRay::distance. What
+    // stops them is what stops shadow rays: both sides of every surface, with its alpha. The answer is a
+    // float by slot, 1 or 0. If Package::shadowThrough() is Glass, it is three floats, the share of red,
+    // green and blue that arrives through glass and alpha.
+    bool visibility = false;
     VkDeviceAddress answers = 0;    // EngineRadiance[] (16-byte aligned) or EngineSurface[], by slot
+    std::uint32_t bounces = 0;      // of paths, at most PackageShape::maxBounces; 0: as many as that
     std::uint32_t sampleIndex = 0;  // random numbers differ by slot, sample and seed
     std::uint32_t seed = 0;
     std::uint8_t mask = 0xFF;  // instances that share no bit with it are not hit
@@ -270,17 +331,18 @@ public:
     // Starts a batch: waits for all earlier commands that write memory, and sets the constants. The values
     // are stored in the command buffer. Batches share buffers, so on several queues the host orders them
     // itself. With an error nothing is recorded. Errors: "ray-steps", "sky", "environment-missing",
-    // "environment-unread", "package-replaced" (EngineScene::update() has given the scene the content of
-    // another package), and those of memory and Vulkan's calls. If the scene has other geometries, strategies
-    // with a pipeline of their own get another shader binding table, and may need another pipeline, which the
-    // call then makes.
+    // "environment-unread", "package-bounces" (more than the package has), "package-replaced"
+    // (EngineScene::update() has given the scene the content of another package), and those of memory and
+    // Vulkan's calls. If the scene has other geometries, strategies with a pipeline of their own get another
+    // shader binding table, and may need another pipeline, which the call then makes.
     Status begin(VkCommandBuffer commands, const RayBatch& batch);
-    // Traces the rays. Strategies that order no hits trace and shade in one pass, in shade(), so with them
-    // this and order() do nothing.
+    // Traces the rays, or takes the hits that the host gives. Strategies that order no hits trace and shade
+    // in one pass, in shade(), so with them this and order() do nothing.
     void trace(VkCommandBuffer commands);
     // Orders the hits by shader.
     void order(VkCommandBuffer commands);
-    // Shades the hits and writes the answers, which later commands may read at any stage.
+    // Shades the hits and writes the answers, which later commands may read at any stage. With several
+    // bounces it also traces, orders and shades the further rays of the paths, bounce by bounce.
     void shade(VkCommandBuffer commands);
     // Records all of these steps.
     Status record(VkCommandBuffer commands, const RayBatch& batch);
@@ -294,14 +356,20 @@ public:
     // or answers), and those of Renderer::replacePackage() for a scene that Glint has uploaded.
     Result<PackageReplacement> replacePackage(std::shared_ptr<const Package> package);
     PackageProgress replacementProgress() const;
+    // Makes all pipelines anew for another layout, such as one for a larger array of images; see
+    // RayStepsOptions::layout and pushStages. Batches that begin afterwards use it, and need the host's sets
+    // bound by it. The layout before must live until the device has completed the batches before. With an
+    // error nothing changes. Errors: those of create().
+    Status setLayout(VkPipelineLayout layout, VkShaderStageFlags pushStages);
     // The number of batches that were begun, which is that of the last one. finished() says that the device
     // has completed all batches up to a number, and frees what only those used. It never waits.
     std::uint64_t recordings() const;
     void finished(std::uint64_t recording);
 
-    // The counters of a batch.
+    // The counters of a batch, of all its bounces except where a member says otherwise.
     struct Counters {
-        std::uint32_t rays = 0;
+        std::uint32_t rays = 0;           // of the host's list
+        std::uint32_t furtherRays = 0;    // of further bounces
         std::uint32_t shadowRays = 0;     // deferred ones
         std::uint32_t unknownShader = 0;  // hits whose shader ID no case has, without a fallback
         std::uint32_t orderErrors = 0;    // with RayStepsOptions::checkOrder

@@ -133,6 +133,8 @@ LightBounds boundsOfLight(const gpu::LightRecord& light) {
         const double cosOuter = -static_cast<double>(light.spotOffset) / light.spotScale;
         bounds.axes = {axis / length, 0.0};
         bounds.emission = std::acos(std::clamp(cosOuter, -1.0, 1.0));
+    } else if (light.type == gpu::kLightDisk && length > 0.5) {
+        bounds.axes = {axis / length, 0.0};
     }
     return bounds;
 }

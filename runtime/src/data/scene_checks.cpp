@@ -256,7 +256,7 @@ Status checkLights(std::span<const LightView> lights) {
             light.position[1],  light.position[2],    light.direction[0],   light.direction[1],
             light.direction[2], light.innerConeAngle, light.outerConeAngle, light.range,
             light.size};
-        if (!isFinite(values) || light.type > LightView::Type::Spot) {
+        if (!isFinite(values) || light.type > LightView::Type::Disk) {
             return makeError("scene-light", "light " + std::to_string(&light - lights.data()),
                              "the light has a value that is not finite, or an unknown type",
                              "repair the light");

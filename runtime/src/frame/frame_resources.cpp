@@ -176,9 +176,10 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
     constexpr VkBufferUsageFlags kRead = kStorage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
     constexpr VkBufferUsageFlags kIndirect = kStorage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
     // These numbers are 0 if no effect sends rays.
-    const VkDeviceSize samples = size.hostRays ? 0 : size.pixelsOfBand() * size.sampleCount;
+    const bool hasSamples = !size.hostRays || size.paths;
+    const VkDeviceSize samples = hasSamples ? size.pixelsOfBand() * size.sampleCount : 0;
     const VkDeviceSize rays = listRays(size);
-    const VkDeviceSize ownRays = size.hostRays ? 0 : rays;
+    const VkDeviceSize ownRays = hasSamples ? rays : 0;
     const VkDeviceSize hits = size.ordered ? rays : 0;
     // The lists of first hits and of the hits of rays follow each other in the same memory.
     const VkDeviceSize ordered = std::max(hits, size.firstHits());
@@ -208,7 +209,8 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
         {"weights of samples", &Frame::sampleWeights,
          size.packedSamples ? 0 : samples * sizeof(gpu::SampleWeight), kRead},
         {"rays", &Frame::listed, ownRays * sizeof(std::uint32_t), kRead},
-        {"radiance of paths", &Frame::radiance, size.paths ? samples * sizeof(gpu::vec4) : 0, kRead},
+        {"radiance of paths", &Frame::radiance,
+         size.paths && !size.hostRays ? samples * sizeof(gpu::vec4) : 0, kRead},
         {"next rays", &Frame::nextListed, size.paths ? ownRays * sizeof(std::uint32_t) : 0, kStorage},
         {"paths", &Frame::paths, size.paths ? samples * sizeof(gpu::PathState) : 0, kStorage},
         {"rays of lobes", &Frame::lobeRays, size.emissiveLights ? samples * sizeof(gpu::LobeRay) : 0,
@@ -222,7 +224,7 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
         {"shadow rays", &Frame::shadows, shadowBytes, kStorage},
         {"shadow dispatch", &Frame::shadowDispatch, shadowLists * sizeof(gpu::DispatchArguments), kIndirect},
         {"first shadow counts", &Frame::firstShadowCounts, firstShadows * sizeof(std::uint32_t), kCleared},
-        {"hits", &Frame::hits, hits * size.hitBytes, kStorage, MemoryUse::Device,
+        {"hits", &Frame::hits, hits * size.hitBytes, kRead, MemoryUse::Device,
          firstShadows > 0 && !size.deferredShadows},
         {"ordered hits", &Frame::orderedHits, slots * sizeof(std::uint32_t), kStorage},
         {"visited hits", &Frame::visitedHits, visitedWords * sizeof(std::uint32_t), kCleared},

@@ -49,8 +49,8 @@ struct FrameResources {
     Buffer sampleAims;
     Buffer sampleWeights;  // present if samples are not packed
     Buffer listed;         // the list of rays: the numbers of their samples
-    Buffer radiance;       // this buffer and the next two are present if paths have several bounces
-    Buffer nextListed;
+    Buffer radiance;       // present if paths have several bounces, unless a host has the answers
+    Buffer nextListed;     // this buffer and the next are present if paths have several bounces
     Buffer paths;
     Buffer lobeRays;     // present if the package has emissive lights
     Buffer skyShares;    // present if the sky is a light of the package
@@ -87,7 +87,7 @@ struct FrameSize {
     bool ordered = false;  // hits of rays are stored and ordered by bucket
     bool checksOrder = false;
     std::uint32_t bucketAlignment = 1;
-    bool packedSamples = false;
+    bool packedSamples = false;                       // those of a host's rays never are
     std::uint32_t hitBytes = sizeof(gpu::HitRecord);  // 0: the samples hold their hits
     std::uint32_t keyBytes = 1;                       // size of the key of a hit's bucket
     bool deferredShadows = false;

@@ -124,6 +124,8 @@ std::vector<RoleInfo> sharedRoles() {
          .pass = "first"},
         {ModuleRole::FirstShadows, all, "FirstShadows", "first/first_shadows.comp", ShaderKind::Tracing,
          Purpose::FirstShadows},
+        {ModuleRole::RayVisibility, all, "RayVisibility", "passes/ray_visibility.comp", ShaderKind::Tracing,
+         Purpose::Visibility},
     };
 }
 
@@ -171,6 +173,8 @@ bool isNeeded(const RoleInfo& info, const PackageShape& shape) {
             return hits && shape.effects.lights != 0 && shape.shadows == ShadowPlacement::Deferred;
         case Purpose::FirstShadows:
             return shape.defersFirstShadows();
+        case Purpose::Visibility:
+            return !frame;
         case Purpose::Walks:
             return frame && shape.effects.walks != 0;
         case Purpose::Paths:
@@ -316,7 +320,7 @@ std::uint32_t tracersOf(std::uint32_t strategies, std::uint32_t tracers) {
 }
 
 bool hasPaths(const PackageShape& shape) {
-    return shape.passes == Passes::Frame && shape.effects.rays != 0 && shape.maxBounces > 1;
+    return (shape.passes == Passes::Steps || shape.effects.rays != 0) && shape.maxBounces > 1;
 }
 
 std::vector<ModuleKey> requiredModules(const PackageShape& shape) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace glint {
@@ -229,9 +230,54 @@ void HitPasses::dispatchRays(const PassLabel& label, ModuleRole role) {
     passes_.barrier(dependencies().passToPass);
 }
 
+void HitPasses::clearRound() {
+    // The previous round read these lists. Their counts are the first counters.
+    static_assert(gpu::kCounterRays == 0 && gpu::kCounterShadowRays == 1);
+    passes_.barrier(dependencies().passToClear);
+    passes_.fill(state_.frame.counters, 0, kRoundCounterBytes);
+    passes_.clearLists();
+    passes_.barrier(dependencies().clearToPasses);
+}
+
+void HitPasses::setBounce(std::uint32_t bounce, float weight) {
+    std::uint64_t listed = state_.frame.listed.address;
+    std::uint64_t next = state_.frame.nextListed.address;
+    if (bounce > 0 && bounce % 2 == 0) {
+        std::swap(listed, next);
+    }
+    passes_.barrier(dependencies().passToClear);
+    passes_.setConstants(listed, offsetof(gpu::FrameConstants, listed));
+    passes_.setConstants(next, offsetof(gpu::FrameConstants, nextListed));
+    passes_.setConstants(bounce, offsetof(gpu::FrameConstants, bounce));
+    passes_.setConstants(weight, offsetof(gpu::FrameConstants, bounceWeight));
+    passes_.barrier(dependencies().clearToPasses);
+    passes_.barrier(dependencies().passToPass);
+}
+
+void HitPasses::listPathRays(std::uint32_t bounce, float weight) {
+    clearRound();
+    passes_.dispatchList({"path rays", Pass::PathRays}, pass(ModuleRole::PathRays), state_.frame.rayDispatch,
+                         0);
+    setBounce(bounce, weight);
+}
+
+void HitPasses::readBackRound(std::uint32_t round) {
+    passes_.barrier(dependencies().passesToCopy);
+    // The list's own counts follow the other counters, round by round.
+    const VkDeviceSize place = readbackRound(state_.size, round);
+    passes_.readBack(state_.frame.counters, kRoundCounterBytes, place);
+    if (state_.size.ordered) {
+        passes_.readBack(state_.frame.bucketCounts, bucketBytes(state_.size), place + kRoundCounterBytes);
+    }
+}
+
 void HitPasses::dispatchOfList() {
     passes_.dispatchGroups({"ray dispatch", Pass::RayDispatch}, pass(ModuleRole::RayDispatch), 1);
     passes_.barrier(dependencies().passToDispatch);
+}
+
+void HitPasses::traceVisibility() {
+    dispatchRays({"visibility", Pass::Trace}, ModuleRole::RayVisibility);
 }
 
 void HitPasses::trace() {

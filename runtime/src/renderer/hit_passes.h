@@ -166,8 +166,21 @@ public:
     // `shadowRounds` is 0 if the shadow rays of first hits are traced inline.
     void shadeFirst(std::uint32_t shadowRounds);
 
+    // Clears the lists of the round before, and their counters.
+    void clearRound();
+    // Tells the passes which bounce they shade, and which list has its rays: odd bounces use the list that
+    // the first rays are in. `weight` is the factor of the light that paths find after the bounce. Makes the
+    // writes of the earlier passes visible to the later ones.
+    void setBounce(std::uint32_t bounce, float weight);
+    // Puts the rays that the hits of the bounce before sent on the next list, and makes it that of `bounce`.
+    void listPathRays(std::uint32_t bounce, float weight);
+    // Copies the counters of a round into the read-back buffer, before the next round clears them.
+    void readBackRound(std::uint32_t round);
+
     // Sets the indirect arguments of the list of rays, from its counter.
     void dispatchOfList();
+    // Answers a host's rays that only ask for visibility.
+    void traceVisibility();
     // Strategies that shade where they trace have nothing to do in these two.
     void trace();
     void order();

@@ -53,7 +53,7 @@ public:
         state_.orderedBands = 0;
         for (std::uint32_t band = 0; band < state_.size.bandCount(); ++band) {
             if (band > 0) {
-                startBand(band, constants);
+                startBand(band);
             }
             recordBand(band, frame, constants);
         }
@@ -111,7 +111,7 @@ private:
             passes_.barrier(dependencies().passToPass);
         } else {
             recordFirst(band, constants);
-            recordEffects(frame.effects & state_.size.effects.rays, constants);
+            recordEffects(frame.effects & state_.size.effects.rays);
         }
         passes_.dispatchPixels({"compose", Pass::Compose}, pass(ModuleRole::Compose));
     }
@@ -128,14 +128,14 @@ private:
     }
 
     // Leads the passes to the rows of another band. The band before used the same memory.
-    void startBand(std::uint32_t band, const gpu::FrameConstants& constants) {
+    void startBand(std::uint32_t band) {
         setBand(state_.size, band, band_);
         passes_.barrier(dependencies().passToClear);
         passes_.setConstants(band_.firstRow, offsetof(gpu::FrameConstants, firstRow));
         passes_.setConstants(band_.endRow, offsetof(gpu::FrameConstants, endRow));
         passes_.setConstants(band_.bandFirst, offsetof(gpu::FrameConstants, bandFirst));
         clearOfPixels();
-        startRound(constants);
+        startRound();
         passes_.barrier(dependencies().passToPass);
     }
 
@@ -160,14 +160,14 @@ private:
     }
 
     // Records the rays of all effects that are on, either together or effect by effect.
-    void recordEffects(std::uint32_t withRays, const gpu::FrameConstants& constants) {
+    void recordEffects(std::uint32_t withRays) {
         std::uint32_t listed = 0;  // effects whose rays are in the list
         for (const EffectName& info : state_.effects) {
             if ((withRays & info.effect) == 0) {
                 continue;
             }
             if (listed == 0) {
-                startRound(constants);
+                startRound();
             }
             recordRays(info);
             listed |= info.effect;
@@ -175,13 +175,13 @@ private:
                 continue;
             }
             if (state_.size.paths) {
-                setBounce(constants, 1);
+                setBounce(1);
             } else {
                 passes_.barrier(dependencies().passToPass);
             }
             recordHits(listed, 1);
             for (std::uint32_t bounce = 2; bounce <= bounces_.count; ++bounce) {
-                recordPathRays(constants, bounce);
+                HitPasses(state_, passes_).listPathRays(bounce, weightBehind(bounce, bounces_.certain));
                 recordHits(listed, bounce);
             }
             listed = 0;
@@ -197,59 +197,20 @@ private:
         hits.order();
         hits.shade();
         passes_.endStretch(stretch);
-        finishRound(static_cast<std::uint32_t>(state_.rounds.size()));
+        hits.readBackRound(static_cast<std::uint32_t>(state_.rounds.size()));
         state_.rounds.push_back({effects, bounce});
     }
 
-    // Puts the rays that the hits of the bounce before sent on the next list, and makes it the list.
-    void recordPathRays(const gpu::FrameConstants& constants, std::uint32_t bounce) {
-        clearRound();
-        passes_.dispatchList({"path rays", Pass::PathRays}, pass(ModuleRole::PathRays),
-                             state_.frame.rayDispatch, 0);
-        setBounce(constants, bounce);
+    // Sets a bounce of the paths that are recorded.
+    void setBounce(std::uint32_t bounce) {
+        HitPasses(state_, passes_).setBounce(bounce, weightBehind(bounce, bounces_.certain));
     }
 
-    // Tells the passes which bounce they shade, and which list has its rays: odd bounces use the list that
-    // the effects fill. Makes the writes of the earlier passes visible to the later ones.
-    void setBounce(const gpu::FrameConstants& constants, std::uint32_t bounce) {
-        const bool swapped = bounce > 0 && bounce % 2 == 0;
-        passes_.barrier(dependencies().passToClear);
-        passes_.setConstants(swapped ? constants.nextListed : constants.listed,
-                             offsetof(gpu::FrameConstants, listed));
-        passes_.setConstants(swapped ? constants.listed : constants.nextListed,
-                             offsetof(gpu::FrameConstants, nextListed));
-        passes_.setConstants(bounce, offsetof(gpu::FrameConstants, bounce));
-        passes_.setConstants(weightBehind(bounce, bounces_.certain),
-                             offsetof(gpu::FrameConstants, bounceWeight));
-        passes_.barrier(dependencies().clearToPasses);
-        passes_.barrier(dependencies().passToPass);
-    }
-
-    void startRound(const gpu::FrameConstants& constants) {
+    void startRound() {
         if (state_.size.paths) {
-            setBounce(constants, 0);
+            setBounce(0);
         }
-        clearRound();
-    }
-
-    void clearRound() {
-        // The previous round read these lists. Their counts are the first counters.
-        static_assert(gpu::kCounterRays == 0 && gpu::kCounterShadowRays == 1);
-        passes_.barrier(dependencies().passToClear);
-        passes_.fill(state_.frame.counters, 0, kRoundCounterBytes);
-        passes_.clearLists();
-        passes_.barrier(dependencies().clearToPasses);
-    }
-
-    // Copies the round's counters for counters(), before the next round clears them.
-    void finishRound(std::uint32_t round) {
-        passes_.barrier(dependencies().passesToCopy);
-        // The list's own counts follow the other counters, round by round.
-        const VkDeviceSize place = readbackRound(state_.size, round);
-        passes_.readBack(state_.frame.counters, kRoundCounterBytes, place);
-        if (state_.size.ordered) {
-            passes_.readBack(state_.frame.bucketCounts, bucketBytes(state_.size), place + kRoundCounterBytes);
-        }
+        HitPasses(state_, passes_).clearRound();
     }
 
     void recordRays(const EffectName& info) {

@@ -64,15 +64,16 @@ bool isSpare(const PlannedPipeline& planned, bool shadesUnknown) {
            (ofRays || (!planned.keys.empty() && std::ranges::all_of(planned.keys, isFallback)));
 }
 
-// Plans the pipelines, keeps those that are known, and makes the others or starts threads that do.
-Status makePipelinesOf(PackageUser& state, NextPackage& next) {
+// Plans the pipelines, keeps those that are known, and makes the others or starts threads that do. If `layout`
+// is not null, the pipelines have this layout in place of the user's own, and none is kept.
+Status makePipelinesOf(PackageUser& state, NextPackage& next, const LayoutSource* layout) {
     PackageReplacement& result = next.report;
     const PipelineMaking making{state.options.pipelineThreads, state.options.pipelineStatistics};
     Pipelines& pipelines = next.pipelines;
     pipelines.package = next.package;
     pipelines.ownLayout = state.pipelines.ownLayout;
-    pipelines.layout = state.pipelines.layout;
-    pipelines.pushStages = state.pipelines.pushStages;
+    pipelines.layout = layout != nullptr ? layout->given : state.pipelines.layout;
+    pipelines.pushStages = layout != nullptr ? layout->givenPushStages : state.pipelines.pushStages;
     pipelines.captureStatistics = making.captureStatistics;
     pipelines.adoptedAtOnce = state.pipelines.adoptedAtOnce;
     pipelines.threads = state.pipelines.threads;
@@ -82,7 +83,7 @@ Status makePipelinesOf(PackageUser& state, NextPackage& next) {
     choice.draft = false;
     const std::vector<std::uint32_t>& shaderIds = next.fit.shaderIds;
     pipelines.shadesUnknown = hasUnknown(*next.package, shaderIds);
-    const KnownPipelines known = knownPipelines(state);
+    const KnownPipelines known = layout == nullptr ? knownPipelines(state) : KnownPipelines();
     std::vector<PlannedPipeline> missing;
     for (PlannedPipeline& planned :
          planPipelines(state.context, *next.package, choice, shaderIds, pipelines.layout)) {
@@ -119,7 +120,7 @@ Status makePipelinesOf(PackageUser& state, NextPackage& next) {
 
 // Makes everything that frames of the package need. Nothing of the user changes.
 Result<std::unique_ptr<NextPackage>> makeNext(PackageUser& state, std::shared_ptr<const Package> package,
-                                              bool inBackground) {
+                                              bool inBackground, const LayoutSource* layout = nullptr) {
     GLINT_TRY_DO(checkPasses(state.passes(), *package));
     auto next = std::make_unique<NextPackage>(state.context);
     GLINT_TRY_DO(state.choose(*package, *next));
@@ -143,7 +144,7 @@ Result<std::unique_ptr<NextPackage>> makeNext(PackageUser& state, std::shared_pt
     GLINT_TRY(next->buffers, createNextBuffers(state.context, state.size, next->size));
     next->report.buffersKept = next->buffers.kept;
     next->report.buffersMade = next->buffers.made;
-    GLINT_TRY_DO(makePipelinesOf(state, *next));
+    GLINT_TRY_DO(makePipelinesOf(state, *next, layout));
     return next;
 }
 
@@ -421,6 +422,21 @@ Status refreshTables(PackageUser& state) {
     }
     state.pipelines.shadesUnknown = hasUnknown(*state.package, state.drawn.shaderIds);
     state.shaderIdsVersion = state.drawn.shaderIdsVersion;
+    return okStatus();
+}
+
+Status replaceLayout(PackageUser& state, const LayoutSource& layout) {
+    GLINT_TRY(auto now, makeNext(state, state.package, false, &layout));
+    GLINT_TRY_DO(joinPasses(state, *now));
+    std::unique_ptr<NextPackage> waiting;
+    if (state.next) {
+        GLINT_TRY(waiting, makeNext(state, state.next->package, true, &layout));
+    }
+    addLeftovers(state);
+    takeOver(state, std::move(now), nullptr, state.recordings);
+    if (waiting) {
+        await(state, std::move(waiting));
+    }
     return okStatus();
 }
 

@@ -134,6 +134,10 @@ Status checkReplaced(const PackageUser& user);
 // those of create().
 Status refreshTables(PackageUser& user);
 
+// Makes all pipelines anew for another layout of the caller's, and those of a package that waits. With an
+// error nothing changes. Errors: those of create().
+Status replaceLayout(PackageUser& user, const LayoutSource& layout);
+
 // Destroys resources that recordings after `recording` do not use; pipelines are gone some time later.
 void releaseLeftovers(PackageUser& user, std::uint64_t recording);
 

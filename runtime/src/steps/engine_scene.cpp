@@ -69,18 +69,28 @@ Result<const package::PrimitiveEntry*> entryOf(const PackageScene& known, std::s
     return entry;
 }
 
-// Returns the records of geometries, without what their entries say.
-Result<std::vector<gpu::GeometryRecord>> makeGeometries(const EngineSceneView& scene) {
+// The records of geometries, without what their entries say, and the lists that those name whose triangles
+// have materials of their own.
+struct Geometries {
     std::vector<gpu::GeometryRecord> records;
+    std::vector<gpu::PrimitiveMaterials> primitiveMaterials;
+};
+
+Result<Geometries> makeGeometries(const EngineSceneView& scene) {
+    Geometries made;
     for (std::size_t i = 0; i < scene.geometries.size(); ++i) {
         const EngineSceneView::Geometry& view = scene.geometries[i];
         if (view.instance >= scene.instances.size()) {
             return outOfRange(geometryPlace(i), "instance", view.instance, scene.instances.size());
         }
-        gpu::GeometryRecord& record = records.emplace_back(recordOf({}, view, view.instance));
+        gpu::GeometryRecord& record = made.records.emplace_back(recordOf({}, view, view.instance));
         record.flags = std::uint32_t{view.hostFlags} << gpu::kGeometryHostFlagsShift;
+        if (view.primitiveMaterials != 0) {
+            made.primitiveMaterials.push_back({view.primitiveMaterials});
+            record.primitiveMaterials = static_cast<std::uint32_t>(made.primitiveMaterials.size());
+        }
     }
-    return records;
+    return made;
 }
 
 Result<std::vector<gpu::InstanceRecord>> makeInstances(std::span<const Rows> instances) {
@@ -150,41 +160,102 @@ Result<std::vector<std::uint8_t>> makeMaterials(const Context::State& context, c
     return bytes;
 }
 
-// Appends records with the host's values. Their textures are those of the package's material.
-Status appendValues(const PackageScene& known, std::span<const ChangingMaterial> values,
-                    std::vector<std::uint8_t>& bytes) {
-    const std::size_t size = known.materials.recordBytes;
-    for (const ChangingMaterial& one : values) {
-        if (one.material >= known.materials.size() || one.record.size() != size) {
-            return makeError("scene-material", "material " + std::to_string(one.material),
-                             one.record.size() != size ? "the record has another size than the package's"
-                                                       : "the package has no such material",
-                             "give records of the package's materials, in its layout");
+using Host = EngineScene::State::Host;
+using OwnMaterial = EngineScene::State::OwnMaterial;
+
+std::string materialPlace(std::size_t number) {
+    return "material " + std::to_string(number);
+}
+
+// Gives a record the host's own textures, where the record of the package's material has any. Such a record
+// holds zero in the place of others.
+Status takeTextures(const MaterialTable& given, const MaterialTable& ofPackage, std::size_t number,
+                    std::span<std::uint8_t> record) {
+    for (std::uint32_t slot = 0; slot < given.textureCount; ++slot) {
+        const gpu::TextureRecord known = textureAt(ofPackage, 0, slot);
+        const auto isZero = [](const gpu::vec3& row) {
+            return row.x == 0.0F && row.y == 0.0F && row.z == 0.0F;
+        };
+        if (isZero(known.rowU) && isZero(known.rowV)) {
+            continue;
         }
-        const auto own = bytes.begin() + static_cast<std::ptrdiff_t>(one.material * size);
-        std::vector<std::uint8_t> record(own, own + static_cast<std::ptrdiff_t>(size));
-        takeValues(one.record, known.materials, record);
+        gpu::TextureRecord texture = textureAt(given, 0, slot);
+        if (!(texture.texels.x >= 1.0F && texture.texels.y >= 1.0F)) {
+            return makeError("scene-material", materialPlace(number),
+                             "texture " + std::to_string(slot) + " of the record has no texels",
+                             "give the size of its finest level in TextureRecord::texels");
+        }
+        texture.anisotropy = std::max(texture.anisotropy, 1.0F);
+        std::memcpy(&record[placeOfTexture(given, 0, slot)], &texture, sizeof texture);
+    }
+    return okStatus();
+}
+
+// Returns the record of a material of the host's own. `ofPackage` has those of the package's materials, with
+// the host's numbers of textures and samplers.
+Result<std::vector<std::uint8_t>> makeOwnRecord(const Host& host, std::span<const std::uint8_t> ofPackage,
+                                                std::size_t number, const OwnMaterial& own) {
+    const std::size_t size = host.layout.recordBytes;
+    std::vector<std::uint8_t> record(size);
+    if (own.record.empty()) {
+        return record;
+    }
+    if (own.material >= host.ofPackage || own.record.size() != size) {
+        return makeError("scene-material", materialPlace(number),
+                         own.record.size() != size
+                             ? "the record has another size than the package's"
+                             : "the package has no material " + std::to_string(own.material),
+                         "give records of the package's materials, in its layout");
+    }
+    const std::span<const std::uint8_t> known = ofPackage.subspan(own.material * size, size);
+    std::ranges::copy(known, record.begin());
+    takeValues(own.record, host.layout, record);
+    if (own.ownTextures) {
+        if (host.trustsTextures) {
+            return makeError(
+                "texture-trusted", materialPlace(number),
+                "it has textures of its own, and the package's shaders rely on those of the scene",
+                "compile it with --no-trust-textures");
+        }
+        GLINT_TRY_DO(
+            takeTextures(tableWith(host.layout, own.record), tableWith(host.layout, known), number, record));
+    }
+    return record;
+}
+
+// Appends the records of the host's own materials.
+Status appendOwn(const Host& host, std::vector<std::uint8_t>& bytes) {
+    const std::size_t ofPackage = bytes.size();
+    bytes.reserve(ofPackage + host.materials.size() * host.layout.recordBytes);
+    for (std::size_t i = 0; i < host.materials.size(); ++i) {
+        GLINT_TRY(const auto record,
+                  makeOwnRecord(host, std::span(bytes).first(ofPackage), i, host.materials[i]));
         bytes.insert(bytes.end(), record.begin(), record.end());
     }
     return okStatus();
 }
 
-// Gives a geometry the values that the host has named for it.
-Status takeMaterial(std::size_t index, std::uint32_t material, std::size_t packageMaterials,
-                    std::span<const ChangingMaterial> values, gpu::GeometryRecord& geometry) {
-    if (material == EngineSceneView::Geometry::kOfPackage) {
+// Gives a geometry the materials that the host has named for it.
+Status takeMaterial(const Host& host, std::size_t index, gpu::GeometryRecord& geometry) {
+    const EngineScene::State::Primitive& primitive = host.primitives[index];
+    if (primitive.ownMaterials) {
+        geometry.materialIndex = host.ofPackage;
         return okStatus();
     }
-    if (material >= values.size()) {
-        return outOfRange(geometryPlace(index), "material", material, values.size());
+    if (primitive.material == EngineSceneView::Geometry::kOfPackage) {
+        return okStatus();
     }
-    if (values[material].material != geometry.materialIndex) {
+    if (primitive.material >= host.materials.size() || host.materials[primitive.material].record.empty()) {
+        return outOfRange(geometryPlace(index), "material", primitive.material, host.materials.size());
+    }
+    const std::uint32_t material = host.materials[primitive.material].material;
+    if (material != geometry.materialIndex) {
         return makeError("engine-scene", geometryPlace(index),
-                         "its values are of material " + std::to_string(values[material].material) +
+                         "its values are of material " + std::to_string(material) +
                              ", and the primitive has material " + std::to_string(geometry.materialIndex),
                          "name values of the primitive's material");
     }
-    geometry.materialIndex = static_cast<std::uint32_t>(packageMaterials) + material;
+    geometry.materialIndex = host.ofPackage + primitive.material;
     return okStatus();
 }
 
@@ -206,30 +277,26 @@ Result<std::vector<std::uint32_t>> findShaderIds(std::span<const gpu::GeometryRe
 
 // The content of a scene by a package.
 struct PackageContent {
-    EngineScene::State::Host host;
+    Host host;
     std::vector<gpu::GeometryRecord> geometries;
     std::vector<std::uint8_t> materials;
-    std::uint32_t materialBytes = 0;  // of a record
     std::vector<std::uint32_t> shaderIds;
     std::uint64_t records = 0;  // recordsHash()
 };
 
 // Gives geometries what a package says of their primitives, and makes the other records.
 Result<PackageContent> makeContent(const Context::State& context, const Package& package, std::uint32_t index,
-                                   std::vector<gpu::GeometryRecord> geometries,
-                                   EngineScene::State::Host host) {
+                                   std::vector<gpu::GeometryRecord> geometries, Host host) {
     GLINT_TRY_DO(checkDevice(package, context.handles));
     const PackageScene known = package.scene(index);
     for (std::size_t i = 0; i < geometries.size(); ++i) {
         GLINT_TRY(const auto entry, entryOf(known, i, host.primitives[i], geometries[i]));
         takeEntry(*entry, geometries[i]);
-        GLINT_TRY_DO(takeMaterial(i, host.primitives[i].material, known.materials.size(), host.materials,
-                                  geometries[i]));
+        GLINT_TRY_DO(takeMaterial(host, i, geometries[i]));
     }
     PackageContent content;
     GLINT_TRY(content.materials, makeMaterials(context, known, host.textures, host.samplers));
-    GLINT_TRY_DO(appendValues(known, host.materials, content.materials));
-    content.materialBytes = known.materials.recordBytes;
+    GLINT_TRY_DO(appendOwn(host, content.materials));
     GLINT_TRY(content.shaderIds, findShaderIds(geometries, host.hitRecords));
     content.host = std::move(host);
     content.geometries = std::move(geometries);
@@ -237,21 +304,34 @@ Result<PackageContent> makeContent(const Context::State& context, const Package&
     return content;
 }
 
-// Carries the host's values into records of a package. What these have beside is the package's.
-Status carryValues(const Package& package, const PackageScene& known, EngineScene::State::Host& host) {
-    RecordFields fields = recordFields(package, known);
-    for (ChangingMaterial& one : host.materials) {
-        if (one.material >= known.materials.size()) {
-            return makeError("scene-package", "material " + std::to_string(one.material),
+// Notes the layout of a package's records.
+void takeLayout(const Package& package, const PackageScene& known, Host& host) {
+    host.fields = recordFields(package, known);
+    host.layout = tableWith(known.materials, {});
+    host.trustsTextures = package.trustTextures();
+    host.ofPackage = static_cast<std::uint32_t>(known.materials.size());
+}
+
+// Carries the host's values into records of a package. What these have beside is that of `records`, the
+// package's records with the host's numbers of textures and samplers.
+Status carryValues(const Package& package, const PackageScene& known, std::span<const std::uint8_t> records,
+                   Host& host) {
+    const RecordFields before = std::move(host.fields);
+    takeLayout(package, known, host);
+    for (OwnMaterial& one : host.materials) {
+        if (one.record.empty()) {
+            continue;
+        }
+        if (one.material >= host.ofPackage) {
+            return makeError("scene-package", materialPlace(one.material),
                              "the host has given values of this material, which the package lacks",
                              "compile the package with the same materials");
         }
-        const std::span<const std::uint8_t> own = known.materials.part(one.material, 1).bytes;
+        const std::span<const std::uint8_t> own = tableWith(host.layout, records).part(one.material, 1).bytes;
         const std::vector<std::uint8_t> given = std::exchange(one.record, {own.begin(), own.end()});
-        carryFields(host.fields, host.fields.modelOf(one.material), given, fields,
-                    fields.modelOf(one.material), one.record);
+        carryFields(before, before.modelOf(one.material), given, host.fields,
+                    host.fields.modelOf(one.material), one.record);
     }
-    host.fields = std::move(fields);
     return okStatus();
 }
 
@@ -263,16 +343,18 @@ Result<PackageContent> contentBy(const EngineScene::State& state, const Package&
     for (std::uint32_t i = 0; i < geometries.count(); ++i) {
         records.push_back(geometries.read<gpu::GeometryRecord>(i));
     }
-    EngineScene::State::Host host = state.host;
-    GLINT_TRY_DO(carryValues(package, package.scene(index), host));
+    Host host = state.host;
+    const PackageScene known = package.scene(index);
+    GLINT_TRY(const auto rows, makeMaterials(state.context, known, host.textures, host.samplers));
+    GLINT_TRY_DO(carryValues(package, known, rows, host));
     return makeContent(state.context, package, index, std::move(records), std::move(host));
 }
 
 void take(EngineScene::State& state, const PackageContent& content) {
     using State = EngineScene::State;
     RecordStore& materials = state.arrays[State::Materials].store;
-    if (content.materialBytes != materials.stride()) {
-        materials.reset(content.materialBytes);
+    if (content.host.layout.recordBytes != materials.stride()) {
+        materials.reset(content.host.layout.recordBytes);
     }
     materials.replaceBytes(content.materials);
     state.arrays[State::Geometries].store.replace(std::span<const gpu::GeometryRecord>(content.geometries));
@@ -317,6 +399,10 @@ Status checkOwn(const EngineScene::State& state, std::uint64_t frame) {
     return okStatus();
 }
 
+OwnMaterial keptMaterial(const EngineSceneView::Material& view) {
+    return {view.material, {view.record.begin(), view.record.end()}, view.ownTextures};
+}
+
 Status recordContent(EngineScene::State& state, VkCommandBuffer commands, const Package& package,
                      const EngineSceneView& scene, std::uint64_t frame,
                      const std::array<double, 3>& originMoved) {
@@ -326,23 +412,22 @@ Status recordContent(EngineScene::State& state, VkCommandBuffer commands, const 
                          "the package has no scene " + std::to_string(scene.packageScene),
                          "give an index below Package::sceneCount()");
     }
-    State::Host host{{},
-                     {scene.textures.begin(), scene.textures.end()},
-                     {scene.samplers.begin(), scene.samplers.end()},
-                     {scene.hitRecords.begin(), scene.hitRecords.end()},
-                     {},
-                     recordFields(package, package.scene(scene.packageScene))};
+    Host host;
+    host.textures.assign(scene.textures.begin(), scene.textures.end());
+    host.samplers.assign(scene.samplers.begin(), scene.samplers.end());
+    host.hitRecords.assign(scene.hitRecords.begin(), scene.hitRecords.end());
+    takeLayout(package, package.scene(scene.packageScene), host);
     std::uint32_t leastInstances = 0;
     for (const EngineSceneView::Geometry& view : scene.geometries) {
-        host.primitives.push_back({view.mesh, view.primitive, view.material});
+        host.primitives.push_back({view.mesh, view.primitive, view.material, view.primitiveMaterials != 0});
         leastInstances = std::max(leastInstances, view.instance + 1);
     }
-    for (const MaterialView& view : scene.materials) {
-        host.materials.push_back({view.material, {view.record.begin(), view.record.end()}});
+    for (const EngineSceneView::Material& view : scene.materials) {
+        host.materials.push_back(keptMaterial(view));
     }
     GLINT_TRY(auto geometries, makeGeometries(scene));
     GLINT_TRY(const auto content, makeContent(state.context, package, scene.packageScene,
-                                              std::move(geometries), std::move(host)));
+                                              std::move(geometries.records), std::move(host)));
     for (std::size_t i = 0; i < scene.firstRecords.size(); ++i) {
         if (scene.firstRecords[i] >= std::max<std::size_t>(content.geometries.size(), 1)) {
             return outOfRange("entry " + std::to_string(i) + " of firstRecords", "geometry",
@@ -353,10 +438,54 @@ Status recordContent(EngineScene::State& state, VkCommandBuffer commands, const 
     state.shaderIdsVersion += state.shaderIds != content.shaderIds ? 1 : 0;
     take(state, content);
     state.arrays[State::FirstRecords].store.replace(scene.firstRecords);
+    replace(state, State::PrimitiveMaterials, geometries.primitiveMaterials);
     state.name = package.scene(scene.packageScene).name;
     state.leastInstances = leastInstances;
     state.recordsBy = scene.recordsBy;
     return state.recordChanges(commands, frame);
+}
+
+// Error "engine-scene": a geometry names the material.
+Status checkUnnamed(const Host& host, std::uint32_t number) {
+    for (std::size_t i = 0; i < host.primitives.size(); ++i) {
+        if (!host.primitives[i].ownMaterials && host.primitives[i].material == number) {
+            return makeError("engine-scene", materialPlace(number),
+                             geometryPlace(i) +
+                                 " names it, and it would be of another material of the package, "
+                                 "or of none",
+                             "give the geometry another material first");
+        }
+    }
+    return okStatus();
+}
+
+// Writes the material of a number, and gives numbers between an empty record.
+Status setMaterial(EngineScene::State& state, std::uint32_t number, OwnMaterial own) {
+    using State = EngineScene::State;
+    Host& host = state.host;
+    RecordStore& rows = state.arrays[State::Materials].store;
+    const bool isKnown = number < host.materials.size() && !host.materials[number].record.empty();
+    if (isKnown && (own.record.empty() || own.material != host.materials[number].material)) {
+        GLINT_TRY_DO(checkUnnamed(host, number));
+    }
+    GLINT_TRY(const auto record,
+              makeOwnRecord(
+                  host, host.ofPackage > 0 ? rows.at({0, host.ofPackage}) : std::span<const std::uint8_t>(),
+                  number, own));
+    if (own.record.empty() && number >= host.materials.size()) {
+        return okStatus();
+    }
+    for (auto next = static_cast<std::uint32_t>(host.materials.size()); next < number; ++next) {
+        rows.writeBytes(host.ofPackage + next, std::vector<std::uint8_t>(record.size()));
+    }
+    host.materials.resize(std::max<std::size_t>(host.materials.size(), number + std::size_t{1}));
+    host.materials[number] = std::move(own);
+    rows.writeBytes(host.ofPackage + number, record);
+    while (!host.materials.empty() && host.materials.back().record.empty()) {
+        host.materials.pop_back();
+    }
+    rows.shrink(host.ofPackage + static_cast<std::uint32_t>(host.materials.size()));
+    return okStatus();
 }
 
 }  // namespace
@@ -369,7 +498,8 @@ EngineScene::State::State(Context::State& contextState)
               {RecordStore(sizeof(gpu::InstanceRecord)), {}},
               {RecordStore(sizeof(std::uint32_t)), {}},
               {RecordStore(sizeof(gpu::LightRecord)), {}},
-              {RecordStore(sizeof(std::uint32_t)), {}}}},
+              {RecordStore(sizeof(std::uint32_t)), {}},
+              {RecordStore(sizeof(gpu::PrimitiveMaterials)), {}}}},
       retired(*pool) {}
 
 Status EngineScene::State::recordChanges(VkCommandBuffer commands, std::uint64_t frame,
@@ -462,12 +592,17 @@ GLINT_CATCH
 
 EngineScene::State::Addresses EngineScene::State::addresses() const {
     if (shared != nullptr) {
-        return {shared->geometries.address, shared->instances.address, shared->instances.address,
-                shared->materials.address,  shared->lights.address,    0};
+        return {shared->geometries.address,
+                shared->instances.address,
+                shared->instances.address,
+                shared->materials.address,
+                shared->lights.address,
+                0,
+                0};
     }
     const auto at = [&](Kind kind) { return arrays[kind].device.address; };
-    return {at(Geometries), at(Instances), at(PreviousInstances),
-            at(Materials),  at(Lights),    at(FirstRecords)};
+    return {at(Geometries), at(Instances),    at(PreviousInstances), at(Materials),
+            at(Lights),     at(FirstRecords), at(PrimitiveMaterials)};
 }
 
 std::uint32_t EngineScene::State::lightsNow() const {
@@ -492,6 +627,14 @@ Status EngineScene::update(VkCommandBuffer commands, std::span<const std::array<
         return outOfRange("", "instance", state_->leastInstances - 1, instances.size());
     }
     GLINT_TRY_DO(place(*state_, instances, lights, originMoved));
+    return state_->recordChanges(commands, frame);
+}
+GLINT_CATCH
+
+Status EngineScene::updateMaterial(VkCommandBuffer commands, std::uint32_t number,
+                                   const EngineSceneView::Material& material, std::uint64_t frame) try {
+    GLINT_TRY_DO(checkOwn(*state_, frame));
+    GLINT_TRY_DO(setMaterial(*state_, number, keptMaterial(material)));
     return state_->recordChanges(commands, frame);
 }
 GLINT_CATCH

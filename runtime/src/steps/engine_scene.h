@@ -41,6 +41,7 @@ struct EngineScene::State final : DrawnScene {
         VkDeviceAddress materials = 0;
         VkDeviceAddress lights = 0;
         VkDeviceAddress firstRecords = 0;
+        VkDeviceAddress primitiveMaterials = 0;
     };
     Addresses addresses() const;
     // The scene whose records are read: this one, or the GpuScene that it shares.
@@ -61,6 +62,7 @@ struct EngineScene::State final : DrawnScene {
         Materials,
         Lights,
         FirstRecords,
+        PrimitiveMaterials,
         Count
     };
     std::shared_ptr<MemoryPool> pool;
@@ -77,14 +79,23 @@ struct EngineScene::State final : DrawnScene {
         std::uint32_t mesh = 0;
         std::uint32_t primitive = 0;
         std::uint32_t material = EngineSceneView::Geometry::kOfPackage;
+        bool ownMaterials = false;  // each of its triangles names one
+    };
+    struct OwnMaterial {
+        std::uint32_t material = 0;
+        std::vector<std::uint8_t> record;  // empty: the number is not in use
+        bool ownTextures = false;
     };
     struct Host {
         std::vector<Primitive> primitives;  // of each geometry
         std::vector<EngineSceneView::Texture> textures;
         std::vector<EngineSceneView::Sampler> samplers;
         std::vector<std::uint32_t> hitRecords;
-        std::vector<ChangingMaterial> materials;  // in records with these fields
+        std::vector<OwnMaterial> materials;  // in records with these fields
         RecordFields fields;
+        MaterialTable layout;         // of these records, without bytes
+        bool trustsTextures = false;  // Package::trustTextures()
+        std::uint32_t ofPackage = 0;  // materials of the package, whose records come first
     };
     Host host;
     std::string name;  // of the scene in the package

@@ -8,8 +8,10 @@
 
 #include <glint/steps.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <string>
 #include <utility>
@@ -19,6 +21,13 @@ namespace glint {
 static_assert(sizeof(EngineRay) == sizeof(gpu::RayRecord));
 static_assert(offsetof(EngineRay, slot) == offsetof(gpu::RayRecord, target));
 static_assert(offsetof(EngineRay, coneSpread) == offsetof(gpu::RayRecord, coneSpread));
+static_assert(sizeof(EngineHit) == sizeof(gpu::HitRecord));
+static_assert(offsetof(EngineHit, barycentrics) == offsetof(gpu::HitRecord, barycentricU));
+static_assert(offsetof(EngineHit, coneWidth) == offsetof(gpu::HitRecord, coneWidth));
+static_assert(EngineHit::kMiss == gpu::kMissGeometry);
+static_assert(sizeof(EngineVisibilityRay) == sizeof(gpu::VisibilityRay));
+static_assert(offsetof(EngineVisibilityRay, slot) == offsetof(gpu::VisibilityRay, target));
+static_assert(offsetof(EngineVisibilityRay, distance) == offsetof(gpu::VisibilityRay, distance));
 static_assert(sizeof(EngineSurface) == sizeof(gpu::SurfaceRecord));
 static_assert(offsetof(EngineSurface, roughness) == offsetof(gpu::SurfaceRecord, roughness));
 static_assert(offsetof(EngineSurface, f0) == offsetof(gpu::SurfaceRecord, f0));
@@ -42,6 +51,8 @@ struct RaySteps::State final : PackageUser {
     // These belong to the batch that begin() started.
     Timing timing = Timing::Frame;
     std::uint32_t whole = 0;  // the timer's stretch of it
+    bool visibility = false;
+    std::uint32_t bounces = 1;
     std::shared_ptr<const Environment::State> environment;
 };
 
@@ -55,6 +66,24 @@ Outside outsideOf(const RayBatch& batch) {
     return {batch.sky, batch.environment, batch.environmentRotation, batch.environmentIntensity};
 }
 
+// The options with as many bounces as the package has.
+RendererOptions optionsFor(const Package& package, RendererOptions options) {
+    options.bounces = package.shape().maxBounces;
+    return options;
+}
+
+Status checkHits(const RaySteps::State& state, const RayBatch& batch) {
+    if (batch.hits != 0 && batch.visibility) {
+        return wrongBatch("rays that only ask for visibility have no hits", "leave out RayBatch::hits");
+    }
+    if (batch.hits != 0 && package::infoOf(state.choice.strategy).ownPipeline) {
+        return wrongBatch("the strategy " + std::string(nameOf(state.choice.strategy)) +
+                              " shades hits where its pipeline finds them, and takes none",
+                          "make RaySteps with another strategy for RayBatch::hits");
+    }
+    return okStatus();
+}
+
 Status checkBatch(const RaySteps::State& state, const RayBatch& batch) {
     if (batch.rays == 0 || batch.answers == 0) {
         return wrongBatch("the address of rays or answers is 0", "give the addresses of both lists");
@@ -63,12 +92,26 @@ Status checkBatch(const RaySteps::State& state, const RayBatch& batch) {
         return wrongBatch("the package takes the acceleration structure by address, and RayBatch::tlas is 0",
                           "set it, or compile the package with a number for tlas in --bindings");
     }
-    if (batch.countBuffer == VK_NULL_HANDLE && batch.rayCount > state.options.width) {
+    if (batch.countAddress == 0 && batch.rayCount > state.options.width) {
         return wrongBatch(std::to_string(batch.rayCount) + " rays are more than RayStepsOptions::maxRays, " +
                               std::to_string(state.options.width),
                           "split the batch, or make the steps for more rays");
     }
-    return checkOutside(state.size, outsideOf(batch));
+    if (batch.bounces > state.size.bounces) {
+        return makeError("package-bounces", "",
+                         "paths of " + std::to_string(batch.bounces) +
+                             " bounces are asked for, and the package was compiled for 1 to " +
+                             std::to_string(state.size.bounces),
+                         "compile the package with more --bounces, or ask for fewer");
+    }
+    GLINT_TRY_DO(checkHits(state, batch));
+    return batch.visibility ? okStatus() : checkOutside(state.size, outsideOf(batch));
+}
+
+Status checkLayout(VkPipelineLayout layout) {
+    return layout != VK_NULL_HANDLE
+               ? okStatus()
+               : Status(wrongBatch("there is no pipeline layout", "give that of the host's pipelines"));
 }
 
 Status checkRays(const Context::State& context, const FrameSize& size, std::uint32_t maxRays) {
@@ -96,13 +139,19 @@ Status RaySteps::State::choose(const Package& other, NextPackage& made) const {
         return wrongBatch("the packages differ in bindings, answers or the use of an environment map",
                           "compile it with the options of the package before, or make other RaySteps");
     }
-    GLINT_TRY(made.choice, choosePipelines(context, other, options));
-    made.size = frameSize(other, made.choice, options, 0);
+    const RendererOptions wanted = optionsFor(other, options);
+    GLINT_TRY(made.choice, choosePipelines(context, other, wanted));
+    made.size = frameSize(other, made.choice, wanted, 0);
     return checkRays(context, made.size, options.width);
 }
 
 std::vector<std::uint32_t> RaySteps::State::hits() const {
-    return countersAt(*this, counterBytes(size), size.ordered ? size.bucketCount : 0);
+    std::vector<std::uint32_t> sum(size.ordered ? size.bucketCount : 0);
+    for (std::uint32_t round = 0; round < bounces && !sum.empty(); ++round) {
+        const VkDeviceSize place = readbackRound(size, round) + kRoundCounterBytes;
+        std::ranges::transform(sum, countersAt(*this, place, sum.size()), sum.begin(), std::plus());
+    }
+    return sum;
 }
 
 Result<std::unique_ptr<RaySteps>> RaySteps::create(Context& context, const Package& package,
@@ -110,9 +159,7 @@ Result<std::unique_ptr<RaySteps>> RaySteps::create(Context& context, const Packa
     Context::State& contextState = context.state();
     DrawnScene& drawn = scene.state().drawn();
     GLINT_TRY_DO(checkUse(package::Passes::Steps, package, drawn));
-    if (options.layout == VK_NULL_HANDLE) {
-        return wrongBatch("there is no pipeline layout", "set RayStepsOptions::layout");
-    }
+    GLINT_TRY_DO(checkLayout(options.layout));
     RendererOptions wanted;
     wanted.strategy = options.strategy;
     wanted.tracer = options.tracer;
@@ -123,6 +170,7 @@ Result<std::unique_ptr<RaySteps>> RaySteps::create(Context& context, const Packa
     wanted.draft = false;
     wanted.width = options.maxRays;
     wanted.height = 1;
+    wanted = optionsFor(package, wanted);
     GLINT_TRY(auto choice, choosePipelines(contextState, package, wanted));
     const FrameSize size = frameSize(package, choice, wanted, 0);
     GLINT_TRY_DO(checkRays(contextState, size, options.maxRays));
@@ -154,18 +202,6 @@ RaySteps::~RaySteps() {
 
 namespace {
 
-// Sets the counter of the list's rays, which is the first counter.
-void setRayCount(const PassState& state, VkCommandBuffer commands, const RayBatch& batch) {
-    static_assert(gpu::kCounterRays == 0);
-    const VkBuffer counters = state.frame.counters.handle.get();
-    if (batch.countBuffer == VK_NULL_HANDLE) {
-        state.context.vk.CmdUpdateBuffer(commands, counters, 0, sizeof(batch.rayCount), &batch.rayCount);
-    } else {
-        const VkBufferCopy count{batch.countOffset, 0, sizeof(std::uint32_t)};
-        state.context.vk.CmdCopyBuffer(commands, batch.countBuffer, counters, 1, &count);
-    }
-}
-
 gpu::FrameConstants makeConstants(const RaySteps::State& state, const RayBatch& batch) {
     gpu::FrameConstants constants{};
     constants.width = state.options.width;
@@ -185,14 +221,23 @@ gpu::FrameConstants makeConstants(const RaySteps::State& state, const RayBatch& 
     constants.materials = addresses.materials;
     constants.lights = addresses.lights;
     constants.firstRecords = addresses.firstRecords;
+    constants.primitiveMaterials = addresses.primitiveMaterials;
     constants.recordsBy = static_cast<std::uint32_t>(state.scene.recordsBy);
     constants.rayMask = batch.mask;
     constants.tlasAddress = {static_cast<std::uint32_t>(batch.tlas),
                              static_cast<std::uint32_t>(batch.tlas >> 32)};
     fillLists(state.frame, state.size, constants);
     constants.rays = batch.rays;
+    constants.visibilityRays = batch.rays;
+    constants.rayCount = batch.countAddress != 0 ? batch.countAddress : state.frame.counters.address;
+    constants.givenHits = batch.hits;
+    constants.givesHits = batch.hits != 0 ? 1 : 0;
     constants.radiance = batch.answers;
     constants.surfaces = batch.answers;
+    constants.visibilities = batch.answers;
+    constants.bounce = 1;
+    constants.bounceWeight = 1.0F;
+    constants.lastBounce = state.bounces;
     return constants;
 }
 
@@ -217,6 +262,8 @@ Status RaySteps::begin(VkCommandBuffer commands, const RayBatch& batch) try {
     GLINT_TRY_DO(refreshTables(*state_));
     state_->timed.clear();
     state_->timing = batch.timing;
+    state_->visibility = batch.visibility;
+    state_->bounces = batch.visibility ? 1 : batch.bounces == 0 ? state_->size.bounces : batch.bounces;
     if (batch.environment != nullptr) {
         state_->environment = batch.environment->state();
     }
@@ -227,8 +274,12 @@ Status RaySteps::begin(VkCommandBuffer commands, const RayBatch& batch) try {
         passes.fill(state_->frame.counters, 0);
         passes.clearLists();
         passes.setConstants(makeConstants(*state_, batch));
-        passes.barrier(kTransferToTransfer);
-        setRayCount(*state_, commands, batch);
+        if (batch.countAddress == 0) {
+            passes.barrier(kTransferToTransfer);
+            static_assert(gpu::kCounterRays == 0);
+            state_->context.vk.CmdUpdateBuffer(commands, state_->frame.counters.handle.get(), 0,
+                                               sizeof(batch.rayCount), &batch.rayCount);
+        }
         passes.barrier(passes.dependencies().clearToPasses);
         HitPasses(*state_, passes).dispatchOfList();
     });
@@ -239,24 +290,42 @@ Status RaySteps::begin(VkCommandBuffer commands, const RayBatch& batch) try {
 GLINT_CATCH
 
 void RaySteps::trace(VkCommandBuffer commands) {
-    recordStep(*state_, commands, "trace", [&](PassRecorder& passes) { HitPasses(*state_, passes).trace(); });
+    recordStep(*state_, commands, "trace", [&](PassRecorder& passes) {
+        HitPasses hits(*state_, passes);
+        if (state_->visibility) {
+            hits.traceVisibility();
+        } else {
+            hits.trace();
+        }
+    });
 }
 
 void RaySteps::order(VkCommandBuffer commands) {
-    recordStep(*state_, commands, "order", [&](PassRecorder& passes) { HitPasses(*state_, passes).order(); });
+    if (!state_->visibility) {
+        recordStep(*state_, commands, "order",
+                   [&](PassRecorder& passes) { HitPasses(*state_, passes).order(); });
+    }
 }
 
 void RaySteps::shade(VkCommandBuffer commands) {
     recordStep(*state_, commands, "shade", [&](PassRecorder& passes) {
-        HitPasses(*state_, passes).shade();
+        HitPasses hits(*state_, passes);
+        if (!state_->visibility) {
+            hits.shade();
+        }
+        hits.readBackRound(0);
+        for (std::uint32_t bounce = 2; bounce <= state_->bounces; ++bounce) {
+            hits.listPathRays(bounce, 1.0F);
+            hits.dispatchOfList();
+            hits.trace();
+            hits.order();
+            hits.shade();
+            hits.readBackRound(bounce - 1);
+        }
         passes.endStretch(state_->whole);
         // The counters go to host memory, and the answers to the host's next commands.
         passes.barrier(kAllToAll);
         passes.readBack(state_->frame.counters, counterBytes(state_->size), 0);
-        if (state_->size.ordered) {
-            passes.readBack(state_->frame.bucketCounts, bucketBytes(state_->size),
-                            counterBytes(state_->size));
-        }
         passes.barrier(kCopyToHost);
     });
 }
@@ -275,8 +344,12 @@ Result<RaySteps::Counters> RaySteps::counters() try {
     const std::vector<std::uint32_t> values =
         countersAt(*state_, 0, counterBytes(state_->size) / sizeof(std::uint32_t));
     Counters result;
-    result.rays = values[gpu::kCounterRays];
-    result.shadowRays = values[gpu::kCounterShadowRays];
+    static_assert(gpu::kCounterRays == 0 && gpu::kCounterShadowRays == 1);
+    for (std::uint32_t round = 0; round < state_->bounces; ++round) {
+        const std::vector<std::uint32_t> lists = countersAt(*state_, readbackRound(state_->size, round), 2);
+        (round == 0 ? result.rays : result.furtherRays) += lists[gpu::kCounterRays];
+        result.shadowRays += lists[gpu::kCounterShadowRays];
+    }
     result.unknownShader = values[gpu::kCounterUnknownShader];
     result.orderErrors = values[gpu::kCounterOrderErrors];
     if (state_->size.ordered) {
@@ -297,6 +370,12 @@ GLINT_CATCH
 PackageProgress RaySteps::replacementProgress() const {
     return progressOf(*state_);
 }
+
+Status RaySteps::setLayout(VkPipelineLayout layout, VkShaderStageFlags pushStages) try {
+    GLINT_TRY_DO(checkLayout(layout));
+    return replaceLayout(*state_, {{}, layout, pushStages});
+}
+GLINT_CATCH
 
 std::uint64_t RaySteps::recordings() const {
     return state_->recordings;

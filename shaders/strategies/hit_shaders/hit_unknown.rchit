@@ -13,7 +13,7 @@ void main() {
     shaded.radiance = shadeUnknown().radiance;
 #if GLINT_PATHS
     uint place = samplePlace(target);
-    shaded.radiance *= GLINT_FRAME.paths.data[place].throughput;
+    shaded.radiance *= pathSoFar(place).throughput;
     endPath(place);
 #endif
 #endif

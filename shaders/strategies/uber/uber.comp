@@ -8,11 +8,8 @@
 #define GLINT_MODULE_MODEL GLINT_HIT_MODEL
 #include "hit/corners.glsl"
 #include "hit/resolve.glsl"
-#include "hit/path_ray.glsl"
+#include "hit/found.glsl"
 #include "generated/cases.glsl"
-#if GLINT_LAYER_RAYS
-#include "layers/traced_hits.glsl"
-#endif
 
 GLINT_RAY_WORKGROUP
 
@@ -23,15 +20,12 @@ void main() {
     }
     RayRecord ray = listedRay(index);
     GLINT_CLOCK_START
-    TracedHit found = traceRay(ray, rayFlags(ray.target));
-#if GLINT_LAYER_RAYS
-    keepTracedHit(ray, found);
-#endif
+    HitRecord found = hitOfRay(index, ray);
     if (found.geometry == kMissGeometry) {
         resolveMiss(ray.target, ray.direction);
     } else {
         HostGeometry geometry = hostGeometry(found.geometry);
-        Hit hit = loadHit(recordOf(found), ray, geometry, GLINT_HIT_FEATURES(geometry));
+        Hit hit = loadHit(found, ray, geometry, GLINT_HIT_FEATURES(geometry));
 #if GLINT_DRAWS_FIRST
         drawLightsFirst(hit, GLINT_HIT_FEATURES(geometry));
 #endif

@@ -13,9 +13,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <interop/frame.h>
+#include <iterator>
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace glint {
@@ -88,18 +90,18 @@ void expectEqual(const compiler::StructLayout& layout, const ReflectedStruct& re
     }
 }
 
-enum class Of { Frame, Deform, Surface };
+enum class Of { Frame, Deform, Steps };
 
-// Returns the layouts of interop/deform.h, of the answer of hosts' rays, or all others.
+// Returns the layouts of interop/deform.h, of what only packages with steps have, or all others.
 std::vector<compiler::StructLayout> layoutsOf(Of of) {
     const Result<std::string> declarations = compiler::interopDeclarations();
     EXPECT_TRUE(declarations);
     Result<std::vector<compiler::StructLayout>> layouts = compiler::interopLayouts(*declarations);
     EXPECT_TRUE(layouts);
     std::erase_if(*layouts, [&](const compiler::StructLayout& layout) {
-        const Of its = layout.name.starts_with("Deform") ? Of::Deform
-                       : layout.name == "SurfaceRecord"  ? Of::Surface
-                                                         : Of::Frame;
+        constexpr std::string_view kOfSteps[] = {"SurfaceRecord", "VisibilityRay", "PrimitiveMaterials"};
+        const bool ofSteps = std::ranges::find(kOfSteps, layout.name) != std::end(kOfSteps);
+        const Of its = layout.name.starts_with("Deform") ? Of::Deform : ofSteps ? Of::Steps : Of::Frame;
         return its != of;
     });
     return *layouts;
@@ -198,7 +200,7 @@ TEST(InteropLayout, OfTheAnswerOfHostsRays) {
     settings.passes = package::Passes::Steps;
     settings.answer = package::HitAnswer::Surface;
     settings.effects = {};
-    expectInModules(compileSample(settings), layoutsOf(Of::Surface));
+    expectInModules(compileSample(settings), layoutsOf(Of::Steps));
 }
 
 }  // namespace

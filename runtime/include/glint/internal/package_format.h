@@ -178,6 +178,7 @@ enum class ModuleRole : std::uint32_t {
     FirstMiss = 23,      // shades pixels without a surface
     FirstFallback = 24,  // shades pixels whose shader ID no case has
     FirstShadows = 25,   // traces the shadow rays of first hits that are not traced inline
+    RayVisibility = 26,  // answers a host's rays that only ask for visibility
 };
 
 struct ModuleEntry {

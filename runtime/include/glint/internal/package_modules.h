@@ -137,6 +137,7 @@ enum class Purpose : std::uint8_t {
     Hits,          // packages that shade hits: for a host, or with an effect that sends rays
     Shadows,       // those among them that defer shadow rays
     FirstShadows,  // packages that defer the shadow rays of first hits
+    Visibility,    // packages that answer rays of a host's own
     Walks,         // packages with effects that follow their rays in a pass of their own
     Tracing,       // packages in which a ray tracing pipeline traces
     Paths,         // packages whose paths have several bounces
