@@ -95,6 +95,7 @@ void ModelBuilder::checkOwn(const Members& members, const Feature& feature) {
 }
 
 void ModelBuilder::collect(File& file) {
+    model_.indexNames();
     isOfPack_ = file.isOfPack;
     base_ = -1;
     scope_.clear();

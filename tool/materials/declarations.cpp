@@ -240,6 +240,7 @@ MaterialModel ModelBuilder::build() {
         collectAliases(file);
     }
     assignBits();
+    model_.indexNames();
     for (const File& file : files_) {
         link(file);
     }

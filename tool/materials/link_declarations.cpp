@@ -95,7 +95,7 @@ void ModelBuilder::orderByDependence() {
             needs[i].insert(model_.baseOf(feature));
         }
         for (const Exclusion& exclusion : model_.exclusions) {
-            if ((exclusion.excluded & feature.mask()) != 0) {
+            if (exclusion.excluded.has(feature.bit)) {
                 needs[i].insert(exclusion.by);
             }
         }
@@ -132,7 +132,13 @@ void ModelBuilder::orderByDependence() {
                    fmt::format("the conditions of \"{}\" lead back to it", feature.name));
         }
         placed[static_cast<std::size_t>(*next)] = true;
-        model_.order.push_back(*next);
+        const Feature& feature = model_.features[static_cast<std::size_t>(*next)];
+        const bool isBase = feature.model >= 0 && model_.baseOf(feature) == *next;
+        // What is asked for by value is decided for every material.
+        const bool byValue = feature.given || feature.object < 0 || !feature.neutral.empty();
+        model_.order.push_back({*next,
+                                feature.model < 0 || isBase ? -1 : featureAt(model_.baseOf(feature)).bit,
+                                isBase && !byValue ? feature.object : -1});
     }
 }
 

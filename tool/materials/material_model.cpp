@@ -16,10 +16,15 @@ namespace glint::materials {
 
 namespace {
 
+// Searches from the row `first` on.
 template <typename Rows>
-int indexOf(const Rows& rows, std::string_view name) {
-    const auto found = std::ranges::find_if(rows, [name](const auto& row) { return row.name == name; });
-    return found == rows.end() ? -1 : static_cast<int>(found - rows.begin());
+int indexOf(const Rows& rows, std::string_view name, std::size_t first = 0) {
+    for (std::size_t i = first; i < rows.size(); ++i) {
+        if (rows[i].name == name) {
+            return static_cast<int>(i);
+        }
+    }
+    return -1;
 }
 
 }  // namespace
@@ -162,20 +167,40 @@ double Parameter::hold(double value) const {
     return static_cast<float>(overflows ? kUnlimited : std::clamp(value, low, high));
 }
 
+template <typename Rows>
+int MaterialModel::NameIndex::find(const Rows& rows, std::string_view name) const {
+    const auto found = places.find(name);
+    return found != places.end() ? found->second : indexOf(rows, name, count);
+}
+
+template <typename Rows>
+void MaterialModel::NameIndex::extend(const Rows& rows) {
+    for (; count < rows.size(); ++count) {
+        places.try_emplace(rows[count].name, static_cast<int>(count));
+    }
+}
+
+void MaterialModel::indexNames() {
+    parameterIndex_.extend(parameters);
+    textureIndex_.extend(textures);
+    featureIndex_.extend(features);
+    objectIndex_.extend(objects);
+}
+
 int MaterialModel::findParameter(std::string_view name) const {
-    return indexOf(parameters, name);
+    return parameterIndex_.find(parameters, name);
 }
 
 int MaterialModel::findTexture(std::string_view name) const {
-    return indexOf(textures, name);
+    return textureIndex_.find(textures, name);
 }
 
 int MaterialModel::findFeature(std::string_view name) const {
-    return indexOf(features, name);
+    return featureIndex_.find(features, name);
 }
 
 int MaterialModel::findObject(std::string_view name) const {
-    return indexOf(objects, name);
+    return objectIndex_.find(objects, name);
 }
 
 int MaterialModel::findAttribute(std::string_view name) const {

@@ -9,9 +9,12 @@
 
 #include <array>
 #include <bit>
+#include <cassert>
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -437,6 +440,14 @@ struct ModelSource {
     std::string text;
 };
 
+// A feature in the order in which the features of a key are decided. A key lacks it for certain, and no more
+// of it need be read, where the key lacks `needs` or the material does not give `object`.
+struct FeatureStep {
+    int feature = 0;  // index into MaterialModel::features
+    int needs = -1;   // bit: of the base of its model
+    int object = -1;  // index into MaterialModel::objects: of a base model
+};
+
 class MaterialModel {
 public:
     std::vector<MaterialObject> objects;  // The first is the material itself.
@@ -446,7 +457,7 @@ public:
     std::vector<VertexAttribute> attributes;  // of packs
     std::vector<Feature> features;            // by bit
     std::vector<BaseModel> models;            // of packs, by bit; their number in keys is one more
-    std::vector<int> order;                   // indices into `features`, in the order of evaluation
+    std::vector<FeatureStep> order;           // of evaluation
     std::vector<Exclusion> exclusions;
     std::vector<BehaviourRule> behaviours;
     std::vector<EffectDeclaration> effects;  // by the number of their bit
@@ -467,6 +478,8 @@ public:
     int findFeature(std::string_view name) const;
     int findObject(std::string_view name) const;
     int findAttribute(std::string_view name) const;
+    // Makes those of the names so far fast.
+    void indexNames();
     // The same for what materials of a model of a pack mean by a name: a thing of the model, or else one that
     // all models share. `model` is an index into `models`; -1: of glTF's bases.
     int findParameter(std::string_view name, int model) const;
@@ -517,6 +530,22 @@ public:
     int symbolOfTexel(int texture) const;        // texel(texture)
     int symbolOfAttribute(int attribute) const;  // attribute(name)
     int symbolOfPair(int pair) const;            // same(texture, texture)
+
+private:
+    // The first rows of a list by their names.
+    struct NameIndex {
+        std::map<std::string, int, std::less<>> places;
+        std::size_t count = 0;
+
+        template <typename Rows>
+        int find(const Rows& rows, std::string_view name) const;
+        template <typename Rows>
+        void extend(const Rows& rows);
+    };
+    NameIndex parameterIndex_;
+    NameIndex textureIndex_;
+    NameIndex featureIndex_;
+    NameIndex objectIndex_;
 };
 
 // Returns the name, unique in all declarations, of what a model of a pack declares by `name`. It begins with

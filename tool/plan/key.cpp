@@ -117,8 +117,14 @@ public:
           blind_(material, primitive, options, key_, materials::MaterialFacts::Textures::Unknown) {}
 
     materials::FeatureMask make(Drops* dropped) {
-        for (const int index : model_.order) {
-            const materials::Feature& feature = model_.features[static_cast<std::size_t>(index)];
+        for (const materials::FeatureStep& step : model_.order) {
+            const bool isAbsent =
+                (step.needs >= 0 && !key_.has(step.needs)) ||
+                (step.object >= 0 && material_.given[static_cast<std::size_t>(step.object)] == 0);
+            if (isAbsent) {
+                continue;
+            }
+            const materials::Feature& feature = model_.features[static_cast<std::size_t>(step.feature)];
             Presence presence = decide(feature);
             if (presence.present) {
                 key_ |= feature.mask() & kept_;
@@ -137,9 +143,6 @@ private:
     // A file requests only textures that it has. A lobe is present by its values, whether or not the file
     // gives its extension.
     Presence decide(const materials::Feature& feature) const {
-        if (isOfOtherModel(feature)) {
-            return {};
-        }
         const materials::TextureInfo* const info =
             feature.texture < 0 ? nullptr : &material_.textures[static_cast<std::size_t>(feature.texture)];
         if (info != nullptr && info->texture < 0) {
@@ -161,11 +164,6 @@ private:
         }
         const bool reports = given || !neutral;
         return {false, !reports ? "" : excluded ? *excluded : neutral.value_or("")};
-    }
-
-    bool isOfOtherModel(const materials::Feature& feature) const {
-        return feature.model >= 0 && !has(model_.baseOf(feature)) &&
-               &feature != &model_.features[static_cast<std::size_t>(model_.baseOf(feature))];
     }
 
     bool isGiven(const materials::Feature& feature) const {
