@@ -35,7 +35,7 @@ gltf::Scene sheetAndPanel(const materials::MaterialModel& model) {
     sheet["specularFactor"] = 0.0F;
     sheet.give("KHR_materials_diffuse_transmission");
     sheet["diffuseTransmissionFactor"] = kTransmitted;
-    sheet["diffuseTransmissionColorFactor"] = kSheet;
+    sheet["diffuseTransmissionColorFactor"] = {kSheet[0], kSheet[1], kSheet[2]};
     sheet.doubleSided = true;
     materials::Material panel(model);
     panel.give("KHR_materials_unlit");

@@ -428,7 +428,7 @@ double brightnessOfMirroredGlass(gltf::Float3 color, float roughness = 0.0F, boo
     glass["transmissionFactor"] = 1.0F;
     glass["thicknessFactor"] = 1.0F;
     glass["attenuationDistance"] = 1.0F;
-    glass["attenuationColor"] = color;
+    glass["attenuationColor"] = {color[0], color[1], color[2]};
     // With its corners exchanged the box faces outwards. It is behind the camera.
     addBox(scene, addMaterial(scene, glass), {5, 5, 2}, {-5, -5, 1}, scaling(1, 1, 1));
     if (holdsClear) {

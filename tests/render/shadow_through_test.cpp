@@ -114,7 +114,7 @@ materials::Material absorbing() {
     materials::Material material = glass({1, 1, 1});
     material.give("KHR_materials_volume");
     material["thicknessFactor"] = 1.0F;
-    material["attenuationColor"] = kAttenuation;
+    material["attenuationColor"] = {kAttenuation[0], kAttenuation[1], kAttenuation[2]};
     material["attenuationDistance"] = kAttenuationDistance;
     return material;
 }

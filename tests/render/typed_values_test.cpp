@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cstdint>
 #include <filesystem>
@@ -152,6 +153,19 @@ TEST_F(TypedValues, GoFromListsToPictures) {
         }
         if (only != 0) {
             expectColor(at(image, 12, 8), kSecond, 1e-6F, "second");
+        }
+        // C++ has the fields in the types that records have them.
+        const auto& files = loaded.compiled().files;
+        const auto header =
+            std::ranges::find(files, std::string("glint_tables.h"), &compiler::PackageFile::name);
+        ASSERT_NE(header, files.end());
+        const std::string text(header->bytes.begin(), header->bytes.end());
+        const auto says = [&](const std::string& line) { return text.find(line) != std::string::npos; };
+        EXPECT_EQ(says("inline constexpr std::uint32_t kOpalEdgeHard = 1;  // of opalEdge\n"), only != 1);
+        for (const char* const member :
+             {"std::int32_t opalStep;", "std::uint32_t opalFlag;", "float opalTurn[9];",
+              "gpu::vec3 opalRamp[4];", "std::uint32_t opalMarks[3];", "float opalTurns[18];"}) {
+            EXPECT_EQ(says(member), only == 0) << member;
         }
     }
 }

@@ -87,7 +87,6 @@ TEST(TypedValues, OfGltfHaveTheTypesOfTheirDeclarations) {
     for (const Case& one : {
              Case{R"({"step": 0.5})", "/step", "is 0.5; it must be a whole number"},
              {R"({"step": "a"})", "/step", "must be a whole number"},
-             {R"({"step": 1e999})", "/step", "too large"},
              {R"({"flag": 1})", "/flag", "must be true or false"},
              {R"({"edge": "hart"})", "/edge", "\"hart\" is none of soft, hard; did you mean hard?"},
              {R"({"edge": 1})", "/edge", "must be one of the names soft, hard"},
