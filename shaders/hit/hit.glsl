@@ -5,7 +5,6 @@
 #include "generated/attributes.glsl"
 #include "hit/geometry.glsl"
 #include "hit/lod.glsl"
-#include "hit/primitive_material.glsl"
 #include "hit/triangle.glsl"
 #if GLINT_PATHS
 #include "hit/path.glsl"

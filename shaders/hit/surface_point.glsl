@@ -6,7 +6,6 @@
 #include "bsdf/features.glsl"
 #include "generated/attributes.glsl"
 #include "hit/geometry.glsl"
-#include "hit/primitive_material.glsl"
 #include "hit/triangle.glsl"
 
 struct SurfacePoint {

@@ -1,6 +1,15 @@
-// The vertices of a triangle, with their attributes. Hosts that know a quicker way than vertex by vertex define these
-// functions themselves.
+// The material of a triangle, and its vertices with their attributes. Hosts that know a quicker way than vertex by
+// vertex define the functions of the vertices themselves.
 #include "host/geometry.glsl"
+
+// Returns the index of the material's record. Hosts whose triangles have materials of their own define hostMaterial().
+uint materialOf(HostGeometry geometry, uint primitive) {
+#ifdef GLINT_HOST_PRIMITIVE_MATERIALS
+    return hostMaterial(geometry, primitive);
+#else
+    return geometry.materialIndex;
+#endif
+}
 
 #ifndef GLINT_HOST_TRIANGLES
 

@@ -7,7 +7,7 @@
 #define GLINT_MODULE_MODEL GLINT_HIT_MODEL
 #include "order/bucket_key.glsl"
 #include "order/bucket.glsl"
-#include "hit/found.glsl"
+#include "order/found.glsl"
 
 GLINT_RAY_WORKGROUP
 

@@ -277,7 +277,7 @@ void HitPasses::dispatchOfList() {
 }
 
 void HitPasses::traceVisibility() {
-    dispatchRays({"visibility", Pass::Trace}, ModuleRole::RayVisibility);
+    dispatchRays({"ray visibility", Pass::Trace}, ModuleRole::RayVisibility);
 }
 
 void HitPasses::trace() {

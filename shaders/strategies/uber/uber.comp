@@ -8,7 +8,7 @@
 #define GLINT_MODULE_MODEL GLINT_HIT_MODEL
 #include "hit/corners.glsl"
 #include "hit/resolve.glsl"
-#include "hit/found.glsl"
+#include "order/found.glsl"
 #include "generated/cases.glsl"
 
 GLINT_RAY_WORKGROUP
