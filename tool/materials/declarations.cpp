@@ -240,7 +240,7 @@ MaterialModel ModelBuilder::build() {
         collectAliases(file);
     }
     assignBits();
-    model_.indexNames();
+    model_.indexAllNames();
     for (const File& file : files_) {
         link(file);
     }

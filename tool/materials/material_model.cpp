@@ -187,6 +187,11 @@ void MaterialModel::indexNames() {
     objectIndex_.extend(objects);
 }
 
+void MaterialModel::indexAllNames() {
+    parameterIndex_ = textureIndex_ = featureIndex_ = objectIndex_ = {};
+    indexNames();
+}
+
 int MaterialModel::findParameter(std::string_view name) const {
     return parameterIndex_.find(parameters, name);
 }

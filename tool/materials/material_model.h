@@ -478,8 +478,9 @@ public:
     int findFeature(std::string_view name) const;
     int findObject(std::string_view name) const;
     int findAttribute(std::string_view name) const;
-    // Makes those of the names so far fast.
+    // Makes those of the names so far fast. It is needed again, for all of them, after rows have moved.
     void indexNames();
+    void indexAllNames();
     // The same for what materials of a model of a pack mean by a name: a thing of the model, or else one that
     // all models share. `model` is an index into `models`; -1: of glTF's bases.
     int findParameter(std::string_view name, int model) const;
