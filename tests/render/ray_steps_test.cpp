@@ -582,9 +582,9 @@ TEST(RaySteps, AskForVisibility) {
         const float z = from < -1.0F ? 1.0F : -1.0F;
         return EngineVisibilityRay{{x, y, from}, slot, {0, 0, z}, distance};
     };
-    const std::vector<EngineVisibilityRay> rays{ray(3, -2, 0, 3.9F), ray(0, -2, 0, 4.1F),
-                                                ray(1, 2.3F, 0.1F, 3),     ray(2, 0, 1.5F, 3),
-                                                ray(5, 0, -1.5F, 3), ray(4, -2, 0, 9, -8)};
+    const std::vector<EngineVisibilityRay> rays{ray(3, -2, 0, 3.9F),   ray(0, -2, 0, 4.1F),
+                                                ray(1, 2.3F, 0.1F, 3), ray(2, 0, 1.5F, 3),
+                                                ray(5, 0, -1.5F, 3),   ray(4, -2, 0, 9, -8)};
     const std::vector<float> shares{0, 0, 1, 1, 0, 0};  // by slot
     for (const auto through : {package::ShadowThrough::Alpha, package::ShadowThrough::Glass}) {
         const bool isGlass = through == package::ShadowThrough::Glass;

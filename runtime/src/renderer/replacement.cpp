@@ -64,8 +64,8 @@ bool isSpare(const PlannedPipeline& planned, bool shadesUnknown) {
            (ofRays || (!planned.keys.empty() && std::ranges::all_of(planned.keys, isFallback)));
 }
 
-// Plans the pipelines, keeps those that are known, and makes the others or starts threads that do. If `layout`
-// is not null, the pipelines have this layout in place of the user's own, and none is kept.
+// Plans the pipelines, keeps those that are known, and makes the others or starts threads that do. If
+// `layout` is not null, the pipelines have this layout in place of the user's own, and none is kept.
 Status makePipelinesOf(PackageUser& state, NextPackage& next, const LayoutSource* layout) {
     PackageReplacement& result = next.report;
     const PipelineMaking making{state.options.pipelineThreads, state.options.pipelineStatistics};
