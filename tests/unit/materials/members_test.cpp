@@ -24,7 +24,10 @@ using base::Json;
 class Listing {
 public:
     explicit Listing(const MaterialModel& model) {
-        add(model.unlit, model.bothSides, model.ownModels, model.lobes, model.order);
+        add(model.unlit, model.bothSides, model.ownModels, model.lobes);
+        for (const FeatureStep& one : model.order) {
+            add(one.feature, one.needs, one.object);
+        }
         for (const MaterialObject& one : model.objects) {
             add(one.name, one.isExtension, one.replaces);
             for (const MaterialObject::Setting& setting : one.settings) {

@@ -12,7 +12,7 @@ namespace glint::testing {
 
 using Dropped = std::vector<std::pair<std::string, std::string>>;
 
-inline constexpr materials::KeyOptions kTested{package::AlphaPolicy::Tested};
+inline const materials::KeyOptions kTested{package::AlphaPolicy::Tested};
 
 // Returns a primitive with every attribute, so that the material alone decides.
 inline materials::PrimitiveInputs fullPrimitive() {
