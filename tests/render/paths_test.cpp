@@ -432,7 +432,7 @@ double brightnessOfMirroredGlass(gltf::Float3 color, float roughness = 0.0F, boo
     // With its corners exchanged the box faces outwards. It is behind the camera.
     addBox(scene, addMaterial(scene, glass), {5, 5, 2}, {-5, -5, 1}, scaling(1, 1, 1));
     if (holdsClear) {
-        glass["attenuationColor"] = gltf::Float3{1, 1, 1};
+        glass["attenuationColor"] = {1, 1, 1};
         addBox(scene, addMaterial(scene, glass), {4, 4, 1.75F}, {-4, -4, 1.25F}, scaling(1, 1, 1));
     }
     const LoadedScene loaded(scene, glassSettings(32), noLights);
