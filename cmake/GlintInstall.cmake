@@ -26,7 +26,7 @@ if(GLINT_BUILD_COMPILER)
                  emit/package/compiled_package.h gltf/animation.h gltf/import.h gltf/import_options.h gltf/material_set.h
                  gltf/planning_inputs.h gltf/scene.h gltf/scene_list.h gltf/texels/fit.h gltf/texels/levels.h
                  image/compare.h image/png.h image/text.h materials/expression.h
-                 materials/interval.h materials/material.h materials/material_model.h plan/cost.h plan/effects.h
+                 materials/interval.h materials/material.h materials/material_model.h materials/value_type.h plan/cost.h plan/effects.h
                  plan/frame_rounds.h plan/gpu_costs.h plan/key.h plan/lock.h plan/merge.h plan/plan.h
                  plan/strategy_cost.h resolve/build.h resolve/resolve.h settings/descriptor.h settings/settings.h
                  spirv/statistics.h)

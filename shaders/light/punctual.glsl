@@ -41,13 +41,17 @@ LightSample sampleLight(LightRecord light, vec3 position) {
         attenuation *= cone * cone;
         gate = gate == kRaySent && cone <= 0.0 ? kRayCone : gate;
     }
+#if GLINT_DISK_LIGHTS
     if (light.type == kLightDisk) {
         float facing = max(dot(light.direction, -direction), 0.0);
         attenuation *= facing;
         gate = gate == kRaySent && facing <= 0.0 ? kRayCone : gate;
     }
+#endif
     return LightSample(direction, distance, light.intensity * attenuation, gate);
 }
+
+#if GLINT_DISK_LIGHTS
 
 // The factor of the irradiance at a disk's centre that gives the disk's intensity. `centre` comes from sampleLight(),
 // which some light has passed, and its irradiance may have been divided.
@@ -76,16 +80,20 @@ LightSample sampleDisk(LightRecord light, LightSample centre, vec2 u) {
     return LightSample(direction, distance, centre.irradiance * part, centre.gate);
 }
 
+#endif
+
 // Samples a point of an area light: of a disk by area; else uniformly by the solid angle that it fills, of a sphere or
-// of a disk infinitely far away. `centre` comes from sampleLight(), and u is uniform in [0, 1)². Shirley, Wang and Zimmerman, "Monte Carlo
-// Techniques for Direct Lighting Calculations" (1996). A sphere shines equally in all directions, so on a surface that
+// of a disk infinitely far away. `centre` comes from sampleLight(), and u is uniform in [0, 1)². Shirley, Wang and
+// Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations" (1996). A sphere shines equally in all directions, so on a surface that
 // faces its centre its irradiance is that of a light without a size, π sine² times its radiance. The sample's is the
 // whole solid angle 2 π height times that radiance. From inside of the sphere nothing can block the light, so the
 // distance is 0.
 LightSample sampleLightArea(LightRecord light, LightSample centre, vec2 u) {
+#if GLINT_DISK_LIGHTS
     if (light.type == kLightDisk) {
         return sampleDisk(light, centre, u);
     }
+#endif
     LightSample result = centre;
     bool sphere = light.type != kLightDirectional;
     float sine = sphere ? light.size / max(centre.distance, 1e-18) : light.size;

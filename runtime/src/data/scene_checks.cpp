@@ -2,6 +2,7 @@
 
 #include "data/geometry.h"
 #include "data/instance_math.h"
+#include "data/materials.h"
 #include "package/package.h"
 
 #include <algorithm>
@@ -249,6 +250,21 @@ Status checkGeometry(const PrimitiveView& view, const std::string& where) {
     return checkIndices(view, where);
 }
 
+Status checkDisks(const Package& package, bool hasDisks) {
+    const bool known =
+        package.sizedLights() || package.emission() != nullptr || package.passes() == package::Passes::Steps;
+    return known || !hasDisks ? okStatus()
+                              : makeError("scene-light", "", "the package's shaders know no disks",
+                                          "compile it with --sized-lights on, --emissive-lights on or "
+                                          "--passes steps");
+}
+
+Status checkLights(const Package& package, std::span<const LightView> lights) {
+    GLINT_TRY_DO(checkLights(lights));
+    return checkDisks(package,
+                      std::ranges::find(lights, LightView::Type::Disk, &LightView::type) != lights.end());
+}
+
 Status checkLights(std::span<const LightView> lights) {
     for (const LightView& light : lights) {
         const float values[] = {
@@ -279,7 +295,7 @@ Status checkScene(const Package& package, const PackageScene& known, const Scene
     GLINT_TRY_DO(checkEmission(package, known, scene.images));
     GLINT_TRY_DO(checkDeformation(scene));
     GLINT_TRY_DO(checkOrigin(scene.origin));
-    return checkLights(scene.lights);
+    return checkLights(package, scene.lights);
 }
 
 Status checkOrigin(const std::array<double, 3>& origin) {

@@ -329,7 +329,7 @@ LightHandle SceneEditor::light(std::uint32_t number) const {
 }
 
 Result<LightHandle> SceneEditor::addLight(const LightView& light) try {
-    GLINT_TRY_DO(checkLights(std::span(&light, 1)));
+    GLINT_TRY_DO(checkLights(store_->cases->package(), std::span(&light, 1)));
     return glint::addLight(*store_, light);
 }
 GLINT_CATCH
@@ -338,7 +338,7 @@ Status SceneEditor::setLight(LightHandle light, const LightView& view) try {
     if (store_->lightSlots.find(light) == nullptr) {
         return unknownHandle("light");
     }
-    GLINT_TRY_DO(checkLights(std::span(&view, 1)));
+    GLINT_TRY_DO(checkLights(store_->cases->package(), std::span(&view, 1)));
     glint::setLight(*store_, light, view);
     return okStatus();
 }

@@ -16,8 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 
 bool isPure(const std::string& materials) {
-    constexpr std::string_view kPure[] = {"effect_declaration", "expression", "interval", "material",
-                                          "material_model"};
+    constexpr std::string_view kPure[] = {"effect_declaration", "expression",     "interval",
+                                          "material",           "material_model", "value_type"};
     return std::ranges::find(kPure, materials) != std::end(kPure);
 }
 
