@@ -122,6 +122,9 @@ TEST_F(LiveEditErrors, Values) {
     LightView light;
     light.size = -1;
     expectError(editor().addLight(light), "scene-light");
+    LightView disk;
+    disk.type = LightView::Type::Disk;
+    expectError(editor().addLight(disk), "scene-light");
     light.size = NAN;
     expectError(editor().setLight(edited_->lights[0].handle, light), "scene-light");
     expectError(editor().addTexture({}, true), "scene-image");

@@ -403,6 +403,9 @@ TEST_F(UploadTest, BrokenScenesAreErrors) {
     LightView light;
     light.range = std::numeric_limits<float>::infinity();
     EXPECT_EQ(withScene([&](P&, S& s, I&) { s.lights = {&light, 1}; }), "scene-light");
+    light = {};
+    light.type = LightView::Type::Disk;  // which the package does not know
+    EXPECT_EQ(withScene([&](P&, S& s, I&) { s.lights = {&light, 1}; }), "scene-light");
     std::vector<PrimitiveView> twice(2);
     EXPECT_EQ(withScene([&](P& p, S& s, I&) {
                   twice = {p, p};
