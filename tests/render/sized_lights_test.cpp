@@ -178,7 +178,7 @@ TEST(FoundLights, MirrorsShowTheFrontsOfDisks) {
                     makeDisks(data, {0, 0, front});
                 });
             const double expected = front < 0.0F ? seen(3.5) + seen(9.5) : seen(6.5);
-            EXPECT_NEAR(meanOf(render(loaded, setupOf(scene, 64, 1), 2), 0), expected, 0.03 * expected)
+            EXPECT_NEAR(meanOf(render(loaded, setupOf(scene, 64, 1), 2), 0), expected, 0.08 * expected)
                 << front << ", " << lights << " lights";
         }
     }
@@ -324,19 +324,20 @@ TEST(FoundLights, TheMeanIsThatOfLightSamples) {
     }
 }
 
+// Packages with emissive lights know disks without looking for them.
 TEST(FoundLights, TheMeanOfDisksIsThatOfTheirSamples) {
-    const gltf::Scene scene = room(false);
-    const auto disks = [](session::SceneViewData& data) { makeDisks(data, {0.6F, -0.8F, 0}); };
-    // Packages with emissive lights know disks, too. Nothing emits here.
-    compiler::CompileSettings sampling = settingsOf({SizedLights::Off, 2});
-    sampling.emissiveLights = compiler::EmissiveLights::On;
-    const LoadedScene sampled(scene, sampling, disks);
-    const MeanEstimate expected = estimate(sampled, scene, 2, 16);
-    for (const std::uint32_t lights : {0U, 1U}) {
-        const LoadedScene found(
-            scene, settingsOf({SizedLights::On, 2, package::ShadowThrough::Alpha, false, lights}), disks);
-        expectSameMean(estimate(found, scene, 2, 16), expected, fmt::format("disks, {} lights", lights));
+    gltf::Scene scene = room(false);
+    addShiningQuad(scene);
+    std::array<MeanEstimate, 2> means{};
+    for (const SizedLights sized : {SizedLights::Off, SizedLights::On}) {
+        compiler::CompileSettings settings = settingsOf({sized, 2, package::ShadowThrough::Alpha, false, 2});
+        settings.emissiveLights = compiler::EmissiveLights::On;
+        const LoadedScene loaded(scene, settings, [](session::SceneViewData& data) {
+            makeDisks(data, {0.6F, -0.8F, 0});
+        });
+        means[sized == SizedLights::On ? 1 : 0] = estimate(loaded, scene, 2, 32);
     }
+    expectSameMean(means[1], means[0], "disks");
 }
 
 // More than a few lights are in the hierarchy of emissive triangles.
