@@ -57,5 +57,5 @@ try compile scene.gltf -o holiday
 try bench scene.gltf -o /proc/bench
 
 # Settings that this scene can't use.
-try compile scene.gltf --dry-run --passes steps --bounces 2
+try compile scene.gltf --dry-run --passes steps --answer surface --bounces 2
 try compile scene.gltf --dry-run --bounces 4 --werror
