@@ -76,6 +76,6 @@ Status checkOrigin(const std::array<double, 3>& origin);
 Status checkLights(std::span<const LightView> lights);
 // Also checks that the package's shaders know disks, if any light is one.
 Status checkLights(const Package& package, std::span<const LightView> lights);
-Status checkDisks(const Package& package, bool hasDisks);
+Status checkDisks(const Package& package, std::span<const LightView> lights);
 
 }  // namespace glint

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 namespace glint {
 namespace {
@@ -359,10 +360,11 @@ Result<PackageFit> GpuScene::State::fit(const std::shared_ptr<const Package>& ot
     if (attributesOf(*other) != now.attributes) {
         return otherScene(now.scene, "the package's packs read other attributes of vertices");
     }
-    const bool hasDisks = std::ranges::any_of(store->lightOrder, [this](LightHandle light) {
-        return store->lightSlots.at(light.index).type == LightView::Type::Disk;
-    });
-    GLINT_TRY_DO(checkDisks(*other, hasDisks));
+    std::vector<LightView> shining;
+    for (const LightHandle light : store->lightOrder) {
+        shining.push_back(store->lightSlots.at(light.index));
+    }
+    GLINT_TRY_DO(checkDisks(*other, shining));
     GLINT_TRY_DO(checkPrimitives(*this, *other, known));
     GLINT_TRY_DO(checkEmission(*this, *other, known));
     GLINT_TRY_DO(checkDecided(*this, *other, known));
