@@ -338,7 +338,7 @@ TEST(RaySteps, AnswerAHostsRaysAndHitsAsARendererDoes) {
     }
 }
 
-// Of a ray whose hit is given nothing is traced: here all leave the scene.
+// Nothing is traced for a ray whose hit is given: here all rays leave the scene.
 TEST(RaySteps, TraceNoRayWhoseHitIsGiven) {
     const gltf::Scene scene = roomWithFence();
     const RenderSetup setup = defaultSetup(scene, 16, 9);

@@ -279,9 +279,9 @@ struct RayBatch {
     // is then not used, and rays beyond maxRays are left out.
     VkDeviceAddress countAddress = 0;
     // If not 0, EngineHit[], aligned to 4 bytes: entry i is the first hit of ray i, which is then not traced.
-    // Of the ray its slot and direction count, and with several bounces its origin and coneSpread. The host
-    // decides which surfaces there are: neither `mask` nor alpha changes a hit that is given. Strategies with
-    // a pipeline of their own, which shade where they trace, take no hits.
+    // Shading reads the slot and the direction of the ray, and with several bounces origin and coneSpread.
+    // The host decides which surfaces there are: neither `mask` nor alpha changes a hit that is given.
+    // Strategies with a pipeline of their own, which shade where they trace, take no hits.
     VkDeviceAddress hits = 0;
     // True: the rays only ask whether light arrives along them, up to EngineVisibilityRay::distance. What
     // stops them is what stops shadow rays: both sides of every surface, with its alpha. The answer is a
