@@ -144,23 +144,21 @@ void prepareBsdf(inout Bsdf b, Features features, vec3 view) {
     prepareLayers(b.layers, features, b.view);
 }
 
-// Returns whether light passes without bending. The facets that reflect and those that let light through then differ,
-// and the view alone decides between the two.
-bool passesStraight(Features features, float eta) {
-    return hasLobe(features, GLINT_VOLUME) && !refracts(eta);
-}
+// These are macros, as hasLobe() is, so that what a module decides is known before functions are inlined.
 
-// Returns whether the viewer is on the denser side of a volume's surface.
-bool seenFromWithin(Bsdf b, Features features) {
-    return hasLobe(features, GLINT_VOLUME) && b.eta.y < 1.0 && refracts(b.eta.y);
-}
+// Whether light passes without bending. The facets that reflect and those that let light through then differ, and the
+// view alone decides between the two.
+#define passesStraight(features, eta) (hasLobe(features, GLINT_VOLUME) && !refracts(eta))
 
-// Returns whether light that the facets of a volume block still leaves along their own directions, as in the walk of
-// refracted rays: mirrored at the plane if these point to its other side. Then an interface loses nothing. The albedo
-// of a lobe that bends, by which its light could be divided instead, is not known in closed form.
-bool keepsBlocked(Bsdf b, Features features, float eta) {
-    return GLINT_ENERGY_COMPENSATION != 0 && hasLobe(features, GLINT_VOLUME) && !passesStraight(features, eta);
-}
+// Whether the viewer is on the denser side of a volume's surface.
+#define seenFromWithin(b, features)                                                                             \
+    (hasLobe(features, GLINT_VOLUME) && (b).eta.y < 1.0 && refracts((b).eta.y))
+
+// Whether light that the facets of a volume block still leaves along their own directions, as in the walk of refracted
+// rays: mirrored at the plane if these point to its other side. Then an interface loses nothing. The albedo of a lobe
+// that bends, by which its light could be divided instead, is not known in closed form.
+#define keepsBlocked(features, eta)                                                                             \
+    (GLINT_ENERGY_COMPENSATION != 0 && hasLobe(features, GLINT_VOLUME) && !passesStraight(features, eta))
 
 // The share of a diffuse lobe that the microfacets above it let in and out. With compensation it is reciprocal, and the
 // whole gains no energy: Kelemen and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model" (2001).
@@ -168,7 +166,7 @@ bool keepsBlocked(Bsdf b, Features features, float eta) {
 // is mirrored.
 GLINT_RELAXED float diffuseShare(Bsdf b, Features features, vec3 l, GLINT_RELAXED float fresnel) {
     if (seenFromWithin(b, features)) {
-        if (keepsBlocked(b, features, b.eta.y)) {
+        if (keepsBlocked(features, b.eta.y)) {
             return 0.0;  // The facets take all: volumeBsdf() removes the diffuse lobes from within.
         }
         // E does not include total reflection, so this uses the light that the smooth interface lets through, in both
@@ -209,10 +207,9 @@ Facet facetBetween(Bsdf b, Features features, vec3 l) {
     return facet;
 }
 
-// Returns whether a thin wall lets light that its facets block through in a lobe of its own.
-bool scattersPassage(Features features) {
-    return GLINT_ENERGY_COMPENSATION != 0 && hasLobe(features, GLINT_TRANSMISSION) && !hasLobe(features, GLINT_VOLUME);
-}
+// Whether a thin wall lets light that its facets block through in a lobe of its own.
+#define scattersPassage(features)                                                                               \
+    (GLINT_ENERGY_COMPENSATION != 0 && hasLobe(features, GLINT_TRANSMISSION) && !hasLobe(features, GLINT_VOLUME))
 
 // The density with which visible facets send the view to l, or with l.z < 0 to below the plane: mirroredPdf(). It is 0
 // where rounding leaves no half vector.
@@ -246,7 +243,7 @@ vec3 baseReflection(Bsdf b, Features features, vec3 l) {
         GLINT_ENERGY_COMPENSATION != 0 ? 0.0 : largest(facetBetween(b, features, l).dielectricFresnel);
     GLINT_RELAXED vec3 diffuse = diffuseLobe(b.layers, features, b.diffuse, b.view, l) *
                                  (kInversePi * diffuseShare(b, features, l, fresnel));
-    if (seenFromWithin(b, features) && keepsBlocked(b, features, b.eta.y)) {
+    if (seenFromWithin(b, features) && keepsBlocked(features, b.eta.y)) {
         vec3 within = facetReflection(b, l) + facetReflection(b, vec3(l.xy, -l.z));
         if (hasInput(features, GLINT_PARTIAL_METAL)) {
             within = mix(within, metalReflection(b, features, l), b.metallic);
@@ -312,7 +309,7 @@ float bentLight(Bsdf b, vec3 l, float eta) {
 
 // specularTransmission() with the light that a volume's facets block.
 float wholeTransmission(Bsdf b, Features features, vec3 l, float eta) {
-    if (!keepsBlocked(b, features, eta)) {
+    if (!keepsBlocked(features, eta)) {
         return specularTransmission(b, features, l, eta);
     }
     float bent = 0.0;

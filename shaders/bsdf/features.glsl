@@ -124,43 +124,46 @@ bool isOwnOfKey(Features features, uint model, uint always, uint sometimes, uint
     ((GLINT_MODULE_ALWAYS_INPUTS & GLINT_DECIDED_ALWAYS_INPUTS & (bit)) != 0u ||                                \
      (((GLINT_MODULE_ANY_INPUTS | GLINT_DECIDED_ANY_INPUTS) & (bit)) != 0u && inputOfKey(features, bit)))
 
-// Whether `model` is the number of a model that the module's keys, or emissive lights, may have.
+// Whether all keys of the module, and those of emissive lights, have the same model.
+#define GLINT_KNOWS_MODEL (GLINT_MODULE_MODEL != kAnyModel && GLINT_MODULE_MODEL == GLINT_DECIDED_MODEL)
+// Whether `number` is that of a model that they may have.
 #define GLINT_MAY_BE_MODEL(number)                                                                              \
     (GLINT_MODULE_MODEL == kAnyModel || GLINT_DECIDED_MODEL == kAnyModel ||                                     \
      (GLINT_MODULE_MODEL & kModelNumber) == (number) || (GLINT_DECIDED_MODEL & kModelNumber) == (number))
+// Whether it is that of the one model that they have.
+#define GLINT_IS_MODEL(number) (GLINT_KNOWS_MODEL && (GLINT_MODULE_MODEL & kModelNumber) == (number))
 #define hasOwn(features, model, word, bits)                                                                     \
-    (GLINT_MAY_BE_MODEL(model) && ownOfKey(features, model, word, bits))
+    ((GLINT_IS_MODEL(model) && (bits) == 0u) ||                                                                 \
+     (GLINT_MAY_BE_MODEL(model) && ownOfKey(features, model, word, bits)))
 
-// The word of the key's model.
-#define GLINT_MODEL_OF(features)                                                                                \
-    (GLINT_MODULE_MODEL != kAnyModel && GLINT_MODULE_MODEL == GLINT_DECIDED_MODEL ? GLINT_MODULE_MODEL          \
-                                                                                  : modelOfKey(features))
+// Whether the word of the key's model has all of these bits. This and what asks it below are macros, so that what a
+// module decides is known before functions are inlined.
+#define GLINT_MODEL_HAS(features, bits)                                                                         \
+    ((GLINT_KNOWS_MODEL && (GLINT_MODULE_MODEL & (bits)) == (bits)) ||                                          \
+     (!GLINT_KNOWS_MODEL && (modelOfKey(features) & (bits)) == (bits)))
 
-// Returns whether light changes what the surface shows.
-bool isLit(Features features) {
-    return !hasLobe(features, GLINT_UNLIT_LOBES) && (GLINT_MODEL_OF(features) & kModelUnlit) == 0u;
-}
+// Whether light changes what the surface shows.
+#define isLit(features) (!hasLobe(features, GLINT_UNLIT_LOBES) && !GLINT_MODEL_HAS(features, kModelUnlit))
 
-// Returns whether a model of a pack stands in place of glTF's base (bsdf/model.glsl).
-bool hasModel(Features features) {
-    return (GLINT_MODEL_OF(features) & kModelOwnCode) != 0u;
-}
+// Whether the key has a model that a pack declares.
+#define isOfPack(features)                                                                                      \
+    ((GLINT_KNOWS_MODEL && (GLINT_MODULE_MODEL & kModelNumber) != 0u) ||                                        \
+     (!GLINT_KNOWS_MODEL && (modelOfKey(features) & kModelNumber) != 0u))
 
-// Returns whether such a model samples directions itself.
-bool samplesModel(Features features) {
-    return (GLINT_MODEL_OF(features) & kModelSampled) != 0u;
-}
+// Whether a model of a pack stands in place of glTF's base (bsdf/model.glsl).
+#define hasModel(features) GLINT_MODEL_HAS(features, kModelOwnCode)
 
-// Returns whether the base sends light to the far side.
-bool transmits(Features features) {
-    return hasLobe(features, GLINT_BOTH_SIDES_LOBES) || (GLINT_MODEL_OF(features) & kModelBothSides) != 0u;
-}
+// Whether such a model samples directions itself.
+#define samplesModel(features) GLINT_MODEL_HAS(features, kModelSampled)
 
-// Returns whether it scatters light there: Bsdf::diffuseTransmitted.
-bool scattersBehind(Features features) {
-    const uint kScatters = kModelOwnCode | kModelBothSides;
-    return hasLobe(features, GLINT_DIFFUSE_TRANSMISSION) || (GLINT_MODEL_OF(features) & kScatters) == kScatters;
-}
+// Whether the base sends light to the far side.
+#define transmits(features)                                                                                     \
+    (hasLobe(features, GLINT_BOTH_SIDES_LOBES) || GLINT_MODEL_HAS(features, kModelBothSides))
+
+// Whether it scatters light there: Bsdf::diffuseTransmitted.
+#define scattersBehind(features)                                                                                \
+    (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION) ||                                                           \
+     GLINT_MODEL_HAS(features, kModelOwnCode | kModelBothSides))
 
 // The features of any key of the scene, with all lobes: for primary surfaces.
 #define GLINT_PRIMARY_FEATURES(geometry) Features(GLINT_ALL, GLINT_KEY(geometry))

@@ -99,7 +99,7 @@ float passedPdf(Bsdf b, Features features, vec3 l, float eta) {
                mirroredPdf(b.view, h, alpha);
     }
     float pdf = bendingPdf(b, features, l, eta);
-    return keepsBlocked(b, features, eta) ? pdf + bendingPdf(b, features, vec3(l.xy, -l.z), eta) : pdf;
+    return keepsBlocked(features, eta) ? pdf + bendingPdf(b, features, vec3(l.xy, -l.z), eta) : pdf;
 }
 
 // facetDensity() for the lobe that baseReflection() has above the plane. The half vector counts with its rounding
@@ -125,7 +125,7 @@ float reflectedPdf(Bsdf b, Features features, vec3 l, float facets) {
 float microfacetPdf(Bsdf b, Features features, vec3 l) {
     if (l.z > 0.0) {
         float pdf = reflectedPdf(b, features, l, densityAbove(b, l));
-        bool mirrors = seenFromWithin(b, features) && keepsBlocked(b, features, b.eta.y);
+        bool mirrors = seenFromWithin(b, features) && keepsBlocked(features, b.eta.y);
         vec3 below = vec3(l.xy, -l.z);
         return mirrors ? pdf + reflectedPdf(b, features, below, facetDensity(b, below)) : pdf;
     }
@@ -163,7 +163,7 @@ vec3 sampleMicrofacet(Bsdf b, Features features, vec3 u) {
     vec3 reflected = reflectAbout(b.view, h);
     vec2 facet2 = exactSquare(exactDot(b.view, h));
     if (chooser < facetChances(b, features, decidingCosine2(b, features, facet2, eta), eta).x) {
-        bool mirrors = seenFromWithin(b, features) && keepsBlocked(b, features, b.eta.y);
+        bool mirrors = seenFromWithin(b, features) && keepsBlocked(features, b.eta.y);
         return mirrors ? vec3(reflected.xy, abs(reflected.z)) : reflected.z > 0.0 ? reflected : vec3(0.0);
     }
     if (passesStraight(features, eta)) {
@@ -177,7 +177,7 @@ vec3 sampleMicrofacet(Bsdf b, Features features, vec3 u) {
     if (!refractDirection(b.view, h, eta, refracted)) {
         return vec3(0.0);
     }
-    bool passes = refracted.z < 0.0 || keepsBlocked(b, features, eta);
+    bool passes = refracted.z < 0.0 || keepsBlocked(features, eta);
     return passes ? vec3(refracted.xy, -abs(refracted.z)) : vec3(0.0);
 }
 

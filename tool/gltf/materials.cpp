@@ -192,9 +192,7 @@ void readParameter(const ObjectSource& object, const materials::Parameter& param
 void warnOfConflicts(Document& document, const std::string& pointer, const materials::Material& material) {
     const materials::MaterialModel& model = material.model();
     const auto objectOf = [&](const materials::Feature& feature) {
-        const bool isGiven =
-            feature.object >= 0 && material.given[static_cast<std::size_t>(feature.object)] != 0;
-        return isGiven ? feature.object : -1;
+        return feature.object >= 0 && material.given.has(feature.object) ? feature.object : -1;
     };
     std::set<int> told;
     for (const materials::Exclusion& exclusion : model.exclusions) {
@@ -220,7 +218,9 @@ void readParameters(Document& document, const Json& json, const std::string& poi
                     materials::Material& material) {
     const materials::MaterialModel& model = material.model();
     for (std::size_t i = 0; i < model.objects.size(); ++i) {
-        material.given[i] = objectOf(json, model.objects[i]) != nullptr ? 1 : 0;
+        if (objectOf(json, model.objects[i]) != nullptr) {
+            material.given.add(static_cast<int>(i));
+        }
     }
     for (std::size_t i = 0; i < model.objects.size(); ++i) {
         for (const materials::MaterialObject::Setting& setting : model.objects[i].settings) {
@@ -238,8 +238,10 @@ void readParameters(Document& document, const Json& json, const std::string& poi
             if (parameter.aliasOf >= 0) {
                 // The value is that of an extension whose feature multiplies by it.
                 const auto own = static_cast<std::size_t>(parameter.aliasOf);
-                const auto its = static_cast<std::size_t>(model.parameters[own].object);
-                material.given[its] = model.objects[its].isExtension ? 1 : material.given[its];
+                const int its = model.parameters[own].object;
+                if (model.objects[static_cast<std::size_t>(its)].isExtension) {
+                    material.given.add(its);
+                }
             }
             readParameter({document, *object, pointerOf(pointer, owner)}, parameter, material);
         }

@@ -270,6 +270,7 @@ MaterialModel ModelBuilder::build() {
     excludeFromModels();
     keepPlacesOfUnlit();
     orderByDependence();
+    describeObjects();
     return std::move(model_);
 }
 

@@ -188,6 +188,20 @@ void ModelBuilder::excludeFromModels() {
     }
 }
 
+void ModelBuilder::describeObjects() {
+    for (std::size_t i = 0; i < model_.features.size(); ++i) {
+        const Feature& feature = model_.features[i];
+        if (feature.object < 0) {
+            continue;
+        }
+        MaterialObject& object = model_.objects[static_cast<std::size_t>(feature.object)];
+        const auto index = static_cast<int>(i);
+        object.feature = object.feature < 0 ? index : object.feature;
+        object.base = object.base < 0 && feature.stage == Stage::Base ? index : object.base;
+        object.isUnlit = object.isUnlit || model_.unlit.has(feature.bit);
+    }
+}
+
 void ModelBuilder::keepPlacesOfUnlit() {
     FeatureMask kept = 0;
     for (const Feature& feature : model_.features) {

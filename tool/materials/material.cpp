@@ -46,7 +46,7 @@ TransformRows rowsOf(const TextureTransform& transform) {
 }
 
 Material::Material(const MaterialModel& model)
-    : values(static_cast<std::size_t>(model.valueCount)), given(model.objects.size()), model_(&model) {
+    : values(static_cast<std::size_t>(model.valueCount)), model_(&model) {
     for (const Parameter& parameter : model.parameters) {
         if (parameter.aliasOf < 0) {
             std::ranges::copy(parameter.fallback, values.begin() + parameter.first);
@@ -87,12 +87,12 @@ const TextureInfo& Material::texture(std::string_view texture) const {
 void Material::give(std::string_view object) {
     const int index = model_->findObject(object);
     assert(index >= 0);
-    given[static_cast<std::size_t>(index)] = 1;
+    given.add(index);
 }
 
 bool Material::gives(std::string_view object) const {
     const int index = model_->findObject(object);
-    return index >= 0 && given[static_cast<std::size_t>(index)] != 0;
+    return index >= 0 && given.has(index);
 }
 
 bool Material::isColor(int texture) const {
@@ -115,48 +115,40 @@ TextureReads Material::readsOf(int texture) const {
 }
 
 bool Material::isUnlit() const {
-    return std::ranges::any_of(model_->features, [this](const Feature& feature) {
-        return model_->unlit.has(feature.bit) && feature.object >= 0 &&
-               given[static_cast<std::size_t>(feature.object)] != 0;
-    });
+    return std::ranges::any_of(
+        given, [this](int object) { return model_->objects[static_cast<std::size_t>(object)].isUnlit; });
 }
 
 bool Material::reads(int object) const {
     // An unlit material reads the plain base, whatever replaces it.
     const bool unlit = isUnlit();
-    const MaterialObject& row = model_->objects[static_cast<std::size_t>(object)];
-    // Returns the object that the material has in place of the replaced one, or -1. Of several models it has
-    // the first by bits, as in keys.
-    const auto chosen = [this](int replaced) {
-        const auto isGiven = [&](std::size_t one) {
-            return model_->objects[one].replaces == replaced && given[one] != 0;
-        };
-        for (const Feature& feature : model_->features) {
-            if (feature.object >= 0 && isGiven(static_cast<std::size_t>(feature.object))) {
-                return feature.object;
-            }
-        }
-        for (std::size_t i = 0; i < model_->objects.size(); ++i) {
-            if (isGiven(i)) {
-                return static_cast<int>(i);
-            }
-        }
-        return -1;
+    const auto rowOf = [this](int one) -> const MaterialObject& {
+        return model_->objects[static_cast<std::size_t>(one)];
     };
-    return row.replaces >= 0 ? !unlit && chosen(row.replaces) == object : unlit || chosen(object) < 0;
+    // Returns the object that the material has in place of the replaced one, or -1. Of several models it has
+    // the first by bits, as in keys; objects without a feature come last.
+    const auto chosen = [&](int replaced) {
+        int first = -1;
+        for (const int one : given) {
+            const bool isEarlier = first < 0 || static_cast<unsigned>(rowOf(one).feature) <
+                                                    static_cast<unsigned>(rowOf(first).feature);
+            first = rowOf(one).replaces == replaced && isEarlier ? one : first;
+        }
+        return first;
+    };
+    const int replaced = rowOf(object).replaces;
+    return replaced >= 0 ? !unlit && chosen(replaced) == object : unlit || chosen(object) < 0;
 }
 
 int modelOf(const Material& material) {
     const MaterialModel& model = material.model();
-    for (const Feature& feature : model.features) {
-        const bool isBase = feature.object >= 0 && feature.stage == Stage::Base &&
-                            material.given[static_cast<std::size_t>(feature.object)] != 0;
-        const bool isChosen = isBase && (model.unlit.has(feature.bit) || material.reads(feature.object));
-        if (isChosen) {
-            return feature.model;
-        }
+    int base = -1;
+    for (const int object : material.given) {
+        const MaterialObject& row = model.objects[static_cast<std::size_t>(object)];
+        const bool isChosen = row.base >= 0 && (row.isUnlit || material.reads(object));
+        base = isChosen && (base < 0 || row.base < base) ? row.base : base;
     }
-    return -1;
+    return base < 0 ? -1 : model.features[static_cast<std::size_t>(base)].model;
 }
 
 bool isReadable(const Material& material, const PrimitiveInputs& primitive, int texture) {
@@ -199,9 +191,8 @@ std::string missingAttribute(const Material& material, const PrimitiveInputs& pr
 std::string lostInput(const Material& material, const PrimitiveInputs& primitive, const Feature& feature) {
     const MaterialModel& model = material.model();
     const auto isAsked = [&](const Feature& one) {
-        return one.texture >= 0
-                   ? material.textures[static_cast<std::size_t>(one.texture)].texture >= 0
-                   : one.object >= 0 && material.given[static_cast<std::size_t>(one.object)] != 0;
+        return one.texture >= 0 ? material.textures[static_cast<std::size_t>(one.texture)].texture >= 0
+                                : one.object >= 0 && material.given.has(one.object);
     };
     if (!isAsked(feature) || (feature.texture >= 0 && material.readsOf(feature.texture).channels == 0)) {
         return {};

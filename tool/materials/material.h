@@ -98,6 +98,29 @@ private:
     std::map<std::size_t, TextureInfo> slots_;
 };
 
+// The objects that a file gives for a material, as indices into MaterialModel::objects: few of many.
+class GivenObjects {
+public:
+    bool has(int object) const {
+        return std::ranges::binary_search(objects_, object);
+    }
+    void add(int object) {
+        const auto place = std::ranges::lower_bound(objects_, object);
+        if (place == objects_.end() || *place != object) {
+            objects_.insert(place, object);
+        }
+    }
+    auto begin() const {
+        return objects_.begin();
+    }
+    auto end() const {
+        return objects_.end();
+    }
+
+private:
+    std::vector<int> objects_;  // ascending
+};
+
 enum class AlphaMode : std::uint8_t { Opaque, Mask, Blend };
 
 // The numbers of one parameter of a material, to which it refers. `Number` is double or const double.
@@ -159,7 +182,7 @@ public:
     bool doubleSided = false;
     std::vector<double> values;  // by Parameter::first; floats and whole numbers of 32 bits
     TextureSlots textures;
-    std::vector<std::uint8_t> given;  // by index into MaterialModel::objects: 1 if the file gives the object
+    GivenObjects given;
     // The values that an animation gives each number, by its index in `values`; empty if none changes.
     // Planning reads them in place of the numbers.
     std::vector<ValueInterval> ranges;

@@ -204,6 +204,11 @@ struct MaterialObject {
         std::vector<double> numbers{};
     };
     std::vector<Setting> settings{};
+    // Indices into MaterialModel::features: the first feature that asks for it, and the first base model; -1:
+    // none.
+    int feature = -1;
+    int base = -1;
+    bool isUnlit = false;  // it asks for a feature that takes no light
 };
 
 // A parameter of a material: adjacent numbers of Material::values, those of an array's elements one after the

@@ -118,9 +118,8 @@ public:
 
     materials::FeatureMask make(Drops* dropped) {
         for (const materials::FeatureStep& step : model_.order) {
-            const bool isAbsent =
-                (step.needs >= 0 && !key_.has(step.needs)) ||
-                (step.object >= 0 && material_.given[static_cast<std::size_t>(step.object)] == 0);
+            const bool isAbsent = (step.needs >= 0 && !key_.has(step.needs)) ||
+                                  (step.object >= 0 && !material_.given.has(step.object));
             if (isAbsent) {
                 continue;
             }
@@ -173,7 +172,7 @@ private:
         if (feature.given) {
             return feature.given->holds(facts_) != materials::Certainty::False;
         }
-        return feature.object >= 0 && material_.given[static_cast<std::size_t>(feature.object)] != 0;
+        return feature.object >= 0 && material_.given.has(feature.object);
     }
 
     std::optional<std::string> findExclusion(const materials::Feature& feature) const {

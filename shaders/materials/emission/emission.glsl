@@ -3,7 +3,7 @@
 
 void emissionEmission(Hit hit, Features features, inout vec3 emitted) {
 #if GLINT_USES_MODELS
-    if ((GLINT_MODEL_OF(features) & kModelNumber) != 0u && !hasInput(features, GLINT_MODEL_EMISSION)) {
+    if (isOfPack(features) && !hasInput(features, GLINT_MODEL_EMISSION)) {
         return;
     }
 #endif

@@ -57,7 +57,8 @@ PathSample PathSurface::sample(const Vec3& point, bool reflectsBelow) const {
     result.weight = scattered(result.direction) / chosen.pdf;
     const double height = glm::dot(result.direction, geometricNormal());
     // A layer with a normal of its own reflects light to the far side of the base, too.
-    const bool passes = chosen.direction.z < 0.0 && glsl::transmits(l.features());
+    using namespace glsl;  // transmits() is a macro
+    const bool passes = chosen.direction.z < 0.0 && transmits(l.features());
     if (reflectsBelow && (passes ? height > 0.0 : height < 0.0)) {
         result.below = true;
         result.direction -= 2.0 * height * geometricNormal();
