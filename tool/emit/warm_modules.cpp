@@ -132,7 +132,7 @@ Status ModuleDrafts::finish(const Draft& draft) const {
         WarmModules::Reader reader(lookup);
         GLINT_TRY(const auto flattened,
                   flatten(draft.origin, draft.text, reader.recording(), FlattenSide::Glsl));
-        GlslUnit unit = dropUnused(flattened);
+        GlslUnit unit = dropUnused(cutDecided(flattened));
         std::string essential = essentialText(unit.text());
         module.prepared =
             std::make_shared<const PreparedGlsl>(PreparedGlsl{std::move(unit), std::move(essential)});

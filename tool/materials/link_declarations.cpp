@@ -133,12 +133,15 @@ void ModelBuilder::orderByDependence() {
         }
         placed[static_cast<std::size_t>(*next)] = true;
         const Feature& feature = model_.features[static_cast<std::size_t>(*next)];
-        const bool isBase = feature.model >= 0 && model_.baseOf(feature) == *next;
+        const int base = feature.model < 0 ? -1 : model_.baseOf(feature);
         // What is asked for by value is decided for every material.
-        const bool byValue = feature.given || feature.object < 0 || !feature.neutral.empty();
-        model_.order.push_back({*next,
-                                feature.model < 0 || isBase ? -1 : featureAt(model_.baseOf(feature)).bit,
-                                isBase && !byValue ? feature.object : -1});
+        const bool byObject = base >= 0 && !featureAt(base).given && featureAt(base).object >= 0 &&
+                              featureAt(base).neutral.empty();
+        std::vector<int>& steps = byObject
+                                      ? model_.objects[static_cast<std::size_t>(featureAt(base).object)].steps
+                                      : model_.commonSteps;
+        steps.push_back(static_cast<int>(model_.order.size()));
+        model_.order.push_back({*next, base < 0 || base == *next ? -1 : featureAt(base).bit});
     }
 }
 

@@ -209,6 +209,9 @@ struct MaterialObject {
     int feature = -1;
     int base = -1;
     bool isUnlit = false;  // it asks for a feature that takes no light
+    // Indices into MaterialModel::order, ascending: the features of a base model that only materials with
+    // this object may have.
+    std::vector<int> steps{};
 };
 
 // A parameter of a material: adjacent numbers of Material::values, those of an array's elements one after the
@@ -445,12 +448,10 @@ struct ModelSource {
     std::string text;
 };
 
-// A feature in the order in which the features of a key are decided. A key lacks it for certain, and no more
-// of it need be read, where the key lacks `needs` or the material does not give `object`.
+// A feature in the order in which the features of a key are decided. A key that lacks `needs` lacks it, too.
 struct FeatureStep {
     int feature = 0;  // index into MaterialModel::features
     int needs = -1;   // bit: of the base of its model
-    int object = -1;  // index into MaterialModel::objects: of a base model
 };
 
 class MaterialModel {
@@ -463,6 +464,7 @@ public:
     std::vector<Feature> features;            // by bit
     std::vector<BaseModel> models;            // of packs, by bit; their number in keys is one more
     std::vector<FeatureStep> order;           // of evaluation
+    std::vector<int> commonSteps;             // indices into `order`, ascending: those of every material
     std::vector<Exclusion> exclusions;
     std::vector<BehaviourRule> behaviours;
     std::vector<EffectDeclaration> effects;  // by the number of their bit

@@ -117,10 +117,9 @@ public:
           blind_(material, primitive, options, key_, materials::MaterialFacts::Textures::Unknown) {}
 
     materials::FeatureMask make(Drops* dropped) {
-        for (const materials::FeatureStep& step : model_.order) {
-            const bool isAbsent = (step.needs >= 0 && !key_.has(step.needs)) ||
-                                  (step.object >= 0 && !material_.given.has(step.object));
-            if (isAbsent) {
+        for (const int place : steps()) {
+            const materials::FeatureStep& step = model_.order[static_cast<std::size_t>(place)];
+            if (step.needs >= 0 && !key_.has(step.needs)) {
                 continue;
             }
             const materials::Feature& feature = model_.features[static_cast<std::size_t>(step.feature)];
@@ -135,6 +134,17 @@ public:
     }
 
 private:
+    // Returns the steps for the material, in their order.
+    std::vector<int> steps() const {
+        std::vector<int> steps = model_.commonSteps;
+        for (const int object : material_.given) {
+            const std::vector<int>& own = model_.objects[static_cast<std::size_t>(object)].steps;
+            steps.insert(steps.end(), own.begin(), own.end());
+        }
+        std::ranges::sort(steps);
+        return steps;
+    }
+
     bool has(int feature) const {
         return key_.has(model_.features[static_cast<std::size_t>(feature)].bit);
     }

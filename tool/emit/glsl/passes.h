@@ -30,6 +30,12 @@ Result<GlslUnit> flatten(std::string_view name, std::string_view text, const Sou
 
 // --- What a module does not use goes ---
 
+// Returns the unit without what its own macros and constants decide against: branches of #if and the
+// directives of decided ones, statements below an `if` whose condition is false, and what follows a return.
+// Where a condition is true, its statement stays alone. A condition is decided if it is an expression of
+// macros, constants and literals, or if && or || make the rest of it irrelevant. What is in doubt stays.
+GlslUnit cutDecided(const GlslUnit& unit);
+
 // Returns the unit without the functions, constants and macros that the rest does not reach. Comments right
 // above them are dropped too. In doubt an item stays: the text keeps its meaning, and a second call changes
 // nothing.

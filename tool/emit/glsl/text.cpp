@@ -11,16 +11,22 @@ namespace glint::compiler {
 
 namespace {
 
-constexpr std::string_view kTextBlanks = " \t\r";
+bool isSpace(char c) {
+    return c == ' ' || c == '\t' || c == '\r';
+}
+
+std::string_view skipBlanks(std::string_view text) {
+    return {std::ranges::find_if_not(text, isSpace), text.end()};
+}
 
 }  // namespace
 
 std::string_view trim(std::string_view text) {
-    const std::size_t first = text.find_first_not_of(kTextBlanks);
-    if (first == std::string_view::npos) {
-        return {};
+    text = skipBlanks(text);
+    while (!text.empty() && isSpace(text.back())) {
+        text.remove_suffix(1);
     }
-    return text.substr(first, text.find_last_not_of(kTextBlanks) - first + 1);
+    return text;
 }
 
 std::vector<std::string_view> splitLines(std::string_view text) {
@@ -50,6 +56,9 @@ Directive parseDirective(std::string_view line) {
 }
 
 std::size_t commentLength(std::string_view text) {
+    if (text.empty() || text.front() != '/') {
+        return 0;
+    }
     if (text.starts_with("//")) {
         return std::min(text.find('\n'), text.size());
     }
@@ -72,12 +81,6 @@ std::vector<std::string_view> identifiersOf(std::string_view line) {
 
 namespace {
 
-constexpr std::string_view kItemBlanks = " \t\r";
-
-std::string_view skipBlanks(std::string_view text) {
-    return text.substr(std::min(text.find_first_not_of(kItemBlanks), text.size()));
-}
-
 // Calls `visit` for each identifier and each punctuation character of `text`. Comments and numbers are
 // skipped.
 template <typename Visit>
@@ -86,7 +89,7 @@ void forEachToken(std::string_view text, const Visit& visit) {
         const char first = piece.front();
         const bool isComment = first == '/' && piece.size() > 1;
         const bool isNumber = continuesWord(first) && !startsWord(first);
-        if (!isComment && !isNumber && kItemBlanks.find(first) == std::string_view::npos) {
+        if (!isComment && !isNumber && !isSpace(first)) {
             visit(piece);
         }
     });
