@@ -270,7 +270,7 @@ MaterialModel ModelBuilder::build() {
     excludeFromModels();
     keepPlacesOfUnlit();
     orderByDependence();
-    describeObjects();
+    indexModel();
     return std::move(model_);
 }
 

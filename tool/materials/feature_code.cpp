@@ -1,5 +1,11 @@
 #include "materials/feature_code.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <set>
+#include <string_view>
+
 namespace glint::materials {
 
 namespace {
@@ -75,31 +81,44 @@ DeclaredCode readFeatureCode(const Members& declaration, std::string_view file, 
 std::vector<FeatureCode> orderCode(std::vector<DeclaredCode> code) {
     std::ranges::sort(code, {}, [](const DeclaredCode& declared) { return declared.code.name; });
     std::vector<std::string> names;
+    std::map<std::string_view, std::size_t> places;
     for (const DeclaredCode& declared : code) {
+        places.emplace(declared.code.name, names.size());
         names.push_back(declared.code.name);
     }
-    for (const DeclaredCode& declared : code) {
-        for (const std::string& name : declared.after) {
-            if (std::ranges::find(names, name) == names.end()) {
-                failAt(declared.where + "/after", fmt::format("no declaration with GLSL is called \"{}\"{}",
-                                                              name, base::suggestion(name, names)));
+    // How many each waits for, and which wait for each.
+    std::vector<std::size_t> needs(code.size());
+    std::vector<std::vector<std::size_t>> waiting(code.size());
+    std::set<std::size_t> ready;
+    for (std::size_t i = 0; i < code.size(); ++i) {
+        for (const std::string& name : code[i].after) {
+            const auto place = places.find(name);
+            if (place == places.end()) {
+                failAt(code[i].where + "/after", fmt::format("no declaration with GLSL is called \"{}\"{}",
+                                                             name, base::suggestion(name, names)));
             }
+            waiting[place->second].push_back(i);
+        }
+        needs[i] = code[i].after.size();
+        if (needs[i] == 0) {
+            ready.insert(i);
         }
     }
     std::vector<FeatureCode> ordered;
-    const auto has = [&](const std::string& name) {
-        return std::ranges::find(ordered, name, &FeatureCode::name) != ordered.end();
-    };
-    while (ordered.size() < code.size()) {
-        const auto next = std::ranges::find_if(code, [&](const DeclaredCode& declared) {
-            return !has(declared.code.name) && std::ranges::all_of(declared.after, has);
-        });
-        if (next == code.end()) {
-            const auto waiting = std::ranges::find_if(
-                code, [&](const DeclaredCode& declared) { return !has(declared.code.name); });
-            failAt(waiting->where + "/after", "waits for itself by what it names");
+    while (!ready.empty()) {
+        const std::size_t next = *ready.begin();
+        ready.erase(ready.begin());
+        ordered.push_back(code[next].code);
+        for (const std::size_t other : waiting[next]) {
+            if (--needs[other] == 0) {
+                ready.insert(other);
+            }
         }
-        ordered.push_back(next->code);
+    }
+    if (ordered.size() < code.size()) {
+        const auto left = std::ranges::find_if(needs, [](std::size_t count) { return count > 0; });
+        failAt(code[static_cast<std::size_t>(left - needs.begin())].where + "/after",
+               "waits for itself by what it names");
     }
     return ordered;
 }

@@ -191,7 +191,10 @@ void ModelBuilder::excludeFromModels() {
     }
 }
 
-void ModelBuilder::describeObjects() {
+void ModelBuilder::indexModel() {
+    for (std::size_t i = 0; i < model_.exclusions.size(); ++i) {
+        featureAt(model_.exclusions[i].by).exclusions.push_back(static_cast<int>(i));
+    }
     for (std::size_t i = 0; i < model_.features.size(); ++i) {
         const Feature& feature = model_.features[i];
         if (feature.object < 0) {

@@ -357,6 +357,7 @@ struct Feature {
     bool isOfBase = false;           // Hits keep it with --hit-lobes base.
     bool isInDraft = false;          // The draft of first hits shows it.
     FeatureCost cost{};
+    std::vector<int> exclusions{};  // indices into MaterialModel::exclusions of those by this feature
 
     // Returns the end of the macros that ask for it: "BASE_COLOR_TEXTURE".
     std::string macroEnd() const;

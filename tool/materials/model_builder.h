@@ -94,8 +94,8 @@ private:
     // A feature is evaluated after those that its conditions need. Vertex attributes come last, because all
     // textures and lobes may need them.
     void orderByDependence();
-    // Fills MaterialObject::feature, base and isUnlit.
-    void describeObjects();
+    // Fills MaterialObject::feature, base and isUnlit, and Feature::exclusions.
+    void indexModel();
     // The features of a model's keys that are of the base which it replaces, and other models, are left out.
     void excludeFromModels();
     // Unlit surfaces read a texture and have an opacity, so packs may change both.

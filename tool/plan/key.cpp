@@ -125,7 +125,7 @@ public:
             const materials::Feature& feature = model_.features[static_cast<std::size_t>(step.feature)];
             Presence presence = decide(feature);
             if (presence.present) {
-                key_ |= feature.mask() & kept_;
+                add(feature);
             } else if (dropped != nullptr && !presence.droppedBecause.empty()) {
                 dropped->emplace_back(feature.name, std::move(presence.droppedBecause));
             }
@@ -185,9 +185,18 @@ private:
         return feature.object >= 0 && material_.given.has(feature.object);
     }
 
+    void add(const materials::Feature& feature) {
+        if (kept_.has(feature.bit)) {
+            key_ |= feature.mask();
+            exclusions_.insert(exclusions_.end(), feature.exclusions.begin(), feature.exclusions.end());
+            std::ranges::sort(exclusions_);
+        }
+    }
+
     std::optional<std::string> findExclusion(const materials::Feature& feature) const {
-        for (const materials::Exclusion& exclusion : model_.exclusions) {
-            if (has(exclusion.by) && exclusion.excluded.has(feature.bit)) {
+        for (const int place : exclusions_) {
+            const materials::Exclusion& exclusion = model_.exclusions[static_cast<std::size_t>(place)];
+            if (exclusion.excluded.has(feature.bit)) {
                 return exclusion.because;
             }
         }
@@ -243,6 +252,7 @@ private:
     const materials::KeyOptions& options_;
     materials::FeatureMask kept_;
     materials::FeatureMask key_ = 0;
+    std::vector<int> exclusions_;  // of the features of the key, ascending
     materials::MaterialFacts facts_;
     materials::MaterialFacts texels_;  // knows them, but not their products with parameters
     materials::MaterialFacts blind_;   // ignores the contents of textures
