@@ -451,6 +451,56 @@ TEST(Declarations, MacrosOfPacksMeetNoneOfGlints) {
     }
 }
 
+// Code outside of the folders of declarations asks for roles. Excepted are code that reads glTF, code that is
+// about materials of glTF, and shadows through glass, which are glTF's glass.
+TEST(Declarations, NoOtherCodeNamesTheirParametersAndTextures) {
+    constexpr std::string_view kExcepted[] = {"shaders/materials/",
+                                              "shaders/effects/refraction/",
+                                              "shaders/light/candidate.glsl",
+                                              "tool/gltf/document/",
+                                              "shaders/hit/path_sample.glsl",
+                                              "tool/synthetic/",
+                                              "tool/measure/features/combinations.cpp"};
+    std::set<std::string> names;
+    const auto add = [&](const std::string& name, const std::string& constant) {
+        names.insert({"\"" + name + "\"", constant});
+    };
+    const materials::MaterialModel& model = materials::builtinMaterialModel();
+    for (const materials::Parameter& parameter : model.parameters) {
+        add(parameter.name, "_" + materials::fieldMacro(parameter.name) + "(");
+    }
+    for (const materials::DerivedField& field : model.derived) {
+        add(field.name, "_" + materials::fieldMacro(field.name) + "(");
+    }
+    for (const materials::MaterialTexture& texture : model.textures) {
+        add(texture.name, "k" + materials::capitalized(texture.name));
+    }
+    int sources = 0;
+    const std::regex word(R"("[A-Za-z0-9]+"|\bk[A-Z]\w*|GLINT_(RECORD|MATERIAL)(_[A-Z0-9_]+\())");
+    for (const char* const folder : {"runtime", "shaders", "templates", "tool", "verify"}) {
+        for (const auto& entry :
+             std::filesystem::recursive_directory_iterator(std::string(GLINT_SOURCE_DIR "/") + folder)) {
+            const std::string path =
+                std::filesystem::relative(entry.path(), GLINT_SOURCE_DIR).generic_string();
+            if (!entry.is_regular_file() || entry.path().extension() == ".json" ||
+                std::ranges::any_of(kExcepted, [&](std::string_view one) { return path.starts_with(one); })) {
+                continue;
+            }
+            ++sources;
+            std::ifstream stream(entry.path());
+            for (std::string line; std::getline(stream, line);) {
+                const std::string code = line.substr(0, line.find("//"));
+                for (std::sregex_iterator found(code.begin(), code.end(), word);
+                     found != std::sregex_iterator(); ++found) {
+                    const std::string name = (*found)[2].matched ? (*found)[2].str() : (*found)[0].str();
+                    EXPECT_FALSE(names.contains(name)) << path << " names " << (*found)[0];
+                }
+            }
+        }
+    }
+    EXPECT_GT(sources, 500);
+}
+
 TEST(Declarations, FeaturesOfPacksCostSomething) {
     const std::string text = R"({"name": "wet", "extension": "EXT_wet", "stage": "layer",
         "textures": [{"name": "wetTexture"}, {"name": "dampTexture", "cost": {"instructions": 7, "fetches": 2}}]})";
