@@ -435,17 +435,17 @@ std::string MaterialModel::featureDefines(const FeatureMask& used) const {
                         : "";
             continue;
         }
+        const std::string bit = fmt::format("0x{:x}u\n", 1U << (static_cast<unsigned>(feature.bit) % 32U));
+        text += fmt::format("#define {} {}", feature.macro, bit);
         const package::Role ofTexture = feature.texture < 0
                                             ? package::Role::None
                                             : textures[static_cast<std::size_t>(feature.texture)].role;
         if (feature.role != package::Role::None) {
-            text += fmt::format("#define {} {}\n", roleMacro(feature.role), feature.macro);
+            text += fmt::format("#define {} {}", roleMacro(feature.role), bit);
         }
         if (ofTexture != package::Role::None) {
-            text += fmt::format("#define {}_TEXTURE {}\n", roleMacro(ofTexture), feature.macro);
+            text += fmt::format("#define {}_TEXTURE {}", roleMacro(ofTexture), bit);
         }
-        text += fmt::format("#define {} 0x{:x}u\n", feature.macro,
-                            1U << (static_cast<unsigned>(feature.bit) % 32U));
         text += fmt::format("#define GLINT_HAS_{}(features) {}(features, {})\n", name,
                             feature.bit < kFirstInput ? "hasLobe" : "hasInput", feature.macro);
         text += fmt::format("#define GLINT_KEY_HAS_{}(features) {}(features, {})\n", name,
