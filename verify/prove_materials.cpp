@@ -129,7 +129,7 @@ std::string claimTexels(std::string text, const materials::MaterialModel& model,
                     "uvEdges) {{\n    uint first = {}u + 4u * slot;\n    return vec4(glintGiven[first], "
                     "glintGiven[first + 1u], glintGiven[first + 2u], glintGiven[first + 3u]);\n}}\n\n",
                     inputs.firstTexel));
-    const std::size_t second = text.find("    return hasInput(features, GLINT_TEX_COORD_1)");
+    const std::size_t second = text.find("    return hasInput(features, GLINT_ROLE_TEX_COORD1)");
     const std::size_t secondEnd = text.find(";\n", second) + 1;
     text.replace(second, secondEnd - second, "    return false;");
     for (const materials::MaterialTexture& texture : model.textures) {

@@ -59,7 +59,7 @@ struct Features {
 #define GLINT_FILLS_BASE_COLOR(model) true
 #endif
 #define GLINT_BASE_ALPHA(record, model)                                                                         \
-    (GLINT_FILLS_BASE_COLOR(model) ? GLINT_RECORD_BASE_COLOR_FACTOR(record).a : 1.0)
+    (GLINT_FILLS_BASE_COLOR(model) ? GLINT_ROLE_BASE_COLOR(record).a : 1.0)
 
 bool lobeOfKey(Features features, uint bit) {
     return (features.alwaysLobes & bit) != 0u ||

@@ -28,14 +28,14 @@ vec2 alphaAndCutoff(HostGeometry geometry, uint primitive, vec2 barycentrics) {
     MaterialRecord material = hostMaterials().data[point.material];
     runMaskCoordinates(point, features);
     float alpha = GLINT_BASE_ALPHA(material, features.model);
-    if (inputOfKey(features, GLINT_BASE_COLOR_TEXTURE)) {
-        alpha *= samplePoint(point, kBaseColorTexture, features).a;
+    if (inputOfKey(features, GLINT_ROLE_BASE_COLOR_TEXTURE)) {
+        alpha *= samplePoint(point, GLINT_ROLE_BASE_COLOR_SLOT, features).a;
     }
-    if (inputOfKey(features, GLINT_VERTEX_COLOR)) {
+    if (inputOfKey(features, GLINT_ROLE_VERTEX_COLOR)) {
         alpha *= vertexAlpha(geometry, primitive, barycentrics);
     }
     runMaskOpacity(point, features, alpha);
-    return vec2(alpha, GLINT_RECORD_ALPHA_CUTOFF(material));
+    return vec2(alpha, GLINT_ROLE_ALPHA_CUTOFF(material));
 }
 
 // Returns whether the ray stops at the candidate: the alpha test of glTF 2.0, section 3.9.4, or with alphaMode BLEND a

@@ -121,14 +121,14 @@ Hit fetchHitAt(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 ra
 #endif
 
     hit.normal = front;
-    if (hasInput(features, GLINT_NORMALS)) {
+    if (hasInput(features, GLINT_ROLE_NORMALS)) {
         vec3 normals[3];
         hostNormals(geometry, corner, normals);
         vec3 n = weights.x * normals[0] + weights.y * normals[1] + weights.z * normals[2];
         hit.normal = directionOr(transformNormal(instance.normalToWorld, n), front);
     }
     hit.tangent = vec4(0.0);
-    if (hasInput(features, GLINT_TANGENTS)) {
+    if (hasInput(features, GLINT_ROLE_TANGENTS)) {
         vec4 tangents[3];
         hostTangents(geometry, corner, tangents);
         vec4 t = weights.x * tangents[0] + weights.y * tangents[1] + weights.z * tangents[2];
@@ -141,20 +141,20 @@ Hit fetchHitAt(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 ra
     hit.texCoords[1] = vec2(0.0);
     hit.uvEdges[0] = vec4(0.0);
     hit.uvEdges[1] = vec4(0.0);
-    if (hasInput(features, GLINT_TEX_COORD_0)) {
+    if (hasInput(features, GLINT_ROLE_TEX_COORD0)) {
         vec2 uv[3];
         hostTexCoords0(geometry, corner, uv);
         hit.texCoords[0] = weights.x * uv[0] + weights.y * uv[1] + weights.z * uv[2];
         hit.uvEdges[0] = vec4(uv[1] - uv[0], uv[2] - uv[0]);
     }
-    if (hasInput(features, GLINT_TEX_COORD_1)) {
+    if (hasInput(features, GLINT_ROLE_TEX_COORD1)) {
         vec2 uv[3];
         hostTexCoords1(geometry, corner, uv);
         hit.texCoords[1] = weights.x * uv[0] + weights.y * uv[1] + weights.z * uv[2];
         hit.uvEdges[1] = vec4(uv[1] - uv[0], uv[2] - uv[0]);
     }
     hit.color = vec4(1.0);
-    if (hasInput(features, GLINT_VERTEX_COLOR)) {
+    if (hasInput(features, GLINT_ROLE_VERTEX_COLOR)) {
         vec4 colors[3];
         hostColors(geometry, corner, colors);
         hit.color = weights.x * colors[0] + weights.y * colors[1] + weights.z * colors[2];

@@ -32,12 +32,12 @@ SurfacePoint surfacePoint(HostGeometry geometry, uint primitive, vec2 barycentri
 #endif
     point.texCoords[0] = vec2(0.0);
     point.texCoords[1] = vec2(0.0);
-    if (inputOfKey(features, GLINT_TEX_COORD_0)) {
+    if (inputOfKey(features, GLINT_ROLE_TEX_COORD0)) {
         vec2 uv[3];
         hostTexCoords0(geometry, corner, uv);
         point.texCoords[0] = weights.x * uv[0] + weights.y * uv[1] + weights.z * uv[2];
     }
-    if (inputOfKey(features, GLINT_TEX_COORD_1)) {
+    if (inputOfKey(features, GLINT_ROLE_TEX_COORD1)) {
         vec2 uv[3];
         hostTexCoords1(geometry, corner, uv);
         point.texCoords[1] = weights.x * uv[0] + weights.y * uv[1] + weights.z * uv[2];
@@ -58,10 +58,10 @@ float vertexAlpha(HostGeometry geometry, uint primitive, vec2 barycentrics) {
 // Returns the coordinates at which a texture slot is read.
 vec2 pointCoordinates(SurfacePoint point, uint slot, Features features) {
     TextureRecord record = GLINT_TEXTURE(GLINT_MATERIAL(point), slot);
-    bool second = inputOfKey(features, GLINT_TEX_COORD_1) &&
-                  (!inputOfKey(features, GLINT_TEX_COORD_0) || record.texCoord != 0u);
+    bool second = inputOfKey(features, GLINT_ROLE_TEX_COORD1) &&
+                  (!inputOfKey(features, GLINT_ROLE_TEX_COORD0) || record.texCoord != 0u);
     vec2 uv = second ? point.texCoords[1] : point.texCoords[0];
-    return inputOfKey(features, GLINT_TEXTURE_TRANSFORM)
+    return inputOfKey(features, GLINT_ROLE_TEXTURE_TRANSFORM)
                ? vec2(dot(record.rowU, vec3(uv, 1.0)), dot(record.rowV, vec3(uv, 1.0)))
                : uv;
 }

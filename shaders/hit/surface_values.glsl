@@ -16,9 +16,9 @@ struct SurfaceValues {
 // Returns whether a hit may show the back of the surface: rays within a volume meet its surface from there.
 bool showsBack(Features features) {
 #if GLINT_PATHS
-    return hasInput(features, GLINT_DOUBLE_SIDED) || hasLobe(features, GLINT_VOLUME);
+    return hasInput(features, GLINT_ROLE_DOUBLE_SIDED) || hasLobe(features, GLINT_VOLUME);
 #else
-    return hasInput(features, GLINT_DOUBLE_SIDED);
+    return hasInput(features, GLINT_ROLE_DOUBLE_SIDED);
 #endif
 }
 

@@ -5,8 +5,8 @@
 
 // Returns whether a slot reads the second UV set.
 bool readsSecondSet(Hit hit, uint slot, Features features) {
-    return hasInput(features, GLINT_TEX_COORD_1) &&
-           (!hasInput(features, GLINT_TEX_COORD_0) || GLINT_TEXTURE(GLINT_MATERIAL(hit), slot).texCoord == 1u);
+    return hasInput(features, GLINT_ROLE_TEX_COORD1) &&
+           (!hasInput(features, GLINT_ROLE_TEX_COORD0) || GLINT_TEXTURE(GLINT_MATERIAL(hit), slot).texCoord == 1u);
 }
 
 // Returns how the coordinates that a texture is read at change along both edges of the triangle, where those of the UV
@@ -20,7 +20,7 @@ vec4 transformedEdges(TextureRecord record, vec4 uvEdges) {
 // the triangle, (Δu, Δv) each. Texture and coordinates are read in 32 bits, whatever the precision of the result.
 GLINT_RELAXED vec4 sampleSlotAt(Hit hit, uint slot, Features features, vec2 uv, vec4 uvEdges) {
     TextureRecord record = GLINT_TEXTURE(GLINT_MATERIAL(hit), slot);
-    if (hasInput(features, GLINT_TEXTURE_TRANSFORM)) {
+    if (hasInput(features, GLINT_ROLE_TEXTURE_TRANSFORM)) {
         uv = vec2(dot(record.rowU, vec3(uv, 1.0)), dot(record.rowV, vec3(uv, 1.0)));
         uvEdges = transformedEdges(record, uvEdges);
     }
@@ -46,9 +46,9 @@ GLINT_RELAXED vec4 sampleSlot(Hit hit, uint slot, Features features) {
 void tangentFrame(Hit hit, uint slot, Features features, out vec3 tangent, out vec3 bitangent) {
     vec3 along = hit.tangent.xyz;
     float handedness = hit.tangent.w;
-    if (!hasInput(features, GLINT_TANGENTS)) {
+    if (!hasInput(features, GLINT_ROLE_TANGENTS)) {
         vec4 uv = readsSecondSet(hit, slot, features) ? hit.uvEdges[1] : hit.uvEdges[0];
-        if (hasInput(features, GLINT_TURNED_FRAMES)) {
+        if (hasInput(features, GLINT_ROLE_TURNED_FRAMES)) {
             uv = transformedEdges(GLINT_TEXTURE(GLINT_MATERIAL(hit), slot), uv);
         }
         float determinant = uv.x * uv.w - uv.y * uv.z;

@@ -39,11 +39,11 @@ vec3 lightAfter(LightPassage passage, float distance) {
 
 // The surface's colour with its coverage: base colour, texture and vertices.
 vec4 pointColor(HostGeometry geometry, SurfacePoint point, PassageCandidate candidate, Features features) {
-    vec4 color = GLINT_FILLS_BASE_COLOR(features.model) ? GLINT_MATERIAL_BASE_COLOR_FACTOR(point) : vec4(1.0);
-    if (inputOfKey(features, GLINT_BASE_COLOR_TEXTURE)) {
-        color *= samplePoint(point, kBaseColorTexture, features);
+    vec4 color = GLINT_FILLS_BASE_COLOR(features.model) ? GLINT_ROLE_BASE_COLOR(GLINT_MATERIAL(point)) : vec4(1.0);
+    if (inputOfKey(features, GLINT_ROLE_BASE_COLOR_TEXTURE)) {
+        color *= samplePoint(point, GLINT_ROLE_BASE_COLOR_SLOT, features);
     }
-    if (inputOfKey(features, GLINT_VERTEX_COLOR)) {
+    if (inputOfKey(features, GLINT_ROLE_VERTEX_COLOR)) {
         vec2 b = candidate.barycentrics;
         vec4 colors[3];
         hostColors(geometry, hostTriangle(geometry, candidate.primitive), colors);
@@ -63,7 +63,7 @@ float coverageOf(HostGeometry geometry, SurfacePoint point, Features features, f
             return clamp(alpha, 0.0, 1.0);
         }
 #endif
-        return alpha >= GLINT_MATERIAL_ALPHA_CUTOFF(point) ? 1.0 : 0.0;
+        return alpha >= GLINT_ROLE_ALPHA_CUTOFF(GLINT_MATERIAL(point)) ? 1.0 : 0.0;
     }
 #endif
     return 1.0;

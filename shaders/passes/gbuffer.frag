@@ -25,7 +25,7 @@ layout(location = 0) out uvec2 surface;
 #if GLINT_MAY_MASK
 // Returns the alpha of the base colour texture. All instances of a draw have one material: the indices are uniform.
 float textureAlpha(MaterialRecord material, vec2 uv) {
-    TextureRecord record = GLINT_TEXTURE(material, kBaseColorTexture);
+    TextureRecord record = GLINT_TEXTURE(material, GLINT_ROLE_BASE_COLOR_SLOT);
 #if GLINT_TEXTURE_LOD_CONES
     return hostScreenTexture(record, uv, GLINT_FRAME.sampleLodBias).a;
 #else
@@ -45,17 +45,17 @@ void main() {
         Features features = GLINT_PRIMARY_FEATURES(geometry);
         SurfacePoint point = surfacePoint(geometry, primitive, barycentrics, features);
         runMaskCoordinates(point, features);
-        if (inputOfKey(features, GLINT_BASE_COLOR_TEXTURE)) {
-            uv = pointCoordinates(point, kBaseColorTexture, features);
+        if (inputOfKey(features, GLINT_ROLE_BASE_COLOR_TEXTURE)) {
+            uv = pointCoordinates(point, GLINT_ROLE_BASE_COLOR_SLOT, features);
         }
-        if (inputOfKey(features, GLINT_VERTEX_COLOR)) {
+        if (inputOfKey(features, GLINT_ROLE_VERTEX_COLOR)) {
             alpha *= vertexAlpha(geometry, primitive, barycentrics);
         }
 #else
         uv = texCoord;
         alpha *= vertexAlpha;
 #endif
-        if ((geometry.featureInputs & GLINT_BASE_COLOR_TEXTURE) != 0u) {
+        if ((geometry.featureInputs & GLINT_ROLE_BASE_COLOR_TEXTURE) != 0u) {
             alpha *= textureAlpha(material, uv);
         }
 #if GLINT_MASK_STAGES
@@ -69,7 +69,7 @@ void main() {
             }
         } else
 #endif
-        if (alpha < GLINT_RECORD_ALPHA_CUTOFF(material)) {
+        if (alpha < GLINT_ROLE_ALPHA_CUTOFF(material)) {
             discard;
         }
     }

@@ -32,12 +32,12 @@ void main() {
     texCoord = vec2(0.0);
     vertexAlpha = 1.0;
     if ((geometry.flags & kGeometryMasked) != 0u) {
-        TextureRecord record = GLINT_TEXTURE(hostMaterials().data[geometry.materialIndex], kBaseColorTexture);
-        if ((geometry.featureInputs & GLINT_BASE_COLOR_TEXTURE) != 0u) {
+        TextureRecord record = GLINT_TEXTURE(hostMaterials().data[geometry.materialIndex], GLINT_ROLE_BASE_COLOR_SLOT);
+        if ((geometry.featureInputs & GLINT_ROLE_BASE_COLOR_TEXTURE) != 0u) {
             vec2 uv = record.texCoord == 0u ? hostTexCoord0(geometry, vertex) : hostTexCoord1(geometry, vertex);
             texCoord = vec2(dot(record.rowU, vec3(uv, 1.0)), dot(record.rowV, vec3(uv, 1.0)));
         }
-        if ((geometry.featureInputs & GLINT_VERTEX_COLOR) != 0u) {
+        if ((geometry.featureInputs & GLINT_ROLE_VERTEX_COLOR) != 0u) {
             vertexAlpha = hostColor(geometry, vertex).a;
         }
     }

@@ -14,9 +14,9 @@ namespace glint::compiler {
 
 namespace {
 
+using package::Role;
+
 constexpr std::uint32_t kNumberBytes = materials::kNumberBytes;
-// Frames of features without a texture are those of its coordinates.
-constexpr std::string_view kFrameTexture = "normalTexture";
 
 bool has(const std::vector<int>& models, int model) {
     return std::ranges::find(models, model) != models.end();
@@ -111,9 +111,9 @@ std::string memberOf(const RecordField& field, RecordLanguage language) {
 
 // Whether a frame may be that of a texture's coordinates though no key reads the texture.
 bool takesFrameOf(const materials::MaterialModel& model, int texture, const materials::FeatureMask& used) {
-    const materials::FeatureMask sets = model.mask("texCoord0") | model.mask("texCoord1");
-    const bool matters = (used & sets) == sets || (used & model.mask("turnedFrames")) != 0;
-    return matters && model.textures[static_cast<std::size_t>(texture)].name == kFrameTexture &&
+    const materials::FeatureMask sets = model.mask(Role::TexCoord0) | model.mask(Role::TexCoord1);
+    const bool matters = (used & sets) == sets || (used & model.mask(Role::TurnedFrames)) != 0;
+    return matters && texture == model.textureOf(Role::TangentFrame) &&
            std::ranges::any_of(model.features, [&](const materials::Feature& feature) {
                return feature.needsTangents && feature.texture < 0 && used.has(feature.bit);
            });
@@ -125,8 +125,8 @@ public:
     RecordNeeds(const materials::MaterialModel& model, std::span<const RecordUse> uses)
         : model_(model),
           uses_(uses),
-          emission_(model.mask("modelEmission")),
-          strength_(model.mask("emissiveStrength")) {
+          emission_(model.mask(Role::Emits)),
+          strength_(model.featuresFor(Role::EmissionStrength)) {
         hasStrength_ =
             std::ranges::any_of(uses, [this](const RecordUse& use) { return (use.used & strength_) != 0; });
     }
@@ -162,15 +162,15 @@ private:
             // The runtime reads the strength of whatever emits.
             const bool emits = !isOfGltf && (use.used & emission_) != 0;
             return isUsed(model_, parameter.feature, use.used) ||
-                   (emits && hasStrength_ && parameter.name == "emissiveStrength");
+                   (emits && hasStrength_ && parameter.role == Role::EmissionStrength);
         }
         if (isOfGltf) {
             return true;
         }
-        if (parameter.name == "emissiveFactor") {
+        if (parameter.role == Role::Emission) {
             return (use.used & emission_) != 0;
         }
-        if (parameter.name == "alphaCutoff") {
+        if (parameter.role == Role::AlphaCutoff) {
             return use.masks;
         }
         return std::ranges::any_of(use.models, [&](int one) { return model_.hasParameter(one, index); });
@@ -234,6 +234,12 @@ std::vector<int> modelsOf(std::span<const RecordUse> uses, const std::vector<boo
 
 }  // namespace
 
+const RecordField* MaterialLayout::fieldOf(Role role) const {
+    const int parameter = model->parameterOf(role);
+    const auto found = std::ranges::find(fields, parameter, &RecordField::parameter);
+    return parameter < 0 || found == fields.end() ? nullptr : &*found;
+}
+
 int MaterialLayout::slotOf(int texture) const {
     const auto found = std::ranges::find(textures, texture, &TextureSlot::texture);
     return found == textures.end() ? -1 : found->slot;
@@ -286,7 +292,7 @@ MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, std::sp
     }
     for (const RecordUse& use : uses) {
         layout.modelCount += use.models.size();
-        layout.turnsFrames = layout.turnsFrames || (use.used & model.mask("turnedFrames")) != 0;
+        layout.turnsFrames = layout.turnsFrames || (use.used & model.mask(Role::TurnedFrames)) != 0;
     }
     // What all have comes first, then what most have, so that little room is lost between the rest.
     const auto byUses = [](const std::vector<std::vector<bool>>& which) {
@@ -355,7 +361,7 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
         const materials::TextureInfo& info = material.textures[index];
         if (has(row.models, model) &&
             (info.texture >= 0 ||
-             (layout.turnsFrames && layout.model->textures[index].name == kFrameTexture))) {
+             (layout.turnsFrames && row.texture == layout.model->textureOf(Role::TangentFrame)))) {
             const gpu::TextureRecord texture = transformed(info.transform);
             std::memcpy(&record[layout.textureOffset + static_cast<std::size_t>(row.slot) * sizeof texture],
                         &texture, sizeof texture);
@@ -416,6 +422,12 @@ std::string recordDeclarations(const MaterialLayout& layout, const materials::Fe
                                 std::max(0, layout.slotOf(static_cast<int>(i))));
         }
     }
+    for (const materials::MaterialTexture& texture : model.textures) {
+        if (texture.role != Role::None) {
+            text += fmt::format("#define {}_SLOT {}\n", materials::roleMacro(texture.role),
+                                textureConstant(texture.name));
+        }
+    }
     text += "#define GLINT_TEXTURE(record, slot) ";
     text += layout.textureCount == 0 ? "TextureRecord(0u, 0u, 0u, vec3(0.0), vec3(0.0), vec2(0.0), 0.0)\n"
                                      : "(record).textures[slot]\n";
@@ -436,6 +448,10 @@ std::string recordDeclarations(const MaterialLayout& layout, const materials::Fe
         }
         define(parameter.name, constantOf(*parameter.type, parameter.count, parameter.fallback),
                parameter.isArray());
+        if (parameter.role != Role::None) {
+            text += fmt::format("#define {}(record_) GLINT_RECORD_{}(record_)\n",
+                                materials::roleMacro(parameter.role), materials::fieldMacro(parameter.name));
+        }
     }
     for (const materials::DerivedField& field : model.derived) {
         const std::array<double, 4> zero{};

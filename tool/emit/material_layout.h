@@ -56,6 +56,8 @@ struct MaterialLayout {
     bool isShared(const RecordField& field) const {
         return field.models.size() == modelCount;
     }
+    // Returns the field of the parameter that has the role, or null.
+    const RecordField* fieldOf(package::Role role) const;
     // Returns the place of a texture in the record, or -1.
     int slotOf(int texture) const;
     // Returns that place, or -1 if records of the model lack the texture.

@@ -52,12 +52,8 @@ void defineFeatures(std::string& text, std::string_view prefix, const materials:
 
 // The features that decide about the alpha of a hit.
 materials::FeatureMask alphaFeatures(const materials::MaterialModel& model) {
-    materials::FeatureMask mask = 0;
-    for (const char* const name :
-         {"baseColorTexture", "texCoord0", "texCoord1", "textureTransform", "vertexColor"}) {
-        mask |= model.mask(name);
-    }
-    mask |= maskCodeFeatures(model);
+    materials::FeatureMask mask = model.featuresFor(package::Role::BaseColor) |
+                                  model.mask(package::Role::VertexColor) | maskCodeFeatures(model);
     for (const materials::Feature& feature : model.features) {
         const bool readForCode =
             feature.lobe >= 0 && mask.has(model.features[static_cast<std::size_t>(feature.lobe)].bit);

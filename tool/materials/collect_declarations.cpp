@@ -39,6 +39,63 @@ bool isOneElement(const Parameter& parameter, const DeclarationJson& json) {
 
 }  // namespace
 
+void ModelBuilder::findRoles() {
+    constexpr std::pair<std::string_view, Place> kLists[] = {
+        {"parameters", Place::Parameter}, {"textures", Place::Texture}, {"features", Place::Feature}};
+    for (const bool isOfPack : {false, true}) {
+        for (const File& file : files_) {
+            if (file.isOfPack != isOfPack) {
+                continue;
+            }
+            const Members members = membersOf(file);
+            for (const auto& [list, place] : kLists) {
+                for (const auto& [json, where] : members.list(list)) {
+                    findRole(Members(*json, where, place), place);
+                }
+            }
+        }
+    }
+}
+
+void ModelBuilder::findRole(const Members& members, Place place) {
+    const package::Role role = roleOf(members);
+    if (role == package::Role::None) {
+        return;
+    }
+    const NamedRole& row = *std::ranges::find(kRoles, role, &NamedRole::role);
+    if ((row.places & placeBit(place)) == 0) {
+        failAt(members.at("role"), fmt::format("\"{}\" is the role of something else", row.name));
+    }
+    const auto [holder, isFirst] = roles_.try_emplace({role, place}, members.where());
+    if (isFirst && place == Place::Parameter && members.text("type", "") != row.type) {
+        failAt(members.at("role"),
+               fmt::format("a parameter with the role \"{}\" has the type {}", row.name, row.type));
+    }
+    if (!isFirst && place == Place::Feature) {
+        failAt(members.at("role"), fmt::format("{} has the role already", holder->second));
+    }
+}
+
+package::Role ModelBuilder::roleOf(const Members& members) {
+    return members.has("role") ? choose(kRoles, members, "role", members.text("role")).role
+                               : package::Role::None;
+}
+
+bool ModelBuilder::fills(const Members& members, Place place) const {
+    const package::Role role = roleOf(members);
+    const bool byRole = role != package::Role::None && roles_.at({role, place}) != members.where();
+    for (const MemberRule& rule : memberRules()) {
+        // What is refused beside "is" is refused beside a role that fills.
+        for (const MemberRow& row : memberRows()) {
+            if (byRole && rule.place == place && rule.without == "is" && hasWord(rule.members, row.name) &&
+                members.has(row.name)) {
+                failAt(members.at(row.name), std::string(rule.message), std::string(rule.hint));
+            }
+        }
+    }
+    return byRole || members.has("is");
+}
+
 int ModelBuilder::addFeature(const Members& members, Feature feature, Light light) {
     // Glint's shaders have many macros of their own, which a name of a pack must not meet.
     feature.macro = (isOfPack_ ? "GLINT_PACK" : "GLINT") + macroCase("_" + feature.name);
@@ -122,13 +179,13 @@ void ModelBuilder::collect(File& file) {
     }
     for (const auto& [json, where] : members.list("parameters")) {
         const Members parameter(*json, where, Place::Parameter);
-        if (!parameter.has("is")) {
+        if (!fills(parameter, Place::Parameter)) {
             addParameter(file, parameter);
         }
     }
     for (const auto& [json, where] : members.list("textures")) {
         const Members texture(*json, where, Place::Texture);
-        if (!texture.has("is")) {
+        if (!fills(texture, Place::Texture)) {
             addTexture(file, texture);
         }
     }
@@ -139,6 +196,7 @@ void ModelBuilder::collect(File& file) {
         const Members further(*json, where, Place::Feature);
         Feature feature;
         feature.name = newName(further);
+        feature.role = roleOf(further);
         feature.stage = further.has("stage") ? choose(kStages, further, "stage", further.text("stage")).stage
                         : stage == Stage::Layer || stage == Stage::Base ? Stage::Surface
                                                                         : stage;
@@ -237,6 +295,7 @@ Parameter ModelBuilder::makeParameter(const File& file, const Members& members, 
     parameter.unit = members.text("unit", "");
     parameter.about = members.text("about", "");
     parameter.isAngle = parameter.unit == "radians";
+    parameter.role = roleOf(members);
     parameter.inRecord = members.flag("record", true);
     readType(members, parameter);
     readRange(members, parameter);
@@ -386,6 +445,7 @@ TextureReads ModelBuilder::readsOfTexture(const Members& members) {
 void ModelBuilder::addTexture(const File& file, const Members& members) {
     MaterialTexture texture;
     texture.name = newName(members);
+    texture.role = roleOf(members);
     const std::string declared = members.text("name");
     texture.places.push_back({file.object, declared, members.flag("color", false), readsOfTexture(members)});
     Feature feature;
@@ -407,11 +467,12 @@ void ModelBuilder::collectAliases(const File& file) {
     const Members members = membersOf(file);
     for (const auto& [json, where] : members.list("parameters")) {
         const Members alias(*json, where, Place::Parameter);
-        if (!alias.has("is")) {
+        if (!fills(alias, Place::Parameter)) {
             continue;
         }
         const std::string name = newName(alias);
-        const int target = named(&MaterialModel::findParameter, alias.text("is"));
+        const int target = alias.has("is") ? named(&MaterialModel::findParameter, alias.text("is"))
+                                           : model_.parameterOf(roleOf(alias));
         if (target < 0) {
             failAt(alias.at("is"), fmt::format("there is no parameter \"{}\"", alias.text("is")));
         }
@@ -428,21 +489,21 @@ void ModelBuilder::collectAliases(const File& file) {
     }
     for (const auto& [json, where] : members.list("textures")) {
         const Members alias(*json, where, Place::Texture);
-        if (alias.has("is")) {
+        if (fills(alias, Place::Texture)) {
             newName(alias);
-            textureNamed(alias, "is")
-                .places.push_back(
-                    {file.object, alias.text("name"), alias.flag("color", false), readsOfTexture(alias)});
+            model_.textures[static_cast<std::size_t>(filledTexture(alias))].places.push_back(
+                {file.object, alias.text("name"), alias.flag("color", false), readsOfTexture(alias)});
         }
     }
 }
 
-MaterialTexture& ModelBuilder::textureNamed(const Members& members, std::string_view member) {
-    const int found = named(&MaterialModel::findTexture, members.text(member));
+int ModelBuilder::filledTexture(const Members& members) const {
+    const int found = members.has("is") ? named(&MaterialModel::findTexture, members.text("is"))
+                                        : model_.textureOf(roleOf(members));
     if (found < 0) {
-        failAt(members.at(member), fmt::format("there is no texture \"{}\"", members.text(member)));
+        failAt(members.at("is"), fmt::format("there is no texture \"{}\"", members.text("is")));
     }
-    return model_.textures[static_cast<std::size_t>(found)];
+    return found;
 }
 
 }  // namespace glint::materials

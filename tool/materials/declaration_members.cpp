@@ -108,6 +108,16 @@ Json nameOf() {
     }
     return {{"enum", std::move(names)}};
 }
+template <Place Of>
+Json roleOf() {
+    Json names = Json::array();
+    for (const NamedRole& row : kRoles) {
+        if ((row.places & placeBit(Of)) != 0) {
+            names.push_back(row.name);
+        }
+    }
+    return {{"enum", std::move(names)}};
+}
 Json own() {
     return {{"enum", {"own"}}};
 }
@@ -207,6 +217,11 @@ constexpr MemberRow kRows[] = {
     {"unit", at({Parameter, Derived}), text, "The unit; the range of radians is a turn."},
     {"record", at({Parameter}), flag, "False: records do not have it."},
     {"of", at({Parameter, Texture, Derived}), name, "The feature whose keys need it."},
+    {"role", at({Parameter}), roleOf<Parameter>,
+     "What Glint itself reads it for. If a parameter has the role already, this one fills it."},
+    {"role", at({Texture}), roleOf<Texture>,
+     "What Glint itself reads it for. If a texture has the role already, this one fills it."},
+    {"role", at({Feature}), roleOf<Feature>, "What Glint itself has to know it for."},
     {"is", at({Parameter, Texture}), name, "The parameter or texture of another base model that it fills."},
     {"value", at({Derived}), oneOrList<text>, "An expression.", at({Derived})},
 
@@ -241,6 +256,10 @@ constexpr MemberRule kRules[] = {
     {File, "object", "", "extension", "a feature has an extension or an object of the core, not both", ""},
     {Parameter, "range also type count values unit record of", "", "is",
      "is that of the parameter whose value this is", "leave it out"},
+    {Parameter, "is", "", "role", "says what the role says: what this fills", "leave one of the two out"},
+    {Texture, "is", "", "role", "says what the role says: what this fills", "leave one of the two out"},
+    {Parameter, "record", "", "role", "would keep shaders from reading it, which is what a role is for",
+     "leave it out"},
     {Parameter, "also", "range", "", "says nothing without a range", "give the parameter \"range\""},
     {Texture, "short order draft needs cost of coordinates", "", "is",
      "is that of the texture whose place this fills", "leave it out"},

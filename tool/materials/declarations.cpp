@@ -233,6 +233,7 @@ ModelBuilder::ModelBuilder(std::span<const DeclarationFile> files) {
 }
 
 MaterialModel ModelBuilder::build() {
+    findRoles();
     for (File& file : files_) {
         collect(file);
     }
@@ -378,6 +379,10 @@ std::string fieldMacro(std::string_view name) {
         text += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     }
     return text;
+}
+
+std::string roleMacro(package::Role role) {
+    return "GLINT_ROLE_" + fieldMacro(std::ranges::find(kRoles, role, &NamedRole::role)->name);
 }
 
 Result<MaterialModel> readDeclarations(std::span<const DeclarationFile> files) {

@@ -24,6 +24,8 @@ Result<MaterialModel> readDeclarations(std::span<const DeclarationFile> files);
 
 // Returns a field's part of the names of macros: "CLEARCOAT_ROUGHNESS_FACTOR" of "clearcoatRoughnessFactor".
 std::string fieldMacro(std::string_view name);
+// Returns the beginning of the macros of a role: "GLINT_ROLE_BASE_COLOR".
+std::string roleMacro(package::Role role);
 
 // --- Packs: material features of a user's own, beside those that Glint has ---
 

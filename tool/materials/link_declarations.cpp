@@ -381,7 +381,7 @@ void ModelBuilder::link(const File& file) {
     }
     for (const auto& [json, where] : members.list("textures")) {
         const Members texture(*json, where, Place::Texture);
-        if (!texture.has("is")) {
+        if (!fills(texture, Place::Texture)) {
             linkTexture(file, texture);
         }
     }
@@ -411,10 +411,10 @@ void ModelBuilder::linkAliases(const File& file) {
     const Members members = membersOf(file);
     for (const auto& [json, where] : members.list("textures")) {
         const Members texture(*json, where, Place::Texture);
-        if (!texture.has("is")) {
+        if (!fills(texture, Place::Texture)) {
             continue;
         }
-        const int slot = named(&MaterialModel::findTexture, texture.text("is"));
+        const int slot = filledTexture(texture);
         const int feature = model_.textures[static_cast<std::size_t>(slot)].feature;
         const FeatureMask own = file.mainFeature < 0 ? 0 : featureAt(file.mainFeature).mask();
         for (NeutralReason& reason : featureAt(feature).neutral) {

@@ -300,8 +300,9 @@ bool MaterialFacts::hasTangents() const {
     return primitive_.hasTangents && primitive_.hasNormals && !primitive_.derivesTangents;
 }
 
-// The frame of such a feature is that of the coordinates of normalTexture, even if this texture changes
-// nothing and is not in the key. Without a readable one, the frame is that of the first UV set that exists.
+// The frame of such a feature is that of the coordinates of the texture with the role TangentFrame, even if
+// this texture changes nothing and is not in the key. Without a readable one, the frame is that of the first
+// UV set that exists.
 bool MaterialFacts::takesPlainFrame(const Feature& feature) const {
     const MaterialModel& model = material_.model();
     const int index = static_cast<int>(&feature - model.features.data());
@@ -313,9 +314,9 @@ bool MaterialFacts::takesPlainFrame(const Feature& feature) const {
 }
 
 const TextureInfo* MaterialFacts::plainFrameTexture() const {
-    const int normal = material_.model().findTexture("normalTexture");
-    return normal >= 0 && isReadable(material_, primitive_, normal)
-               ? &material_.textures[static_cast<std::size_t>(normal)]
+    const int texture = material_.model().textureOf(package::Role::TangentFrame);
+    return texture >= 0 && isReadable(material_, primitive_, texture)
+               ? &material_.textures[static_cast<std::size_t>(texture)]
                : nullptr;
 }
 

@@ -1,5 +1,7 @@
 #include "materials/material_model.h"
 
+#include "materials/declarations.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -212,6 +214,39 @@ int MaterialModel::findAttribute(std::string_view name) const {
     return indexOf(attributes, name);
 }
 
+int MaterialModel::parameterOf(package::Role role) const {
+    const auto found = std::ranges::find(parameters, role, &Parameter::role);
+    return found == parameters.end() ? -1 : static_cast<int>(found - parameters.begin());
+}
+
+int MaterialModel::textureOf(package::Role role) const {
+    const auto found = std::ranges::find(textures, role, &MaterialTexture::role);
+    return found == textures.end() ? -1 : static_cast<int>(found - textures.begin());
+}
+
+FeatureMask MaterialModel::mask(package::Role role) const {
+    const auto found = std::ranges::find(features, role, &Feature::role);
+    return found == features.end() ? 0 : found->mask();
+}
+
+FeatureMask MaterialModel::textureMask(package::Role role) const {
+    const int texture = textureOf(role);
+    return texture < 0
+               ? 0
+               : features[static_cast<std::size_t>(textures[static_cast<std::size_t>(texture)].feature)]
+                     .mask();
+}
+
+FeatureMask MaterialModel::featuresFor(package::Role role) const {
+    using enum package::Role;
+    const int parameter = parameterOf(role);
+    const int reader = parameter < 0 ? -1 : parameters[static_cast<std::size_t>(parameter)].feature;
+    const FeatureMask ofParameter = reader < 0 ? 0 : features[static_cast<std::size_t>(reader)].mask();
+    const FeatureMask ofTexture = textureMask(role);
+    return ofParameter | ofTexture |
+           (ofTexture == 0 ? 0 : mask(TexCoord0) | mask(TexCoord1) | mask(TextureTransform));
+}
+
 int MaterialModel::findParameter(std::string_view name, int model) const {
     const int own =
         model < 0 ? -1 : findParameter(fullName(models[static_cast<std::size_t>(model)].name, name));
@@ -300,7 +335,7 @@ std::uint32_t MaterialModel::modelWord(int model) const {
     word |= unlit.has(base) ? gpu::kModelUnlit : 0U;
     word |= bothSides.has(base) ? gpu::kModelBothSides : 0U;
     word |= ownModels.has(base) ? gpu::kModelOwnCode : 0U;
-    const int color = findParameter("baseColorFactor");
+    const int color = parameterOf(package::Role::BaseColor);
     word |= color >= 0 && hasParameter(model, color) ? gpu::kModelBaseColor : 0U;
     for (const FeatureCode& one : code) {
         const bool isOfModel =
@@ -400,8 +435,17 @@ std::string MaterialModel::featureDefines(const FeatureMask& used) const {
                         : "";
             continue;
         }
-        text += fmt::format("#define {} 0x{:x}u\n", feature.macro,
-                            1U << (static_cast<unsigned>(feature.bit) % 32U));
+        const std::string bit = fmt::format("0x{:x}u\n", 1U << (static_cast<unsigned>(feature.bit) % 32U));
+        text += fmt::format("#define {} {}", feature.macro, bit);
+        const package::Role ofTexture = feature.texture < 0
+                                            ? package::Role::None
+                                            : textures[static_cast<std::size_t>(feature.texture)].role;
+        if (feature.role != package::Role::None) {
+            text += fmt::format("#define {} {}", roleMacro(feature.role), bit);
+        }
+        if (ofTexture != package::Role::None) {
+            text += fmt::format("#define {}_TEXTURE {}", roleMacro(ofTexture), bit);
+        }
         text += fmt::format("#define GLINT_HAS_{}(features) {}(features, {})\n", name,
                             feature.bit < kFirstInput ? "hasLobe" : "hasInput", feature.macro);
         text += fmt::format("#define GLINT_KEY_HAS_{}(features) {}(features, {})\n", name,

@@ -236,8 +236,9 @@ struct Parameter {
     double high = 0.0;
     std::optional<double> also{};  // one further value that is valid
     bool isAngle = false;          // in radians; reduced to one turn
-    int aliasOf = -1;              // the parameter whose numbers it sets, or -1
-    int scaledBy = -1;             // the texture that multiplies it by numbers in [0, 1], or -1
+    package::Role role = package::Role::None;
+    int aliasOf = -1;   // the parameter whose numbers it sets, or -1
+    int scaledBy = -1;  // the texture that multiplies it by numbers in [0, 1], or -1
     // The texture's channel that multiplies each channel of the parameter, which is a vector, if the texture
     // has no other effect on it; -1: not known.
     std::array<int, 4> scaledByChannels{-1, -1, -1, -1};
@@ -286,6 +287,7 @@ struct TextureReads {
 struct MaterialTexture {
     std::string name;  // unique in all declarations: "clearcoatTexture"
     int feature = 0;   // index into MaterialModel::features
+    package::Role role = package::Role::None;
     struct Place {
         int object = 0;
         std::string member;
@@ -346,7 +348,8 @@ struct Feature {
     std::string gltf;       // its place in glTF
     std::string about{};
     Stage stage = Stage::Surface;
-    int object = -1;                    // the extension whose presence asks for it, or -1
+    package::Role role = package::Role::None;  // of the feature itself; not that of its texture
+    int object = -1;                           // the extension whose presence asks for it, or -1
     std::optional<Expression> given{};  // If there is one, it says whether the file asks for the feature.
     std::vector<NeutralReason> neutral{};
     int texture = -1;  // index into MaterialModel::textures: the feature is that this is read
@@ -486,6 +489,10 @@ public:
     int findFeature(std::string_view name) const;
     int findObject(std::string_view name) const;
     int findAttribute(std::string_view name) const;
+    // Each returns the index of the one that has the role, or -1. Parameters and textures that fill it count
+    // as it.
+    int parameterOf(package::Role role) const;
+    int textureOf(package::Role role) const;
     // Makes those of the names so far fast. It is needed again, for all of them, after rows have moved.
     void indexNames();
     void indexAllNames();
@@ -496,6 +503,13 @@ public:
 
     // Returns the feature's bit, or 0 if there is no such feature.
     FeatureMask mask(std::string_view feature) const;
+    // The same for the feature that has the role.
+    FeatureMask mask(package::Role role) const;
+    // The same for the feature that the texture with the role is read.
+    FeatureMask textureMask(package::Role role) const;
+    // Returns the features that decide about the values of the parameter and the texture with the role: those
+    // that read them, and those that give and move the coordinates of the texture.
+    FeatureMask featuresFor(package::Role role) const;
     // Returns the names of the features of `mask`, in the order of bits.
     std::vector<std::string_view> names(FeatureMask mask) const;
     // Returns the base of the model of a pack whose feature this is, as an index into `features`.
@@ -528,8 +542,10 @@ public:
     // Returns "#define GLINT_BASE_COLOR_TEXTURE 0x1u" for every feature that all models share; lobes and
     // inputs are numbered within their own word. For these and for all features of the models of `used`,
     // GLINT_HAS_BASE_COLOR_TEXTURE(features) asks for it, and GLINT_KEY_HAS_BASE_COLOR_TEXTURE(features)
-    // where the code runs for keys that are not the module's own. GLINT_LOBES is the set of shared lobes;
-    // GLINT_UNLIT_LOBES and GLINT_BOTH_SIDES_LOBES are those that take no light and that let light through.
+    // where the code runs for keys that are not the module's own. GLINT_ROLE_VERTEX_COLOR is the bit of the
+    // feature with that role, and GLINT_ROLE_BASE_COLOR_TEXTURE that of the texture with that role.
+    // GLINT_LOBES is the set of shared lobes; GLINT_UNLIT_LOBES and GLINT_BOTH_SIDES_LOBES are those that
+    // take no light and that let light through.
     std::string featureDefines(const FeatureMask& used = kAllFeatures) const;
 
     // Numbers of symbols. The kinds follow each other.

@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace glint::materials {
@@ -67,6 +68,13 @@ private:
 
     // collect_declarations.cpp: the first pass
 
+    // Finds what has each role: Glint's own declarations come before those of packs. Later parameters and
+    // textures of the role fill the first one.
+    void findRoles();
+    void findRole(const Members& members, Place place);
+    static package::Role roleOf(const Members& members);
+    // Returns whether a parameter or a texture fills another one, by its name or by its role.
+    bool fills(const Members& members, Place place) const;
     int addFeature(const Members& members, Feature feature, Light light);
     static void readNeeds(const Members& members, Feature& feature);
     // Refuses a feature that every material would have, and what is for lobes where it is none.
@@ -84,7 +92,8 @@ private:
     static void readRoughness(const Members& members, TextureReads& reads);
     // Parameters and textures that fill those of another base model.
     void collectAliases(const File& file);
-    MaterialTexture& textureNamed(const Members& members, std::string_view member);
+    // Returns the texture that one fills.
+    int filledTexture(const Members& members) const;
 
     // link_declarations.cpp: the bits, between the passes
 
@@ -126,7 +135,8 @@ private:
     std::string scope_;      // File::scope of the file that is read
     std::vector<File> files_;
     std::vector<Pending> pending_;
-    std::map<std::string, std::string> named_;  // where each name is declared
+    std::map<std::string, std::string> named_;                      // where each name is declared
+    std::map<std::pair<package::Role, Place>, std::string> roles_;  // where what has each role is declared
     std::vector<int> indices_;
     std::ptrdiff_t baseBehaviours_ = 0;
 };

@@ -159,8 +159,11 @@ Status checkValues(const MaterialModel& model, int owner, const ModelSource& sou
         if (parameter.feature >= 0 || !parameter.inRecord || model.hasParameter(owner, static_cast<int>(i))) {
             continue;
         }
+        const std::size_t byRole = parameter.role == package::Role::None
+                                       ? std::string::npos
+                                       : source.text.find(roleMacro(parameter.role) + "(");
         const std::size_t found =
-            source.text.find(fmt::format("GLINT_MATERIAL_{}(", fieldMacro(parameter.name)));
+            std::min(byRole, source.text.find(fmt::format("GLINT_MATERIAL_{}(", fieldMacro(parameter.name))));
         if (found != std::string::npos) {
             return makeError("materials-glsl", lineOf(source, found),
                              fmt::format("reads {}, which the records of {} do not have", parameter.name,

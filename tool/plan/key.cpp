@@ -295,7 +295,7 @@ package::AlphaPolicy neededAlphaPolicy(std::span<const materials::Material> mate
     for (const materials::PrimitiveInputs& primitive : primitives) {
         const materials::Material& material = materials[static_cast<std::size_t>(primitive.material)];
         if ((makeKey(material, primitive, {.alpha = package::AlphaPolicy::Stochastic}) &
-             material.model().mask("alphaMask")) != 0) {
+             material.model().mask(package::Role::AlphaTest)) != 0) {
             needed = std::max(needed, material.alphaMode == materials::AlphaMode::Blend
                                           ? package::AlphaPolicy::Stochastic
                                           : package::AlphaPolicy::Tested);

@@ -319,14 +319,9 @@ EmitterFeatures emitterFeatures(const gltf::SceneList& scenes, const Plan& plan,
         masks = {0, plan.primaryAlways | plan.primarySometimes};
         result.coveredByLayers = (masks.back() & covers) != 0;
     }
-    result.read = covers;
-    for (const char* const name :
-         {"emissiveTexture", "emissiveStrength", "texCoord0", "texCoord1", "textureTransform"}) {
-        result.read |= model.mask(name);
-    }
-    if (result.coveredByLayers) {
-        result.read = materials::kAllFeatures;
-    }
+    result.read = result.coveredByLayers ? materials::kAllFeatures
+                                         : covers | model.featuresFor(package::Role::Emission) |
+                                               model.featuresFor(package::Role::EmissionStrength);
     materials::FeatureMask any = 0;
     result.always = masks.empty() ? 0 : result.read;
     for (const materials::FeatureMask& mask : masks) {

@@ -320,8 +320,8 @@ compiler::MaterialLayout recordLayoutOf(const Package& package, const materials:
     }
     for (std::uint32_t i = 0; i < package.sceneCount(); ++i) {
         for (const package::PrimitiveEntry& entry : package.scene(i).primitives) {
-            layout.turnsFrames =
-                layout.turnsFrames || (model.maskOf(entry.key) & model.mask("turnedFrames")) != 0;
+            layout.turnsFrames = layout.turnsFrames ||
+                                 (model.maskOf(entry.key) & model.mask(package::Role::TurnedFrames)) != 0;
         }
     }
     return layout;

@@ -115,6 +115,9 @@ void addTextures(gltf::Scene& scene) {
 
 // --- Materials ---
 
+// The cases are materials of glTF. How its features share shaders, and what that costs, is what these scenes
+// are for, so they name its parameters and textures.
+
 struct CaseMaterial {
     materials::Material material;
     // The attributes of its primitives, besides positions and texture coordinates.
@@ -269,10 +272,9 @@ CaseMaterial makeFloorMaterial(const CaseMaterial& like, Coherence coherence) {
     }
     // 8 bits have no exact middle, so the normal would lean by a quarter of a degree.
     material["normalScale"] = kFaint;
-    const auto normal = static_cast<std::size_t>(material.model().findTexture("normalTexture"));
     for (auto& [slot, info] : material.textures) {
         if (info.texture >= 0) {
-            info.texture = slot == normal ? kFlat : kWhite;
+            info.texture = material.readsOf(static_cast<int>(slot)).isNormals ? kFlat : kWhite;
         }
     }
     return made;

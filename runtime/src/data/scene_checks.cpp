@@ -23,20 +23,20 @@ std::string placeOf(std::uint32_t mesh, std::uint32_t primitive) {
     return "mesh " + std::to_string(mesh) + ", primitive " + std::to_string(primitive);
 }
 
-// An attribute span of a primitive by name, and the key bit that makes it necessary. With 0 it is always or
-// never necessary.
+// An attribute span of a primitive by name, and the role of the feature whose keys need it.
 struct Attribute {
     const char* name;
     std::size_t count;
-    std::uint32_t input;
+    package::Role role;
 };
 
 std::array<Attribute, 5> namedAttributes(const PrimitiveView& view) {
-    return {{{"normals", view.normals.size(), kInputNormals},
-             {"tangents", view.tangents.size(), kInputTangents},
-             {"texCoords0", view.texCoords0.size(), kInputTexCoord0},
-             {"texCoords1", view.texCoords1.size(), kInputTexCoord1},
-             {"colors", view.colors.size(), kInputVertexColor}}};
+    using enum package::Role;
+    return {{{"normals", view.normals.size(), Normals},
+             {"tangents", view.tangents.size(), Tangents},
+             {"texCoords0", view.texCoords0.size(), TexCoord0},
+             {"texCoords1", view.texCoords1.size(), TexCoord1},
+             {"colors", view.colors.size(), VertexColor}}};
 }
 
 Diagnostic wrongCount(const Attribute& attribute, const PrimitiveView& view, const std::string& where) {
@@ -46,13 +46,13 @@ Diagnostic wrongCount(const Attribute& attribute, const PrimitiveView& view, con
                      "leave the span empty or make it as long as positions");
 }
 
-Status checkAttributes(const PrimitiveView& view, const package::PrimitiveEntry& entry,
-                       const std::string& where) {
+Status checkAttributes(const Package& package, const PrimitiveView& view,
+                       const package::PrimitiveEntry& entry, const std::string& where) {
     for (const Attribute& attribute : namedAttributes(view)) {
         if (attribute.count != 0 && attribute.count != view.positions.size()) {
             return wrongCount(attribute, view, where);
         }
-        const bool needed = (entry.key.inputs & attribute.input) != 0;
+        const bool needed = package.state().hasFeature(entry.key, attribute.role);
         if (needed && attribute.count == 0 && !view.positions.empty()) {
             return makeError(
                 "scene-package", where,
@@ -129,7 +129,7 @@ Status checkPrimitives(const Package& package, const PackageScene& known,
         if (entry == nullptr) {
             return makeError("scene-package", where, "the package does not know this primitive", kSameScene);
         }
-        GLINT_TRY_DO(checkAttributes(view, *entry, where));
+        GLINT_TRY_DO(checkAttributes(package, view, *entry, where));
         GLINT_TRY_DO(checkDeclared(package, view, *entry, where));
         GLINT_TRY_DO(checkIndices(view, where));
     }

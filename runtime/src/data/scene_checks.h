@@ -16,14 +16,6 @@
 
 namespace glint {
 
-// Bits of KeyWords::inputs that say which attributes shading reads. They are the high words of
-// the compiler's features of the same names (shaders/materials/attributes). A test compares the two.
-inline constexpr std::uint32_t kInputTexCoord0 = 1U << 6;
-inline constexpr std::uint32_t kInputTexCoord1 = 1U << 7;
-inline constexpr std::uint32_t kInputVertexColor = 1U << 9;
-inline constexpr std::uint32_t kInputNormals = 1U << 10;
-inline constexpr std::uint32_t kInputTangents = 1U << 11;
-
 // The images that a device accepts.
 struct ImageLimits {
     std::uint32_t maxSize = 0;  // texels of an axis

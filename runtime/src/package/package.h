@@ -10,6 +10,7 @@
 #include <glint/result.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -43,12 +44,19 @@ struct Package::State {
     std::span<const package::EmissionEntry> emission;  // empty without emissive lights
     std::span<const package::OpacityEntry> opacity;    // empty where alpha is not tested by Glint's own code
     std::span<const package::FeatureEntry> features;
+    // The feature that has each role; empty for roles of parameters and textures.
+    std::array<package::KeyWords, static_cast<std::size_t>(package::Role::Count)> featureOfRole{};
     std::span<const package::FieldEntry> fields;
     // Keyed by file name. Entries that name the same file share its words.
     std::map<std::string, std::vector<std::uint32_t>, std::less<>> spirv;
     // A hash of each module, by the address of its words. 128 bits, so that two modules never have the same
     // by chance. Made here, because a frame should not wait for it when a package is replaced.
     std::map<const std::uint32_t*, std::array<std::uint64_t, 2>> hashes;
+
+    // Returns whether a key has the feature with that role; false for Role::None.
+    bool hasFeature(const package::KeyWords& key, package::Role role) const {
+        return key.hasAny(featureOfRole[static_cast<std::size_t>(role)]);
+    }
 };
 
 // Returns the shape that the header and the cases describe.

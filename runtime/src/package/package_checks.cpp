@@ -3,8 +3,10 @@
 #include "package/package.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <set>
 #include <tuple>
 
@@ -330,10 +332,21 @@ Status checkAttributes(const Package::State& state, const std::string& where) {
     return okStatus();
 }
 
+// Every role of features is that of one feature.
 Status checkFeatures(const Package::State& state, const std::string& where) {
+    constexpr auto kRoles = static_cast<std::size_t>(package::Role::Count);
+    std::array<std::size_t, kRoles> features{};
     for (const package::FeatureEntry& entry : state.features) {
-        if (!isOneFeature(entry.feature) || !inStrings(state, entry.name)) {
-            return altered(where, "the name of a feature is not well formed");
+        const auto role = static_cast<std::size_t>(entry.role);
+        if (!isOneFeature(entry.feature) || !inStrings(state, entry.name) || role >= kRoles) {
+            return altered(where, "a feature is not well formed");
+        }
+        ++features[role];
+    }
+    for (std::size_t role = 1; role < kRoles; ++role) {
+        const bool isOfFeatures = role >= static_cast<std::size_t>(package::kFirstFeatureRole);
+        if (features[role] != (isOfFeatures ? 1U : 0U)) {
+            return altered(where, "a role of features is not that of one feature");
         }
     }
     return okStatus();
@@ -443,6 +456,11 @@ Status checkTables(Package::State& state, const std::string& where) {
     for (const auto check : {checkHeader, checkCases, checkModules, checkScenes, checkEmission, checkOpacity,
                              checkSamplers, checkAttributes, checkFeatures, checkFields, checkLayers}) {
         GLINT_TRY_DO(check(state, where));
+    }
+    for (const package::FeatureEntry& entry : state.features) {
+        if (entry.role != package::Role::None) {
+            state.featureOfRole[static_cast<std::size_t>(entry.role)] = entry.feature;
+        }
     }
     state.layers = layersOf(state);
     return okStatus();

@@ -302,12 +302,10 @@ Status readTables(Package::State& state, const std::string& where) {
         }
         GLINT_TRY_DO(readKnownSection(state, section, where));
     }
-    // Every package has the sections up to that of the effects, and the fields of records. Names of features
-    // are for messages only.
-    constexpr std::size_t kSectionKinds = 11;
+    // Every package has the sections up to that of the effects, the features and the fields of records.
+    constexpr std::size_t kSectionKinds = 12;
     seen.erase(package::SectionKind::Emission);
     seen.erase(package::SectionKind::Opacity);
-    seen.erase(package::SectionKind::Features);
     seen.erase(package::SectionKind::Layers);
     if (seen.size() != kSectionKinds) {
         return makeError("package-altered", where,

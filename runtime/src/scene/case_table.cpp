@@ -1,6 +1,5 @@
 #include "scene/case_table.h"
 
-#include "data/scene_checks.h"
 #include "interop/scene.h"
 #include "package/package.h"
 
@@ -8,7 +7,6 @@
 
 #include <bit>
 #include <optional>
-#include <string_view>
 #include <tuple>
 #include <utility>
 
@@ -32,9 +30,6 @@ constexpr NamedFlag kNamedFlags[] = {{gpu::kGeometryAlphaTested, "alpha that ray
 package::KeyWords without(const package::KeyWords& features, const package::KeyWords& others) {
     return {features.lobes & ~others.lobes, features.inputs & ~others.inputs};
 }
-
-// The name of the feature of materials whose alpha rays test.
-constexpr std::string_view kAlphaTests = "alphaMask";
 
 bool isEmpty(const package::KeyWords& features) {
     return features == package::KeyWords{};
@@ -65,11 +60,6 @@ CaseTable::CaseTable(std::shared_ptr<const Package> package)
             flags_ |= entry.geometryFlags;
         }
     }
-    for (const package::FeatureEntry& feature : package_->state().features) {
-        if (package_->string(feature.name) == kAlphaTests) {
-            alphaTests_ = feature.feature;
-        }
-    }
     // With a fallback no shader takes a feature for granted that a case does not.
     always_ = fallback_ || shaderOfKey_.empty() ? package::KeyWords{} : always_;
 }
@@ -95,16 +85,19 @@ std::vector<std::uint32_t> CaseTable::shaderIds() const {
 
 Status CaseTable::checkAttributes(const MaterialKey& key, const std::string& where) const {
     constexpr struct {
-        std::uint32_t input;
+        package::Role role;
         AttributeMask attribute;
-    } kReads[] = {{kInputNormals, kAttributeNormals},
-                  {kInputTangents, kAttributeTangents},
-                  {kInputTexCoord0, kAttributeTexCoords0},
-                  {kInputTexCoord1, kAttributeTexCoords1},
-                  {kInputVertexColor, kAttributeColors}};
+    } kReads[] = {{package::Role::Normals, kAttributeNormals},
+                  {package::Role::Tangents, kAttributeTangents},
+                  {package::Role::TexCoord0, kAttributeTexCoords0},
+                  {package::Role::TexCoord1, kAttributeTexCoords1},
+                  {package::Role::VertexColor, kAttributeColors}};
+    const Package::State& state = package_->state();
     package::KeyWords lacking;
-    for (const auto& [input, attribute] : kReads) {
-        lacking.inputs |= (key.attributes & attribute) == 0 ? key.features.inputs & input : 0;
+    for (const auto& [role, attribute] : kReads) {
+        if ((key.attributes & attribute) == 0 && state.hasFeature(key.features, role)) {
+            lacking |= state.featureOfRole[static_cast<std::size_t>(role)];
+        }
     }
     std::uint32_t bit = kDeclaredAttributesShift;
     for (const package::AttributeEntry& row : package_->attributes()) {
@@ -125,10 +118,12 @@ Status CaseTable::checkAttributes(const MaterialKey& key, const std::string& whe
 MaterialKey CaseTable::asked(MaterialKey key) const {
     const bool isBlended = (key.geometryFlags & gpu::kGeometryBlended) != 0;
     const bool ignoresBlended = isBlended && package_->alpha() != package::AlphaPolicy::Stochastic;
+    const package::KeyWords& alphaTest =
+        package_->state().featureOfRole[static_cast<std::size_t>(package::Role::AlphaTest)];
     if (package_->alpha() == package::AlphaPolicy::Opaque || ignoresBlended) {
         for (package::KeyWords* const features : {&key.features, &key.hitFeatures}) {
-            features->lobes &= ~alphaTests_.lobes;
-            features->inputs &= ~alphaTests_.inputs;
+            features->lobes &= ~alphaTest.lobes;
+            features->inputs &= ~alphaTest.inputs;
         }
         // The raster pass tests MASK all the same.
         key.geometryFlags &= ~(gpu::kGeometryAlphaTested | gpu::kGeometryBlended |

@@ -65,8 +65,7 @@ private:
     std::map<std::uint32_t, KnownModel> knownModels_;
     // Shared features of every primitive, which no shader asks for.
     package::KeyWords always_{~0U, ~0U};
-    std::uint32_t flags_ = 0;       // geometry flags of some primitive
-    package::KeyWords alphaTests_;  // the feature of materials whose alpha rays test
+    std::uint32_t flags_ = 0;  // geometry flags of some primitive
 };
 
 }  // namespace glint

@@ -81,15 +81,16 @@ Status checkAttributes(const GpuPrimitive& uploaded, const Package& package,
                        const package::PrimitiveEntry& entry) {
     const bool readsDeclared = std::ranges::any_of(
         package.attributes(), [&](const auto& attribute) { return entry.key.hasAny(attribute.feature); });
+    const auto reads = [&](package::Role role) { return package.state().hasFeature(entry.key, role); };
     const struct {
         const char* name;
         bool needed;
         VkDeviceAddress address;
-    } attributes[] = {{"normals", (entry.key.inputs & kInputNormals) != 0, uploaded.normals},
-                      {"tangents", (entry.key.inputs & kInputTangents) != 0, uploaded.tangents},
-                      {"texCoords0", (entry.key.inputs & kInputTexCoord0) != 0, uploaded.texCoords0},
-                      {"texCoords1", (entry.key.inputs & kInputTexCoord1) != 0, uploaded.texCoords1},
-                      {"colors", (entry.key.inputs & kInputVertexColor) != 0, uploaded.colors},
+    } attributes[] = {{"normals", reads(package::Role::Normals), uploaded.normals},
+                      {"tangents", reads(package::Role::Tangents), uploaded.tangents},
+                      {"texCoords0", reads(package::Role::TexCoord0), uploaded.texCoords0},
+                      {"texCoords1", reads(package::Role::TexCoord1), uploaded.texCoords1},
+                      {"colors", reads(package::Role::VertexColor), uploaded.colors},
                       {"attributes of packs", readsDeclared, uploaded.attributes}};
     for (const auto& [name, needed, address] : attributes) {
         if (needed && address == 0 && uploaded.triangleCount > 0) {

@@ -37,18 +37,20 @@ Diagnostic outOfRange(const std::string& where, const std::string& what, std::si
 struct NamedAddress {
     const char* name;
     decltype(gpu::GeometryRecord::indices) gpu::GeometryRecord::*address;
-    std::uint32_t input;  // the key bit that makes it necessary; 0: it always is
+    package::Role role;  // of the feature whose keys need it; None: all do
 };
-constexpr NamedAddress kAddresses[] = {{"indices", &gpu::GeometryRecord::indices, 0},
-                                       {"positions", &gpu::GeometryRecord::positions, 0},
-                                       {"normals", &gpu::GeometryRecord::normals, kInputNormals},
-                                       {"tangents", &gpu::GeometryRecord::tangents, kInputTangents},
-                                       {"texCoords0", &gpu::GeometryRecord::texCoords0, kInputTexCoord0},
-                                       {"texCoords1", &gpu::GeometryRecord::texCoords1, kInputTexCoord1},
-                                       {"colors", &gpu::GeometryRecord::colors, kInputVertexColor}};
+constexpr NamedAddress kAddresses[] = {
+    {"indices", &gpu::GeometryRecord::indices, package::Role::None},
+    {"positions", &gpu::GeometryRecord::positions, package::Role::None},
+    {"normals", &gpu::GeometryRecord::normals, package::Role::Normals},
+    {"tangents", &gpu::GeometryRecord::tangents, package::Role::Tangents},
+    {"texCoords0", &gpu::GeometryRecord::texCoords0, package::Role::TexCoord0},
+    {"texCoords1", &gpu::GeometryRecord::texCoords1, package::Role::TexCoord1},
+    {"colors", &gpu::GeometryRecord::colors, package::Role::VertexColor}};
 
 // Finds the entry of a geometry, and checks that its record has the addresses that the key reads.
-Result<const package::PrimitiveEntry*> entryOf(const PackageScene& known, std::size_t index,
+Result<const package::PrimitiveEntry*> entryOf(const Package& package, const PackageScene& known,
+                                               std::size_t index,
                                                const EngineScene::State::Primitive& primitive,
                                                const gpu::GeometryRecord& record) {
     const package::PrimitiveEntry* const entry = known.findPrimitive(primitive.mesh, primitive.primitive);
@@ -59,7 +61,8 @@ Result<const package::PrimitiveEntry*> entryOf(const PackageScene& known, std::s
                          "compile the package from the scene that is traced");
     }
     for (const NamedAddress& one : kAddresses) {
-        const bool needed = one.input == 0 || (entry->key.inputs & one.input) != 0;
+        const bool needed =
+            one.role == package::Role::None || package.state().hasFeature(entry->key, one.role);
         if (needed && record.*one.address == 0) {
             return makeError("engine-scene", geometryPlace(index),
                              std::string("the package's key reads ") + one.name + ", whose address is 0",
@@ -290,7 +293,7 @@ Result<PackageContent> makeContent(const Context::State& context, const Package&
     GLINT_TRY_DO(checkDevice(package, context.handles));
     const PackageScene known = package.scene(index);
     for (std::size_t i = 0; i < geometries.size(); ++i) {
-        GLINT_TRY(const auto entry, entryOf(known, i, host.primitives[i], geometries[i]));
+        GLINT_TRY(const auto entry, entryOf(package, known, i, host.primitives[i], geometries[i]));
         takeEntry(*entry, geometries[i]);
         GLINT_TRY_DO(takeMaterial(host, i, geometries[i]));
     }

@@ -40,8 +40,8 @@ struct Walker {
 Features walkFeatures(HostGeometry geometry) {
     return GLINT_FEATURES_OF_GLTF(
         GLINT_ALWAYS_LOBES & kWalkedLobes, GLINT_ALWAYS_INPUTS, GLINT_SOMETIMES_LOBES & kWalkedLobes,
-        (GLINT_SOMETIMES_INPUTS | GLINT_DOUBLE_SIDED) & ~GLINT_ALWAYS_INPUTS, geometry.featureLobes,
-        geometry.featureInputs | GLINT_DOUBLE_SIDED);
+        (GLINT_SOMETIMES_INPUTS | GLINT_ROLE_DOUBLE_SIDED) & ~GLINT_ALWAYS_INPUTS, geometry.featureLobes,
+        geometry.featureInputs | GLINT_ROLE_DOUBLE_SIDED);
 }
 
 float channelOf(vec3 color, uint channel) {

@@ -2,6 +2,7 @@
 #include "materials/declarations.h"
 
 #include "materials/declaration_files.h"
+#include "materials/declaration_members.h"
 #include "plan/plan.h"
 #include "support/must.h"
 
@@ -16,6 +17,7 @@
 #include <regex>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace {
@@ -261,6 +263,68 @@ TEST(Declarations, AliasesHaveNoRangeOfTheirOwn) {
     }
 }
 
+// Glint's own code knows parameters, textures and features by their roles alone.
+TEST(Declarations, RolesFillWhatGlintReads) {
+    const materials::MaterialModel& own = materials::builtinMaterialModel();
+    for (const materials::NamedRole& row : materials::kRoles) {
+        const auto isOf = [&](materials::Place place) { return (row.places & placeBit(place)) != 0; };
+        EXPECT_EQ(own.parameterOf(row.role) >= 0, isOf(materials::Place::Parameter)) << row.name;
+        EXPECT_EQ(own.textureOf(row.role) >= 0, isOf(materials::Place::Texture)) << row.name;
+        EXPECT_EQ(own.mask(row.role) != 0, isOf(materials::Place::Feature)) << row.name;
+    }
+    EXPECT_EQ(own.featuresFor(package::Role::BaseColor), own.mask("baseColorTexture") |
+                                                             own.mask("texCoord0") | own.mask("texCoord1") |
+                                                             own.mask("textureTransform"));
+    EXPECT_EQ(own.featuresFor(package::Role::EmissionStrength), own.mask("emissiveStrength"));
+    const auto wet = [](const std::string& parameter, const std::string& texture) {
+        return R"({"name": "wet", "extension": "EXT_wet", "stage": "base",
+            "replaces": {"object": "pbrMetallicRoughness"},
+            "parameters": [{"name": "shine", "default": [1, 0, 0], )" +
+               parameter + R"(}], "textures": [{"name": "shineTexture", )" + texture + "}]}";
+    };
+    // A role of Glint's is filled as by its name, so a lamp of a model is a lamp as glTF's is.
+    const materials::MaterialModel byRole =
+        must(modelWith(wet(R"("role": "emission")", R"("role": "emission")"), true));
+    const materials::MaterialModel byName =
+        must(modelWith(wet(R"("is": "emissiveFactor")", R"("is": "emissiveTexture")"), true));
+    for (const materials::MaterialModel* model : {&byRole, &byName}) {
+        const int shine = model->findParameter("wetShine");
+        EXPECT_EQ(model->parameters[static_cast<std::size_t>(shine)].aliasOf,
+                  model->parameterOf(package::Role::Emission));
+        EXPECT_EQ(model->parameterOf(package::Role::Emission), own.parameterOf(package::Role::Emission));
+        EXPECT_EQ(model->textures[static_cast<std::size_t>(model->textureOf(package::Role::Emission))]
+                      .places.size(),
+                  2U);
+    }
+    EXPECT_EQ(byRole.featureDefines(), byName.featureDefines());
+    for (const char* const defines :
+         {"#define GLINT_EMISSIVE_TEXTURE 0x10u\n", "#define GLINT_ROLE_EMISSION_TEXTURE 0x10u\n",
+          "#define GLINT_VERTEX_COLOR 0x200u\n", "#define GLINT_ROLE_VERTEX_COLOR 0x200u\n"}) {
+        EXPECT_NE(byRole.featureDefines().find(defines), std::string::npos) << defines;
+    }
+    // What is refused beside a name is refused beside a role, and so are other things with the role.
+    for (const auto& [parameter, texture, message] : {
+             std::tuple(R"("role": "emission", "range": [0, 2])", R"("color": true)",
+                        "#/parameters/0/range: is that of the parameter"),
+             std::tuple(R"("role": "emission", "is": "emissiveFactor")", R"("color": true)",
+                        "#/parameters/0/is: says what the role says"),
+             std::tuple(R"("role": "emission")", R"("role": "alphaCutoff")",
+                        "#/textures/0/role: \"alphaCutoff\" is the role of something else"),
+             std::tuple(R"("role": "emision")", R"("color": true)",
+                        "#/parameters/0/role: there is no \"emision\""),
+             std::tuple(R"("role": "emission")",
+                        R"("role": "emission", "cost": {"instructions": 1, "fetches": 1})",
+                        "#/textures/0/cost: is that of the texture"),
+         }) {
+        EXPECT_NE(refusal(wet(parameter, texture)).find(message), std::string::npos)
+            << refusal(wet(parameter, texture));
+    }
+    EXPECT_NE(refusal(R"({"name": "wet", "stage": "surface", "features": [
+                  {"name": "damp", "gltf": "damp", "role": "normals", "given": "NORMAL"}]})")
+                  .find("#/features/0/role: materials/attributes/attributes.json#/features/1 has the role"),
+              std::string::npos);
+}
+
 // What a parameter may be is told by one texture: with two, a feature was left out that changes something.
 TEST(Declarations, OneTextureScalesAParameter) {
     EXPECT_NE(refusal(R"({"name": "wet", "stage": "surface",
@@ -386,6 +450,56 @@ TEST(Declarations, MacrosOfPacksMeetNoneOfGlints) {
             }
         }
     }
+}
+
+// Code outside of the folders of declarations asks for roles. Excepted are code that reads glTF, code that is
+// about materials of glTF, and shadows through glass, which are glTF's glass.
+TEST(Declarations, NoOtherCodeNamesTheirParametersAndTextures) {
+    constexpr std::string_view kExcepted[] = {"shaders/materials/",
+                                              "shaders/effects/refraction/",
+                                              "shaders/light/candidate.glsl",
+                                              "tool/gltf/document/",
+                                              "shaders/hit/path_sample.glsl",
+                                              "tool/synthetic/",
+                                              "tool/measure/features/combinations.cpp"};
+    std::set<std::string> names;
+    const auto add = [&](const std::string& name, const std::string& constant) {
+        names.insert({"\"" + name + "\"", constant});
+    };
+    const materials::MaterialModel& model = materials::builtinMaterialModel();
+    for (const materials::Parameter& parameter : model.parameters) {
+        add(parameter.name, "_" + materials::fieldMacro(parameter.name) + "(");
+    }
+    for (const materials::DerivedField& field : model.derived) {
+        add(field.name, "_" + materials::fieldMacro(field.name) + "(");
+    }
+    for (const materials::MaterialTexture& texture : model.textures) {
+        add(texture.name, "k" + materials::capitalized(texture.name));
+    }
+    int sources = 0;
+    const std::regex word(R"("[A-Za-z0-9]+"|\bk[A-Z]\w*|GLINT_(RECORD|MATERIAL)(_[A-Z0-9_]+\())");
+    for (const char* const folder : {"runtime", "shaders", "templates", "tool", "verify"}) {
+        for (const auto& entry :
+             std::filesystem::recursive_directory_iterator(std::string(GLINT_SOURCE_DIR "/") + folder)) {
+            const std::string path =
+                std::filesystem::relative(entry.path(), GLINT_SOURCE_DIR).generic_string();
+            if (!entry.is_regular_file() || entry.path().extension() == ".json" ||
+                std::ranges::any_of(kExcepted, [&](std::string_view one) { return path.starts_with(one); })) {
+                continue;
+            }
+            ++sources;
+            std::ifstream stream(entry.path());
+            for (std::string line; std::getline(stream, line);) {
+                const std::string code = line.substr(0, line.find("//"));
+                for (std::sregex_iterator found(code.begin(), code.end(), word);
+                     found != std::sregex_iterator(); ++found) {
+                    const std::string name = (*found)[2].matched ? (*found)[2].str() : (*found)[0].str();
+                    EXPECT_FALSE(names.contains(name)) << path << " names " << (*found)[0];
+                }
+            }
+        }
+    }
+    EXPECT_GT(sources, 500);
 }
 
 TEST(Declarations, FeaturesOfPacksCostSomething) {

@@ -37,7 +37,7 @@ public:
         for (const Parameter& one : model.parameters) {
             add(one.name, one.declared, one.object, one.place, one.typeText(), one.unit, one.about,
                 one.fallback, one.low, one.high, one.also.value_or(-99.0), one.isAngle, one.aliasOf,
-                one.scaledBy, one.scaledByChannels, one.feature, one.inRecord);
+                one.scaledBy, one.scaledByChannels, one.feature, one.inRecord, static_cast<int>(one.role));
         }
         for (const DerivedField& one : model.derived) {
             add(one.name, one.type->name, one.unit, one.about, one.feature, one.channels.size());
@@ -46,7 +46,7 @@ public:
             }
         }
         for (const MaterialTexture& one : model.textures) {
-            add(one.name, one.feature);
+            add(one.name, one.feature, static_cast<int>(one.role));
             for (const MaterialTexture::Place& place : one.places) {
                 add(place.object, place.member, place.isColor, place.reads.channels, place.reads.isNormals,
                     place.reads.roughness, place.reads.glossiness);
@@ -72,9 +72,9 @@ public:
         }
         for (const Feature& one : model.features) {
             add(one.name, one.shortName, one.bit, one.gltf, one.about, static_cast<int>(one.stage),
-                one.object, one.given.has_value(), one.neutralText(), one.texture, one.lobe,
-                one.needsTangents, one.needsTexCoord, one.hasOwnCoordinates, one.isOfBase, one.isInDraft,
-                one.cost.instructions, one.cost.fetches);
+                static_cast<int>(one.role), one.object, one.given.has_value(), one.neutralText(), one.texture,
+                one.lobe, one.needsTangents, one.needsTexCoord, one.hasOwnCoordinates, one.isOfBase,
+                one.isInDraft, one.cost.instructions, one.cost.fetches);
             for (const NeutralReason& reason : one.neutral) {
                 add(reason.when.symbols(), reason.onlyWith, reason.onlyWithout);
             }
@@ -143,6 +143,11 @@ constexpr const char* kObject = R"({"name": "amber", "stage": "layer", "object":
     {"when": "doubleSided", "because": "it is thin"}]})";
 constexpr const char* kModel = R"({"name": "amber", "extension": "EXT_wet", "stage": "base",
     "replaces": {"object": "pbrMetallicRoughness"}, "glsl": {"bsdf": "wet.glsl", "model": "wet.glsl"}})";
+constexpr const char* kRoles = R"({"name": "amber", "extension": "EXT_wet", "stage": "base",
+    "replaces": {"object": "pbrMetallicRoughness"},
+    "parameters": [{"name": "cut", "role": "alphaCutoff", "default": 0.5}],
+    "textures": [{"name": "wetTexture", "role": "emission"}],
+    "glsl": {"bsdf": "wet.glsl", "model": "wet.glsl"}})";
 constexpr const char* kBsdf = R"({"name": "amber", "extension": "EXT_wet", "stage": "surface",
     "parameters": [{"name": "tint", "type": "vec3", "default": [1, 1, 1]}], "glsl": {"bsdf": "wet.glsl"}})";
 constexpr Case kCases[] = {
@@ -160,6 +165,8 @@ constexpr Case kCases[] = {
     {Place::Parameter, "/parameters/0", kBsdf},
     {Place::Texture, "/textures/0", kFeature},
     {Place::Texture, "/textures/1", kFeature},
+    {Place::Parameter, "/parameters/0", kRoles},
+    {Place::Texture, "/textures/0", kRoles},
     {Place::Attribute, "/attributes/0", kFeature},
     {Place::Derived, "/derived/0", kFeature},
     {Place::Feature, "/features/0", kFeature},
@@ -228,6 +235,7 @@ const std::map<std::string_view, std::vector<const char*>> kValues{
     {"unit", {R"("metres")"}},
     {"record", {"false"}},
     {"of", {R"("clearcoat")"}},
+    {"role", {R"("emissionStrength")", R"("baseColor")", R"("alphaTest")"}},
     {"is", {R"("metallicFactor")", R"("normalTexture")"}},
     {"value", {R"("3 * ior")"}},
     {"color", {"true"}},
@@ -284,6 +292,8 @@ TEST(DeclarationMembers, ChangeTheModelOrAreRefusedWhereverTheyStand) {
             }
         }
     }
+    // Glint's own features have every role of features.
+    EXPECT_EQ(listed.erase({"role", Place::Feature}), 1U);
     for (const auto& [member, place] : listed) {
         EXPECT_TRUE(accepted.contains({member, place})) << member << " at " << static_cast<int>(place);
     }

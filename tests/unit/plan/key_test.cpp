@@ -51,8 +51,8 @@ TEST(Key, HasEveryFeatureThatMatters) {
     const materials::FeatureMask key = compiler::makeKey(fullMaterial(), fullPrimitive(), kTested, &dropped);
     for (const materials::Feature& info : materials::builtinMaterialModel().features) {
         const bool excluded = info.name == "unlit" || info.name == "specularGlossiness" ||
-                              info.name == "clearcoatSharesNormal" || info.name == "turnedFrames" ||
-                              info.name == "modelEmission";
+                              info.name == "clearcoatSharesNormal" ||
+                              info.role == package::Role::TurnedFrames || info.role == package::Role::Emits;
         EXPECT_EQ((key & info.mask()) != 0, !excluded) << info.name;
     }
     EXPECT_TRUE(dropped.empty());

@@ -358,8 +358,8 @@ TEST_F(UploadTest, WideTexturesAreNarrowedOnlyWhereTheDeviceDemands) {
 TEST_F(UploadTest, BrokenScenesAreErrors) {
     test::PackageSpec spec = test::makeDeviceSpec();
     spec.textures = {{0, 1}};
-    spec.cases[0].always = 1ULL << 42;  // normals
-    spec.primitives[0].key.inputs = 1U << 10;
+    spec.primitives[0].key.inputs = test::inputOf(package::Role::Normals);
+    spec.cases[0].always = std::uint64_t{spec.primitives[0].key.inputs} << 32U;
     const Package package = load(spec);
     const TestScene::Mesh square = test::makeSquare(0, 0);
     const std::vector<std::array<float, 3>> normals(4, {0, 0, 1});

@@ -77,6 +77,10 @@ PackageSpec makeWithModules(const auto& wordsOf) {
     for (const package::EffectInfo& effect : kEffects) {
         spec.effects.push_back({{}, effect.effect, effect.kind, effect.abilities, 0});
     }
+    for (auto role = static_cast<std::uint32_t>(package::kFirstFeatureRole);
+         role < static_cast<std::uint32_t>(package::Role::Count); ++role) {
+        spec.features.push_back({{0, inputOf(package::Role{role})}, {}, package::Role{role}});
+    }
     spec.cases = {{0, 0, "Plain"}};
     spec.materials.resize(1);
     spec.primitives = {makePrimitive(0, 0)};
@@ -206,6 +210,10 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     for (package::FieldEntry& field : fields) {
         field.name = addString(strings, "field " + std::to_string(field.offset));
     }
+    std::vector<package::FeatureEntry> features = spec.features;
+    for (package::FeatureEntry& feature : features) {
+        feature.name = addString(strings, "feature " + std::to_string(static_cast<int>(feature.role)));
+    }
     Writer writer;
     writer.add(package::SectionKind::Modules, modules);
     writer.add(package::SectionKind::Scenes, scenes);
@@ -217,6 +225,7 @@ std::vector<std::uint8_t> serialize(const PackageSpec& spec) {
     writer.add(package::SectionKind::Cases, cases);
     writer.add(package::SectionKind::Attributes, spec.attributes);
     writer.add(package::SectionKind::Effects, effects);
+    writer.add(package::SectionKind::Features, features);
     writer.add(package::SectionKind::Fields, fields);
 
     package::PackageHeader header{};

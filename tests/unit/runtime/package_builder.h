@@ -51,6 +51,11 @@ inline TestMaterial materialAt(const MaterialTable& table, std::size_t index) {
     return material;
 }
 
+// The bit of KeyWords::inputs that the feature with a role has in these packages.
+constexpr std::uint32_t inputOf(package::Role role) {
+    return 1U << static_cast<std::uint32_t>(role);
+}
+
 // Tests may break every member on purpose; serialize() writes what it finds.
 struct PackageSpec {
     std::uint32_t version = package::kVersion;
@@ -67,8 +72,9 @@ struct PackageSpec {
     std::vector<package::TextureEntry> textures;
     std::vector<package::SamplerEntry> samplers;
     std::vector<package::AttributeEntry> attributes;
-    std::vector<package::EffectEntry> effects;  // their names are the builder's
-    std::vector<package::FieldEntry> fields;    // the same
+    std::vector<package::EffectEntry> effects;    // their names are the builder's
+    std::vector<package::FeatureEntry> features;  // the same
+    std::vector<package::FieldEntry> fields;      // the same
     std::vector<CaseSpec> cases;
     std::vector<SceneSpec> scenes;  // empty: one, named "scene", that has all elements
 };

@@ -346,6 +346,14 @@ TEST_F(PackageTest, BrokenPromisesAreErrors) {
         {"field beyond the record", [](PackageSpec& s) { s.fields[1].offset = sizeof(test::TestMaterial); }},
         {"fields in each other", [](PackageSpec& s) { s.fields[1].offset = 0; }},
         {"empty field", [](PackageSpec& s) { s.fields[0].bytes = 0; }},
+        {"feature without a bit", [](PackageSpec& s) { s.features[0].feature = {}; }},
+        {"role that no feature has", [](PackageSpec& s) { s.features.pop_back(); }},
+        {"role of two features", [](PackageSpec& s) { s.features[0].role = s.features[1].role; }},
+        {"role of parameters",
+         [](PackageSpec& s) {
+             s.features.push_back({{1}, {}, package::Role::Emission});
+         }},
+        {"unknown role of a feature", [](PackageSpec& s) { s.features[0].role = package::Role{99}; }},
         {"case count", [](PackageSpec& s) { s.caseCount = 0; }},
         {"case features",
          [](PackageSpec& s) {

@@ -101,15 +101,6 @@ TEST(SceneMaterialTest, TakesValuesAndKeepsTextures) {
     }
 }
 
-// The runtime knows these bits of a key, because it fills the geometry records.
-TEST(FeatureBits, AreThoseOfTheDeclarations) {
-    EXPECT_EQ(kInputTexCoord0, bit("texCoord0").shared() >> 32U);
-    EXPECT_EQ(kInputTexCoord1, bit("texCoord1").shared() >> 32U);
-    EXPECT_EQ(kInputVertexColor, bit("vertexColor").shared() >> 32U);
-    EXPECT_EQ(kInputNormals, bit("normals").shared() >> 32U);
-    EXPECT_EQ(kInputTangents, bit("tangents").shared() >> 32U);
-}
-
 double dot(const gpu::vec4& row, const std::array<double, 3>& p) {
     return row.x * p[0] + row.y * p[1] + row.z * p[2] + row.w;
 }

@@ -136,7 +136,7 @@ std::vector<AttributeEntry> makeAttributes(const Plan& plan, StringTable& string
 std::vector<FeatureEntry> makeFeatures(const materials::MaterialModel& model, StringTable& strings) {
     std::vector<FeatureEntry> entries;
     for (const materials::Feature& feature : model.features) {
-        entries.push_back({model.words(feature.mask()), strings.add(feature.name)});
+        entries.push_back({model.words(feature.mask()), strings.add(feature.name), feature.role});
     }
     return entries;
 }
@@ -174,21 +174,25 @@ std::vector<FieldEntry> makeFields(const MaterialLayout& layout, StringTable& st
     return entries;
 }
 
+// The bit in KeyWords::inputs of the feature with a role.
+std::uint32_t inputOf(const materials::MaterialModel& model, Role role) {
+    return model.words(model.mask(role)).inputs;
+}
+
 EmissionEntry emissionOf(const MaterialLayout& layout, const EmitterFeatures& features) {
     const materials::MaterialModel& model = *layout.model;
-    const auto offsetOf = [&](std::string_view name) {
-        const auto field = std::ranges::find(layout.fields, name, &RecordField::name);
-        return field == layout.fields.end() ? EmissionEntry::kNone : field->offset;
+    const auto offsetOf = [&](Role role) {
+        const RecordField* const field = layout.fieldOf(role);
+        return field == nullptr ? EmissionEntry::kNone : field->offset;
     };
-    const int slot = layout.slotOf(model.findTexture("emissiveTexture"));
-    const auto inputOf = [&](std::string_view name) { return model.words(model.mask(name)).inputs; };
+    const int slot = layout.slotOf(model.textureOf(Role::Emission));
     const auto [always, sometimes] = model.caseWords(features.always, features.sometimes);
-    return {offsetOf("emissiveFactor"),
-            offsetOf("emissiveStrength"),
+    return {offsetOf(Role::Emission),
+            offsetOf(Role::EmissionStrength),
             slot < 0 ? EmissionEntry::kNone : static_cast<std::uint32_t>(slot),
-            inputOf("emissiveTexture"),
-            inputOf("texCoord0"),
-            inputOf("texCoord1"),
+            model.words(model.textureMask(Role::Emission)).inputs,
+            inputOf(model, Role::TexCoord0),
+            inputOf(model, Role::TexCoord1),
             model.words(features.read),
             always,
             sometimes};
@@ -197,22 +201,21 @@ EmissionEntry emissionOf(const MaterialLayout& layout, const EmitterFeatures& fe
 // Returns nothing if records lack what an alpha test reads: no material is tested.
 std::optional<OpacityEntry> opacityOf(const MaterialLayout& layout) {
     const materials::MaterialModel& model = *layout.model;
-    const auto factor = std::ranges::find(layout.fields, "baseColorFactor", &RecordField::name);
-    const auto cutoff = std::ranges::find(layout.fields, "alphaCutoff", &RecordField::name);
-    if (factor == layout.fields.end() || cutoff == layout.fields.end()) {
+    const RecordField* const color = layout.fieldOf(Role::BaseColor);
+    const RecordField* const cutoff = layout.fieldOf(Role::AlphaCutoff);
+    if (color == nullptr || cutoff == nullptr) {
         return std::nullopt;
     }
-    const int slot = layout.slotOf(model.findTexture("baseColorTexture"));
-    const auto inputOf = [&](std::string_view name) { return model.words(model.mask(name)).inputs; };
+    const int slot = layout.slotOf(model.textureOf(Role::BaseColor));
     constexpr std::uint32_t kAlpha = 3 * sizeof(float);  // after red, green and blue
-    return OpacityEntry{factor->offset + kAlpha,
+    return OpacityEntry{color->offset + kAlpha,
                         cutoff->offset,
                         slot < 0 ? OpacityEntry::kNone : static_cast<std::uint32_t>(slot),
-                        inputOf("baseColorTexture"),
-                        inputOf("texCoord0"),
-                        inputOf("texCoord1"),
-                        inputOf("textureTransform"),
-                        inputOf("vertexColor"),
+                        model.words(model.textureMask(Role::BaseColor)).inputs,
+                        inputOf(model, Role::TexCoord0),
+                        inputOf(model, Role::TexCoord1),
+                        inputOf(model, Role::TextureTransform),
+                        inputOf(model, Role::VertexColor),
                         model.words(maskCodeFeatures(model).shared())};
 }
 
@@ -270,7 +273,8 @@ SamplerEntry samplerEntry(const gltf::Sampler& sampler) {
 
 std::uint32_t geometryFlags(const materials::Material& material, const materials::PrimitiveInputs& inputs,
                             materials::FeatureMask hitKey, AlphaPolicy alpha, ShadowThrough through) {
-    const bool tested = alpha != AlphaPolicy::Opaque && (hitKey & material.model().mask("alphaMask")) != 0;
+    const bool tested =
+        alpha != AlphaPolicy::Opaque && (hitKey & material.model().mask(Role::AlphaTest)) != 0;
     const bool blended = tested && material.alphaMode == materials::AlphaMode::Blend;
     const bool passes = through == ShadowThrough::Glass && (blended || passesLight(material, inputs));
     return (tested ? gpu::kGeometryAlphaTested : 0U) | (passes ? gpu::kGeometryPassesLight : 0U) |

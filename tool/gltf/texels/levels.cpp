@@ -255,7 +255,7 @@ std::vector<ImageUse> imageUses(const Scene& scene) {
     // Channels that some texture reads as no roughness, and as no glossiness.
     std::vector<std::array<std::uint32_t, 2>> others(scene.images.size());
     for (const materials::Material& material : scene.materials) {
-        const int emission = material.model().findTexture("emissiveTexture");
+        const int emission = material.model().textureOf(package::Role::Emission);
         for (const auto& [slot, info] : material.textures) {
             if (info.texture < 0) {
                 continue;

@@ -119,12 +119,16 @@ Ingredients ingredientsOf(const materials::MaterialModel& model, const materials
     return found;
 }
 
+// The bases that layers of packs lie over, and Glint's own that is checked beside models, are glTF's.
+constexpr const char* kBaseDeclaration = "metallicRoughness";
+constexpr const char* kMetallic = "metallicFactor";
+constexpr const char* kRoughness = "roughnessFactor";
+
 materials::Material baseMaterial(const materials::MaterialModel& model, int number) {
     const CheckedBase& base = kCheckedBases[number];
     materials::Material material(model);
-    material["baseColorFactor"] = {1.0F, 1.0F, 1.0F, 1.0F};
-    material["metallicFactor"] = base.metallic;
-    material["roughnessFactor"] = base.roughness;
+    material[kMetallic] = base.metallic;
+    material[kRoughness] = base.roughness;
     return material;
 }
 
@@ -284,9 +288,9 @@ std::vector<CheckedMaterial> addBases(const materials::MaterialModel& model,
          std::span(kShapes).first(std::min<std::size_t>(most, kShapes.size()))) {
         const bool isRich = made.size() % 3 == 1;
         Combined combined = combine(model, code, {}, {}, 0, false, isRich);
-        combined.material["metallicFactor"] = metallic;
-        combined.material["roughnessFactor"] = roughness;
-        combined.place.parameters = {{"metallicFactor", {metallic}}, {"roughnessFactor", {roughness}}};
+        combined.material[kMetallic] = metallic;
+        combined.material[kRoughness] = roughness;
+        combined.place.parameters = {{kMetallic, {metallic}}, {kRoughness, {roughness}}};
         made.push_back({addSquare(scene, combined.material, isRich), 0, isRich, std::move(combined.place)});
     }
     return made;
@@ -337,7 +341,7 @@ Result<CheckedScene> makeCheckedScene(const materials::MaterialModel& model, std
         material.doubleSided = true;  // It is also seen from behind.
         made.bases.push_back(addSquare(made.scene, material));
     }
-    const auto base = std::ranges::find(model.code, "metallicRoughness", &materials::FeatureCode::name);
+    const auto base = std::ranges::find(model.code, kBaseDeclaration, &materials::FeatureCode::name);
     if (base != model.code.end()) {
         made.features.push_back({&*base, addBases(model, *base, combinations, made.scene)});
     }

@@ -80,7 +80,7 @@ constexpr void forEachEffect(std::uint32_t effects, const Visit& visit) {
 // --- The file ---
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 26;
+inline constexpr std::uint32_t kVersion = 27;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -254,10 +254,36 @@ struct OpacityEntry {
     KeyWords code;
 };
 
-// The name of a feature of materials, for messages about keys.
+// What Glint itself has to know a parameter, a texture or a feature of materials for. Declarations say it by
+// the words of kRoles in tool/materials.
+enum class Role : std::uint32_t {
+    None,
+    // Parameters and textures.
+    BaseColor,
+    AlphaCutoff,
+    Emission,
+    EmissionStrength,
+    TangentFrame,
+    // Features.
+    AlphaTest,
+    Emits,
+    Normals,
+    Tangents,
+    TexCoord0,
+    TexCoord1,
+    TextureTransform,
+    TurnedFrames,
+    VertexColor,
+    DoubleSided,
+    Count
+};
+inline constexpr Role kFirstFeatureRole = Role::AlphaTest;
+
+// The name of a feature of materials, for messages about keys, and its role.
 struct FeatureEntry {
     KeyWords feature;  // one bit, or a model alone
     StringRef name;    // in the manifest: "baseColorTexture"
+    Role role;         // None, or a role of features, which no other feature has
 };
 
 // A field of the records of a model's materials, or one of their textures, by which values find their place
@@ -283,7 +309,7 @@ static_assert(sizeof(SamplerEntry) == 24);
 static_assert(sizeof(AttributeEntry) == 60);
 static_assert(sizeof(EffectEntry) == 24);
 static_assert(sizeof(EmissionEntry) == 108);
-static_assert(sizeof(FeatureEntry) == 36);
+static_assert(sizeof(FeatureEntry) == 40);
 static_assert(sizeof(FieldEntry) == 24);
 static_assert(sizeof(OpacityEntry) == 60);
 
