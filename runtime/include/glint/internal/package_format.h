@@ -80,7 +80,7 @@ constexpr void forEachEffect(std::uint32_t effects, const Visit& visit) {
 // --- The file ---
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 26;
+inline constexpr std::uint32_t kVersion = 27;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -269,7 +269,9 @@ struct FieldEntry {
     // The model whose records have it, as in keys; 0: glTF's bases. Several models have it by an entry each.
     // Fields of different models share their places.
     std::uint32_t model;
-    std::uint32_t type;  // a hash of the type and of an enum's names: other values have another meaning
+    // A hash of the type and of an enum's names: other values have another meaning. Of a texture: its
+    // TextureDimension.
+    std::uint32_t type;
 };
 
 static_assert(sizeof(PackageHeader) == 160);
