@@ -69,14 +69,15 @@ Status readTexture(const ObjectSource& object, std::string_view member, TextureT
         slots[slot].texCoord = read.texCoord;  // planning says why there is no texture
         return okStatus();
     }
-    GLINT_TRY(const auto texture, textures.use((*json)["index"].get<int>()));
-    if (texture >= 0 && dimension != package::TextureDimension::Flat && !textures.isAtRunTime(texture)) {
+    const int given = (*json)["index"].get<int>();
+    if (dimension != package::TextureDimension::Flat && !textures.isAtRunTime(given)) {
         return object.document.error(
             "texture-dimension", object.pointerTo(member),
             fmt::format("the texture is declared as {}, and Glint reads 2D images of files alone",
                         namesOf(dimension)[static_cast<std::size_t>(dimension)].what),
             "let the program give it at run time: in a list of materials, leave its file out");
     }
+    GLINT_TRY(const auto texture, textures.use(given));
     if (texture >= 0) {
         read.texture = texture;
         slots[slot] = read;

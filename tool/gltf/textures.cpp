@@ -327,8 +327,8 @@ Result<int> TextureTable::use(int texture) {
 }
 
 bool TextureTable::isAtRunTime(int texture) const {
-    const int image = scene_.textures[static_cast<std::size_t>(texture)].image;
-    return scene_.images[static_cast<std::size_t>(image)].isAtRunTime;
+    const int image = document_.model().textures[static_cast<std::size_t>(texture)].source;
+    return image >= 0 && find(imageJson(document_, image), kAtRunTime) != nullptr;
 }
 
 // Returns the image of the file that the texture shows, or -1 with a warning if it has none in a format that

@@ -25,7 +25,7 @@ public:
     // "texture-basisu" if this build does not decode KTX2, and the texture has no fallback or the file
     // requires the extension.
     Result<int> use(int texture);
-    // Returns whether the program gives the texels of a texture that use() has returned.
+    // Returns whether the program gives the texels of the file's texture.
     bool isAtRunTime(int texture) const;
 
 private:
