@@ -699,6 +699,26 @@ TEST(EngineSceneContent, MaterialsHaveTexturesOfAllDimensionsAndBuffers) {
     const Diagnostic refused = mustFail(GpuScene::upload(sharedContext(), *package, data.view()));
     EXPECT_EQ(refused.id, "texture-dimension");
     EXPECT_EQ(refused.message, "the texture is 2D, and the package's shaders read a cube");
+    // Neither can an edit make it anything else.
+    const auto edited = uploadScene(*package, scene, [&](SceneView& edits) {
+        edits.images = images;
+        edits.editable = true;
+    });
+    SceneEditor& editor = *edited->editor();
+    const PackageScene known = package->scene(0);
+    const std::uint32_t slot = (fields.find("probeScene", fields.modelOf(0))->offset -
+                                static_cast<std::uint32_t>(placeOfTexture(known.materials, 0, 0))) /
+                               static_cast<std::uint32_t>(sizeof(gpu::TextureRecord));
+    const TextureHandle cube = editor.texture(textureAt(known.materials, 0, slot).textureIndex);
+    EXPECT_EQ(mustFail(editor.replaceTexture(cube, {1, 1, kWhiteTexel})).id, "texture-dimension");
+    const TextureHandle white = must(editor.addTexture({1, 1, kWhiteTexel}, false));
+    const MaterialKey key{kAttributeNormals | kAttributeTexCoords0, known.primitives[0].key,
+                          known.primitives[0].key};
+    for (const TextureHandle texture : {cube, white}) {
+        const TextureUse use{slot, texture};
+        const auto added = editor.addMaterial({known.materials.part(0, 1).bytes, {&key, 1}, {&use, 1}});
+        EXPECT_EQ(added ? "" : added.error().id, texture == cube ? "" : "texture-dimension");
+    }
 }
 
 TEST(RayStepsReplacement, BatchesUseTheNewPackageAtOnce) {
