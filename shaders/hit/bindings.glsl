@@ -1,5 +1,6 @@
 // The resources of every pass: descriptor sets, push constants, extensions.
 #extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_EXT_nonuniform_qualifier : require
 
@@ -26,4 +27,14 @@ bool isHostsList() {
 layout(constant_id = 1) const bool kCountsLight = false;
 
 layout(set = GLINT_BINDING_SCENE_SET, binding = GLINT_BINDING_TEXTURES) uniform texture2D sceneTextures[];
+// The same descriptors, of which each has the view that the declaration of its texture names.
+#if GLINT_ARRAY_TEXTURES
+layout(set = GLINT_BINDING_SCENE_SET, binding = GLINT_BINDING_TEXTURES) uniform texture2DArray sceneArrays[];
+#endif
+#if GLINT_CUBE_TEXTURES
+layout(set = GLINT_BINDING_SCENE_SET, binding = GLINT_BINDING_TEXTURES) uniform textureCube sceneCubes[];
+#endif
+#if GLINT_VOLUME_TEXTURES
+layout(set = GLINT_BINDING_SCENE_SET, binding = GLINT_BINDING_TEXTURES) uniform texture3D sceneVolumes[];
+#endif
 layout(set = GLINT_BINDING_SCENE_SET, binding = GLINT_BINDING_SAMPLERS) uniform sampler sceneSamplers[];

@@ -29,9 +29,10 @@ void noteTextureLevel(TextureRecord record, float level) {
 #define GLINT_NOTE_LEVEL(record, level)
 #endif
 
-#define GLINT_SAMPLER(record)                                      \
-    sampler2D(sceneTextures[nonuniformEXT((record).textureIndex)], \
-              sceneSamplers[nonuniformEXT((record).samplerIndex)])
+#define GLINT_SAMPLER_OF(type, textures, record)              \
+    type(textures[nonuniformEXT((record).textureIndex)], \
+         sceneSamplers[nonuniformEXT((record).samplerIndex)])
+#define GLINT_SAMPLER(record) GLINT_SAMPLER_OF(sampler2D, sceneTextures, record)
 
 // `gradients` are (du, dv) along one axis of the footprint, then along the other. They are 0 for the finest level.
 vec4 hostTexture(TextureRecord record, vec2 uv, vec4 gradients) {
@@ -49,6 +50,32 @@ vec4 hostFinestTexture(TextureRecord record, vec2 uv) {
 vec3 hostTextureFilter(TextureRecord record) {
     return vec3(record.texels, record.anisotropy);
 }
+
+// Textures of other dimensions, which packs declare.
+#if GLINT_ARRAY_TEXTURES
+// Layers are rounded to the nearest that there is.
+vec4 hostArrayTexture(TextureRecord record, vec3 uvAndLayer, vec4 gradients) {
+    GLINT_NOTE_LEVEL(record, gradientLevel(record, gradients));
+    return textureGrad(GLINT_SAMPLER_OF(sampler2DArray, sceneArrays, record), uvAndLayer, gradients.xy, gradients.zw);
+}
+
+vec4 hostArrayTextureLevel(TextureRecord record, vec3 uvAndLayer, float level) {
+    GLINT_NOTE_LEVEL(record, level);
+    return textureLod(GLINT_SAMPLER_OF(sampler2DArray, sceneArrays, record), uvAndLayer, level);
+}
+#endif
+#if GLINT_CUBE_TEXTURES
+vec4 hostCubeTexture(TextureRecord record, vec3 direction, float level) {
+    GLINT_NOTE_LEVEL(record, level);
+    return textureLod(GLINT_SAMPLER_OF(samplerCube, sceneCubes, record), direction, level);
+}
+#endif
+#if GLINT_VOLUME_TEXTURES
+vec4 hostVolumeTexture(TextureRecord record, vec3 place, float level) {
+    GLINT_NOTE_LEVEL(record, level);
+    return textureLod(GLINT_SAMPLER_OF(sampler3D, sceneVolumes, record), place, level);
+}
+#endif
 
 #ifdef GLINT_RASTER
 // For fragment shaders: uses the level that the derivatives of the screen choose, plus `bias`. The record is the same

@@ -57,6 +57,15 @@ float glintHostTime();
 vec4 glintHostTexture(const uint textureIndex, const uint samplerIndex, const vec2 uv, const vec2 gradientX,
                       const vec2 gradientY);
 
+// The same for textures that packs declare with another dimension: arrays, cubes and 3D textures, by gradients or by a
+// level.
+vec4 glintHostArrayTexture(const uint textureIndex, const uint samplerIndex, const vec3 uvAndLayer,
+                           const vec2 gradientX, const vec2 gradientY);
+vec4 glintHostArrayTextureLevel(const uint textureIndex, const uint samplerIndex, const vec3 uvAndLayer,
+                                const float level);
+vec4 glintHostCubeTexture(const uint textureIndex, const uint samplerIndex, const vec3 direction, const float level);
+vec4 glintHostVolumeTexture(const uint textureIndex, const uint samplerIndex, const vec3 place, const float level);
+
 // The size of a texture's finest level in texels, and the most anisotropy that the sampler covers (1 for none).
 vec3 glintHostTextureFilter(const uint textureIndex, const uint samplerIndex);
 

@@ -2,7 +2,11 @@
 // package.
 #include "steps/engine_scene.h"
 
+#include "base/files.h"
 #include "context/commands.h"
+#include "data/materials.h"
+#include "gltf/material_set.h"
+#include "materials/declarations.h"
 #include "package/package.h"
 #include "render/edited_scene.h"
 #include "render/harness.h"
@@ -10,6 +14,7 @@
 #include "render/scene_builder.h"
 #include "scene/scene_store.h"
 #include "support/must.h"
+#include "support/temporary_folder.h"
 
 #include <glint/session/scene_view.h>
 #include <glint/steps.h>
@@ -17,6 +22,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -530,6 +536,188 @@ TEST(EngineSceneContent, TrianglesHaveMaterialsOfTheirOwn) {
         }
         EXPECT_GT(kept[0], 0U);
         EXPECT_GT(kept[1], 0U);
+    }
+}
+
+// A model that emits what it reads of textures of each dimension and of a buffer.
+constexpr const char* kProbe = R"json({
+    "name": "probe", "extension": "EXT_probe", "stage": "base",
+    "glsl": {"bsdf": "probe_surface.glsl", "model": "probe.glsl", "emission": "probe_surface.glsl",
+             "after": ["emission"]},
+    "replaces": {"object": "pbrMetallicRoughness"},
+    "parameters": [{"name": "table", "type": "address"},
+                   {"name": "color", "is": "baseColorFactor", "default": [1, 1, 1, 1]}],
+    "textures": [{"name": "flat"}, {"name": "fog", "dimension": "3d"}, {"name": "pages", "dimension": "2d-array"},
+                 {"name": "scene", "dimension": "cube"}],
+    "effects": [{"does": "emits", "when": "doubleSided or not doubleSided"}]
+})json";
+constexpr const char* kProbeModel = R"(#include "bsdf/model.glsl"
+struct Probe {
+    float none;
+};
+void probePrepare(inout Probe model, vec3 view) {}
+vec3 probeEvaluate(Probe model, vec3 view, vec3 l) {
+    return vec3(0.0);
+}
+)";
+constexpr const char* kProbeSurface = R"(#include "hit/surface_values.glsl"
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer ProbeTable { float values[]; };
+void probeBsdf(Hit hit, Features features, inout SurfaceValues values, inout Surface surface) {
+    surface.bsdf.layers.probe = Probe(0.0);
+    surface.bsdf.diffuse = vec3(0.0);
+}
+void probeEmission(Hit hit, Features features, inout vec3 emitted) {
+    emitted = vec3(0.0);
+    if (GLINT_HAS_PROBE_SCENE(features)) {
+        emitted.r = sampleCubeAt(hit, kProbeScene, hit.position, hit.edges).r;
+    }
+    if (GLINT_HAS_PROBE_FLAT(features) && GLINT_HAS_PROBE_PAGES(features)) {
+        emitted.g = 0.5 + sampleArray(hit, kProbePages, features, 1.0).g - sampleSlot(hit, kProbeFlat, features).g;
+        emitted.g += sampleArrayLevel(hit, kProbePages, vec2(0.5), 0.0, 1.0).r;
+    }
+    if (GLINT_HAS_PROBE_FOG(features)) {
+        emitted.b = sampleVolumeLevel(hit, kProbeFog, vec3(0.5, 0.5, 0.75), 1.0).b;
+    }
+    uvec2 table = GLINT_MATERIAL_PROBE_TABLE(hit);
+    if (table != uvec2(0u)) {
+        emitted.b += ProbeTable(table).values[2];
+    }
+}
+)";
+
+// Levels of an image in which all texels of a level and a layer are equal: `valueOf` gives their bytes.
+std::vector<std::uint8_t> levelsOf(const ImageView& image,
+                                   const std::function<int(std::uint32_t, std::uint32_t)>& valueOf) {
+    std::vector<std::uint8_t> pixels;
+    for (std::uint32_t level = 0; level < image.levels; ++level) {
+        for (std::uint32_t layer = 0; layer < image.layersAt(level); ++layer) {
+            pixels.insert(pixels.end(), bytesOfLevel(image.format, image.width, image.height, level),
+                          static_cast<std::uint8_t>(valueOf(level, layer)));
+        }
+    }
+    return pixels;
+}
+
+// An engine gives a cube, an array, a 3D texture and a buffer by its material alone.
+TEST(EngineSceneContent, MaterialsHaveTexturesOfAllDimensionsAndBuffers) {
+    const test::TemporaryFolder folder;
+    for (const auto& [file, text] : {std::pair{"probe.json", kProbe},
+                                     {"probe.glsl", kProbeModel},
+                                     {"probe_surface.glsl", kProbeSurface}}) {
+        ASSERT_TRUE(base::writeFile(folder.path() / file, std::string(text)));
+    }
+    gltf::ImportOptions options;
+    options.materialModel = must(materials::loadMaterialModel(std::vector{folder.path().string()}));
+    options.decodeImages = true;
+    gltf::MaterialDescription listed{.name = "probe", .model = "probe"};
+    for (const char* const name : {"flat", "fog", "pages", "scene"}) {
+        listed.textures[name] = {};
+    }
+    const gltf::Scene list = must(gltf::importMaterials({"list", {listed}}, options));
+    gltf::Scene scene = sceneWithCamera();
+    scene.images = list.images;
+    scene.textures = list.textures;
+    scene.samplers = list.samplers;
+    addQuad(scene, list.materials[0], {-4, -4, -4}, {8, 0, 0}, {0, 8, 0});
+    compiler::CompileSettings settings = roomSteps();
+    settings.effects = {false, {}};
+    const std::shared_ptr<const Package> package = packageOf(scene, settings);
+
+    using Dimension = ImageView::Dimension;
+    std::vector<ImageView> images{
+        {.width = 32, .height = 32, .pixels = {}, .levels = 6},
+        {.width = 4, .height = 4, .pixels = {}, .levels = 2, .dimension = Dimension::Volume, .layers = 4},
+        {.width = 32, .height = 32, .pixels = {}, .levels = 6, .dimension = Dimension::Array, .layers = 2},
+        {.width = 64, .height = 64, .pixels = {}, .levels = 7, .dimension = Dimension::Cube, .layers = 6}};
+    const std::function<int(std::uint32_t, std::uint32_t)> values[] = {
+        [](std::uint32_t level, std::uint32_t) { return 250 - 40 * static_cast<int>(level); },
+        [](std::uint32_t level, std::uint32_t slice) { return static_cast<int>(100 * level + 51 * slice); },
+        // The first layer has 1 / 5 at level 1, the second is the flat texture.
+        [](std::uint32_t level, std::uint32_t layer) {
+            return layer == 0 ? static_cast<int>(51 * level) : 250 - 40 * static_cast<int>(level);
+        },
+        // The face -Z has a value that grows with the level.
+        [](std::uint32_t level, std::uint32_t face) {
+            return face == 5 ? 40 * static_cast<int>(level) : 255;
+        }};
+    std::vector<std::vector<std::uint8_t>> pixels;
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        pixels.push_back(levelsOf(images[i], values[i]));
+        images[i].pixels = pixels.back();
+    }
+    const Content content =
+        contentOf(*package, scene, [&](session::SceneViewData& data) { data.images = images; });
+
+    // The material of the engine's own has the bytes of a record with its textures and the address.
+    TexturedMaterials own(*package, content);
+    Engine engine(*content.gpu);
+    const float numbers[] = {1.0F, 2.0F, 8.0F};
+    std::vector<std::uint32_t> words(std::size(numbers));
+    std::memcpy(words.data(), numbers, sizeof numbers);
+    const Buffer table = engine.upload(words);
+    const RecordFields fields = recordFields(*package, own.known);
+    const RecordField* const field = fields.find("probeTable", fields.modelOf(0));
+    ASSERT_TRUE(field != nullptr && field->bytes == sizeof table.address);
+    EngineSceneView::Geometry geometry = content.geometries.at(0);
+    geometry.material = 0;
+    EngineSceneView::Material material = own.of(0);
+    EngineSceneView view = content.view();
+    view.geometries = {&geometry, 1};
+    view.materials = {&material, 1};
+    VkCommandBuffer commands = engine.begin();
+    const auto engineScene =
+        must(EngineScene::record(sharedContext(), *package, view, commands, engine.frame()));
+    const auto steps = engine.makeSteps(*package, *engineScene, package::kStrategyUber);
+    ASSERT_TRUE(engine.ask(*steps, *content.gpu));
+    std::memcpy(&own.records[0][field->offset], &table.address, sizeof table.address);
+    must(engineScene->updateMaterial(commands, 0, own.of(0), engine.frame()));
+    ASSERT_TRUE(engine.ask(*steps, *content.gpu));
+    engine.submit();
+    engine.drain();
+    for (const std::size_t batch : {0U, 1U}) {
+        const std::vector<float> answers = engine.answers(batch);
+        for (std::uint32_t i = 0; i < kRays; ++i) {
+            const float x = 4.0F * ((static_cast<float>(i % kColumns) + 0.5F) / kColumns - 0.5F);
+            const float y = 4.0F * ((static_cast<float>(i / kColumns) + 0.5F) / kRays * kColumns - 0.5F);
+            const float distance = std::sqrt(x * x + y * y + 16.0F);
+            // The cone covers π / 4 (0.05 t)² / cos θ of the plane, as a square of that side without π / 4.
+            // It is seen from the cube's middle at the same angle, on a face with 32 texels a unit at
+            // distance 4.
+            const float width = 0.05F * distance;
+            const float texels = width * width * (distance / 4.0F) * (8.0F * 8.0F);
+            const float level = std::max(0.5F * std::log2(texels), 0.0F);
+            SCOPED_TRACE(i);
+            ASSERT_NEAR(answers[4 * i], 40.0F * level / 255.0F, 2e-3F);
+            ASSERT_NEAR(answers[4 * i + 1], 0.5F + 0.2F, 1e-5F);
+            ASSERT_NEAR(answers[4 * i + 2], (100.0F + 51.0F) / 255.0F + (batch == 1 ? 8.0F : 0.0F), 1e-5F);
+        }
+    }
+
+    // What is declared as a cube must be one.
+    session::SceneViewData data = session::makeSceneView(scene);
+    data.images[3] = {1, 1, kWhiteTexel};
+    const Diagnostic refused = mustFail(GpuScene::upload(sharedContext(), *package, data.view()));
+    EXPECT_EQ(refused.id, "texture-dimension");
+    EXPECT_EQ(refused.message, "the texture is 2D, and the package's shaders read a cube");
+    // Neither can an edit make it anything else.
+    const auto edited = uploadScene(*package, scene, [&](SceneView& edits) {
+        edits.images = images;
+        edits.editable = true;
+    });
+    SceneEditor& editor = *edited->editor();
+    const PackageScene known = package->scene(0);
+    const std::uint32_t slot = (fields.find("probeScene", fields.modelOf(0))->offset -
+                                static_cast<std::uint32_t>(placeOfTexture(known.materials, 0, 0))) /
+                               static_cast<std::uint32_t>(sizeof(gpu::TextureRecord));
+    const TextureHandle cube = editor.texture(textureAt(known.materials, 0, slot).textureIndex);
+    EXPECT_EQ(mustFail(editor.replaceTexture(cube, {1, 1, kWhiteTexel})).id, "texture-dimension");
+    const TextureHandle white = must(editor.addTexture({1, 1, kWhiteTexel}, false));
+    const MaterialKey key{kAttributeNormals | kAttributeTexCoords0, known.primitives[0].key,
+                          known.primitives[0].key};
+    for (const TextureHandle texture : {cube, white}) {
+        const TextureUse use{slot, texture};
+        const auto added = editor.addMaterial({known.materials.part(0, 1).bytes, {&key, 1}, {&use, 1}});
+        EXPECT_EQ(added ? "" : added.error().id, texture == cube ? "" : "texture-dimension");
     }
 }
 

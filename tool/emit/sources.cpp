@@ -50,6 +50,20 @@ void defineFeatures(std::string& text, std::string_view prefix, const materials:
     text += fmt::format("#define {}_ALL {}\n", prefix, caseFeatures(least, some));
 }
 
+// The dimensions of textures that declarations have beside 2D.
+std::string dimensionDefines(const materials::MaterialModel& model) {
+    using package::TextureDimension;
+    std::string text;
+    for (const auto& [name, dimension] : {std::pair("ARRAY", TextureDimension::Array),
+                                          {"CUBE", TextureDimension::Cube},
+                                          {"VOLUME", TextureDimension::Volume}}) {
+        const bool has = std::ranges::find(model.textures, dimension,
+                                           &materials::MaterialTexture::dimension) != model.textures.end();
+        text += fmt::format("#define GLINT_{}_TEXTURES {}\n", name, has ? 1 : 0);
+    }
+    return text;
+}
+
 // The features that decide about the alpha of a hit.
 materials::FeatureMask alphaFeatures(const materials::MaterialModel& model) {
     materials::FeatureMask mask = model.featuresFor(package::Role::BaseColor) |
@@ -122,6 +136,7 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     text += fmt::format("#define GLINT_ENERGY_COMPENSATION {}\n", flag(settings.energyCompensation));
     text +=
         fmt::format("#define GLINT_TEXTURE_LOD_CONES {}\n", flag(settings.textureLod == TextureLod::Cones));
+    text += dimensionDefines(*plan.model);
     text += fmt::format("#define GLINT_PRECISION {}\n", package::bitsOf(settings.precision));
     // The precision of values that keep their meaning in 16 bits.
     text += fmt::format("#define GLINT_RELAXED{}\n",

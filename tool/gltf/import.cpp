@@ -172,7 +172,8 @@ std::string rangeText(const materials::Parameter& parameter, const materials::Va
     return parameter.type->kind == materials::NumberKind::Truth ? "false or true"
            : parameter.type->kind == materials::NumberKind::Name
                ? fmt::format("{}", fmt::join(parameter.names, " or "))
-               : fmt::format("{:.4g} to {:.4g}", range.low, range.high);
+           : parameter.type->isAddress() ? "any"
+                                         : fmt::format("{:.4g} to {:.4g}", range.low, range.high);
 }
 
 // Planning takes the whole range of values that a program may set; pictures show those of the list.
@@ -218,14 +219,20 @@ void fillRunTimeImages(const ImportOptions& options, Scene& scene) {
     }
     for (const materials::Material& material : scene.materials) {
         for (const auto& [slot, info] : material.textures) {
-            const int texture = info.texture;
-            if (texture >= 0 && material.readsOf(static_cast<int>(slot)).isNormals) {
-                Image& image = scene.images[static_cast<std::size_t>(
-                    scene.textures[static_cast<std::size_t>(texture)].image)];
-                if (image.isAtRunTime) {
-                    image.pixels = {128, 128, 255, 255};
-                }
+            if (info.texture < 0) {
+                continue;
             }
+            Image& image = scene.images[static_cast<std::size_t>(
+                scene.textures[static_cast<std::size_t>(info.texture)].image)];
+            if (!image.isAtRunTime) {
+                continue;
+            }
+            if (material.readsOf(static_cast<int>(slot)).isNormals) {
+                image.pixels = {128, 128, 255, 255};
+            }
+            image.dimension = material.model().textures[slot].dimension;
+            image.layers = image.dimension == package::TextureDimension::Cube ? 6 : 1;
+            image.pixels.resize(4 * static_cast<std::size_t>(image.layers), 255);
         }
     }
 }

@@ -41,7 +41,7 @@ std::array<float, 2> pairAt(const Json& object, std::string_view name, std::arra
 // Reads the texture info of that name into the slot. If there is none, or none that can be used, the slot
 // stays as it is.
 Status readTexture(const ObjectSource& object, std::string_view member, TextureTable& textures,
-                   materials::TextureSlots& slots, std::size_t slot) {
+                   package::TextureDimension dimension, materials::TextureSlots& slots, std::size_t slot) {
     const Json* json = find(object.json, member);
     if (json == nullptr) {
         return okStatus();
@@ -69,7 +69,15 @@ Status readTexture(const ObjectSource& object, std::string_view member, TextureT
         slots[slot].texCoord = read.texCoord;  // planning says why there is no texture
         return okStatus();
     }
-    GLINT_TRY(const auto texture, textures.use((*json)["index"].get<int>()));
+    const int given = (*json)["index"].get<int>();
+    if (dimension != package::TextureDimension::Flat && !textures.isAtRunTime(given)) {
+        return object.document.error(
+            "texture-dimension", object.pointerTo(member),
+            fmt::format("the texture is declared as {}, and Glint reads 2D images of files alone",
+                        namesOf(dimension)[static_cast<std::size_t>(dimension)].what),
+            "let the program give it at run time: in a list of materials, leave its file out");
+    }
+    GLINT_TRY(const auto texture, textures.use(given));
     if (texture >= 0) {
         read.texture = texture;
         slots[slot] = read;
@@ -101,7 +109,7 @@ Status readTextures(Document& document, TextureTable& textures, const Json& json
                 continue;
             }
             GLINT_TRY_DO(readTexture({document, *object, pointerOf(pointer, owner)}, place.member, textures,
-                                     material.textures, slot));
+                                     model.textures[slot].dimension, material.textures, slot));
         }
     }
     return okStatus();

@@ -189,6 +189,9 @@ struct Image {
     // The image that stands for all with the same texels, or -1 if this one does. Textures show that one.
     int sameAs = -1;
     bool isAtRunTime = false;  // a program gives its texels; until then it is white
+    // Images at run time have those of the slots that show them. Layers follow one another within a level.
+    package::TextureDimension dimension = package::TextureDimension::Flat;
+    int layers = 1;
 };
 
 constexpr std::uint64_t pixelCount(const Image& image, int level) {

@@ -326,6 +326,11 @@ Result<int> TextureTable::use(int texture) {
     return *known;
 }
 
+bool TextureTable::isAtRunTime(int texture) const {
+    const int image = document_.model().textures[static_cast<std::size_t>(texture)].source;
+    return image >= 0 && find(imageJson(document_, image), kAtRunTime) != nullptr;
+}
+
 // Returns the image of the file that the texture shows, or -1 with a warning if it has none in a format that
 // Glint knows. A KTX2 image that this build does not decode is an error, unless there is another image and
 // the file does not require KHR_texture_basisu.

@@ -245,7 +245,7 @@ void ModelBuilder::readRange(const Members& members, Parameter& parameter) {
     parameter.low = least;
     parameter.high = greatest;
     if (members.has("range")) {
-        if (kind == NumberKind::Truth || kind == NumberKind::Name) {
+        if (!parameter.type->hasRange()) {
             failAt(members.at("range"),
                    fmt::format("is for numbers, and this is a value of \"{}\"", parameter.type->name),
                    "leave it out");
@@ -304,8 +304,16 @@ Parameter ModelBuilder::makeParameter(const File& file, const Members& members, 
 }
 
 void ModelBuilder::readDefault(const Members& members, Parameter& parameter) {
-    const DeclarationJson& fallback = members["default"];
     parameter.fallback.clear();
+    if (parameter.type->isAddress()) {
+        if (members.has("default")) {
+            failAt(members.at("default"), "is for values, and a program gives addresses at run time",
+                   "leave it out: without an address the parameter is 0");
+        }
+        parameter.fallback.resize(static_cast<std::size_t>(parameter.numbers));
+        return;
+    }
+    const DeclarationJson& fallback = members["default"];
     if (parameter.isVector() && parameter.numbers == 1 && fallback.is_string()) {
         parameter.fallback.push_back(Members::toNumber(fallback, members.at("default")));  // "infinity"
     } else if (parameter.isArray() && isOneElement(parameter, fallback)) {
@@ -442,6 +450,28 @@ TextureReads ModelBuilder::readsOfTexture(const Members& members) {
     return reads;
 }
 
+// Glint makes levels and chooses formats of flat textures alone. A direction and a place in space are no UVs.
+void ModelBuilder::readDimension(const Members& members, MaterialTexture& texture, Feature& feature) {
+    using package::TextureDimension;
+    const std::string name = members.text("dimension", "2d");
+    texture.dimension = choose(package::kTextureDimensionNames, members, "dimension", name).value;
+    if (texture.dimension == TextureDimension::Flat) {
+        return;
+    }
+    const bool takesUvs = texture.dimension == TextureDimension::Array;
+    for (const char* const member : {"reads", "roughness", "coordinates"}) {
+        const bool isOfCoordinates = std::string_view(member) == "coordinates";
+        if (members.has(member) && !(isOfCoordinates && takesUvs)) {
+            failAt(members.at(member),
+                   isOfCoordinates
+                       ? fmt::format("a texture with the dimension {} has no UVs", name)
+                       : fmt::format("is for 2D textures, and this one has the dimension {}", name),
+                   "leave it out");
+        }
+    }
+    feature.hasOwnCoordinates = feature.hasOwnCoordinates || !takesUvs;
+}
+
 void ModelBuilder::addTexture(const File& file, const Members& members) {
     MaterialTexture texture;
     texture.name = newName(members);
@@ -458,6 +488,7 @@ void ModelBuilder::addTexture(const File& file, const Members& members) {
         }
         feature.hasOwnCoordinates = true;
     }
+    readDimension(members, texture, feature);
     texture.feature = addFeature(members, std::move(feature), Light::Front);
     model_.textures.push_back(std::move(texture));
 }

@@ -208,7 +208,8 @@ constexpr MemberRow kRows[] = {
     {"type", at({Attribute, Derived}), vectorType, "The type of the value.", at({Attribute, Derived})},
     {"count", at({Parameter}), elements, "Makes it an array of so many values."},
     {"values", at({Parameter}), list<name, 1>, "The names that a value of an enum may be."},
-    {"default", at({Parameter}), value, "The value of a material whose file gives none.", at({Parameter})},
+    {"default", at({Parameter}), value,
+     "The value of a material whose file gives none; every type but address needs it."},
     {"default", at({Attribute}), oneOrList<finite>,
      "The value on primitives that lack it; without one they do not have the feature."},
     {"range", at({Parameter}), list<numberOrNull, 2, 2>,
@@ -234,6 +235,8 @@ constexpr MemberRow kRows[] = {
      "The channel that holds the roughness of a lobe, whose square is alpha: g; or 1 - roughness: 1 - a. Mip "
      "levels "
      "average its square."},
+    {"dimension", at({Texture}), nameOf<package::kTextureDimensionNames>,
+     "What a lookup takes: UVs; UVs and the number of a layer; a direction; a place in space."},
     {"coordinates", at({Texture}), own, "own: its GLSL makes its coordinates, so that it needs no UV set."},
     {"scales", at({Texture}), list<matching<kScalesPattern>>,
      "The parameters that it multiplies by numbers in [0, 1], each with the texture's channels that do so, "
@@ -261,7 +264,7 @@ constexpr MemberRule kRules[] = {
     {Parameter, "record", "", "role", "would keep shaders from reading it, which is what a role is for",
      "leave it out"},
     {Parameter, "also", "range", "", "says nothing without a range", "give the parameter \"range\""},
-    {Texture, "short order draft needs cost of coordinates", "", "is",
+    {Texture, "short order draft needs cost of coordinates dimension", "", "is",
      "is that of the texture whose place this fills", "leave it out"},
     {Glsl, "coversEmission traced", "layer", "", "is for layers; there is no \"layer\"", ""},
     {Glsl, "reciprocal", "layer model", "", "is for layers and models; there is no \"layer\" or \"model\"",

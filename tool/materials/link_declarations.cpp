@@ -285,7 +285,9 @@ Symbol symbolOf(const Parameter& parameter, int index) {
     Symbol symbol{index, false, parameter.type->channels};
     if (!parameter.isNamedByConditions()) {
         symbol.refusal = fmt::format("\"{}\" is {}, which conditions can't name", parameter.declared,
-                                     parameter.isArray() ? "an array" : "a matrix");
+                                     parameter.isArray()           ? "an array"
+                                     : parameter.type->isAddress() ? "an address"
+                                                                   : "a matrix");
     } else if (parameter.type->kind == NumberKind::Name) {
         symbol.names = parameter.names;
     } else if (parameter.type->kind == NumberKind::Truth) {

@@ -228,6 +228,11 @@ std::string lostInput(const Material& material, const PrimitiveInputs& primitive
 }
 
 const TextureContent& contentOf(const Material& material, const PrimitiveInputs& primitive, int texture) {
+    static const TextureContent anything{.of = {kAnything, kAnything, kAnything, kAnything}};
+    if (material.model().textures[static_cast<std::size_t>(texture)].dimension !=
+        package::TextureDimension::Flat) {
+        return anything;
+    }
     const auto seen = std::ranges::find(primitive.seen, texture, &SeenTexture::slot);
     return seen != primitive.seen.end() ? seen->content
                                         : material.textures[static_cast<std::size_t>(texture)].content;
@@ -249,8 +254,10 @@ Channels MaterialFacts::number(int symbol) const {
         number.count = 4;
         number.of.fill({1.0, 1.0});
         if (isReadable(material_, primitive_, texture)) {
-            number.of = textures_ == Textures::Unknown ? TextureContent{}.of
-                                                       : contentOf(material_, primitive_, texture).of;
+            number.of.fill(model.anyTexel(texture));
+            if (textures_ != Textures::Unknown) {
+                number.of = contentOf(material_, primitive_, texture).of;
+            }
         }
         return number;
     }
@@ -269,7 +276,7 @@ Channels MaterialFacts::number(int symbol) const {
             const TextureContent& content = contentOf(material_, primitive_, parameter.scaledBy);
             target = multiply(target, content.of[static_cast<std::size_t>(channel)]);
         } else if (scaled) {
-            target = multiply(target, kUnitInterval);
+            target = multiply(target, model.anyTexel(parameter.scaledBy));
         }
     }
     return number;

@@ -252,9 +252,9 @@ struct Parameter {
     bool isVector() const {
         return !isArray() && type->isVector();
     }
-    // Returns whether conditions may name it: it is neither an array nor a matrix.
+    // Returns whether conditions may name it: it is neither an array nor a matrix or an address.
     bool isNamedByConditions() const {
-        return !isArray() && !type->isMatrix();
+        return !isArray() && !type->isMatrix() && !type->isAddress();
     }
     // Returns the type as people write it: "color", "enum (soft, hard)", "vec3[8]".
     std::string typeText() const;
@@ -288,6 +288,7 @@ struct MaterialTexture {
     std::string name;  // unique in all declarations: "clearcoatTexture"
     int feature = 0;   // index into MaterialModel::features
     package::Role role = package::Role::None;
+    package::TextureDimension dimension = package::TextureDimension::Flat;
     struct Place {
         int object = 0;
         std::string member;
@@ -512,6 +513,13 @@ public:
     FeatureMask featuresFor(package::Role role) const;
     // Returns the names of the features of `mask`, in the order of bits.
     std::vector<std::string_view> names(FeatureMask mask) const;
+    // Returns the numbers that any texture of the slot can hold: those of one that is not flat come from the
+    // program alone, in any format.
+    ValueInterval anyTexel(int texture) const {
+        const bool isFlat =
+            textures[static_cast<std::size_t>(texture)].dimension == package::TextureDimension::Flat;
+        return isFlat ? kUnitInterval : kAnything;
+    }
     // Returns the base of the model of a pack whose feature this is, as an index into `features`.
     int baseOf(const Feature& feature) const {
         return models[static_cast<std::size_t>(feature.model)].feature;

@@ -88,6 +88,7 @@ private:
     void addParameter(const File& file, const Members& members);
     void addAttribute(const File& file, const Members& members);
     void addTexture(const File& file, const Members& members);
+    static void readDimension(const Members& members, MaterialTexture& texture, Feature& feature);
     static TextureReads readsOfTexture(const Members& members);
     static void readRoughness(const Members& members, TextureReads& reads);
     // Parameters and textures that fill those of another base model.

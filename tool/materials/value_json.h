@@ -30,6 +30,9 @@ public:
         : parameter_(parameter), numbers_(numbers) {}
 
     std::optional<ValueFault> read(const Json& json) {
+        if (parameter_.type->isAddress()) {
+            return ValueFault{"", "is the address of a buffer, which only a program can give, at run time"};
+        }
         if (!parameter_.isArray()) {
             return readOne(json, "");
         }

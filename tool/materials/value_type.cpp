@@ -22,6 +22,7 @@ constexpr Reading kReadings[] = {
     {"floatBitsToUint({})", "{}"},                  // Unsigned
     {"(floatBitsToUint({}) != 0u)", "({} != 0u)"},  // Truth
     {"floatBitsToUint({})", "{}"},                  // Name
+    {"floatBitsToUint({})", "{}"},                  // Word
 };
 
 const Reading& readingOf(const ValueType& type) {
@@ -61,6 +62,7 @@ double greatestOf(NumberKind kind, std::size_t names) {
         case NumberKind::Signed:
             return std::numeric_limits<std::int32_t>::max();
         case NumberKind::Unsigned:
+        case NumberKind::Word:
             return std::numeric_limits<std::uint32_t>::max();
         case NumberKind::Truth:
             return 1.0;

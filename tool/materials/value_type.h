@@ -17,6 +17,7 @@ enum class NumberKind : std::uint8_t {
     Unsigned,  // one from 0
     Truth,     // 0: false, 1: true
     Name,      // the index of a name that the declaration lists
+    Word,      // half of a device address, which only a program can give; the low half comes first
 };
 
 struct ValueType {
@@ -33,6 +34,13 @@ struct ValueType {
     constexpr bool isMatrix() const {
         return channels > 4;
     }
+    constexpr bool isAddress() const {
+        return kind == NumberKind::Word;
+    }
+    // Returns whether values lie within a range. The others are compared by name, or not at all.
+    constexpr bool hasRange() const {
+        return kind == NumberKind::Real || kind == NumberKind::Signed || kind == NumberKind::Unsigned;
+    }
 };
 inline constexpr ValueType kTypes[] = {
     {"float", "float", "float", "float"},
@@ -46,6 +54,7 @@ inline constexpr ValueType kTypes[] = {
     {"enum", "uint", "uint", "std::uint32_t", NumberKind::Name},
     {"mat3", "mat3", "float", "float", NumberKind::Real, 9},
     {"mat4", "mat4", "float", "float", NumberKind::Real, 16},
+    {"address", "uvec2", "uvec2", "gpu::uvec2", NumberKind::Word, 2},
 };
 // A number or a vector in floating point: what vertices have, derived fields are, textures scale and
 // animations change.

@@ -422,6 +422,8 @@ SceneViewData makeSceneView(const gltf::Scene& scene) {
             {static_cast<std::uint32_t>(image.width), static_cast<std::uint32_t>(image.height), image.pixels,
              image.format == gltf::PixelFormat::Rgba16 ? ImageView::Format::Rgba16 : ImageView::Format::Rgba8,
              static_cast<std::uint32_t>(image.levels)});
+        data.images.back().dimension = image.dimension;
+        data.images.back().layers = static_cast<std::uint32_t>(image.layers);
     }
     poseSceneView(scene, data);
     return data;

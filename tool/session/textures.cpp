@@ -172,7 +172,8 @@ void addTextures(std::shared_ptr<const TextureSet> textures, SceneViewData& data
     for (const gltf::FittedImage& image : textures->images) {
         data.images.push_back({static_cast<std::uint32_t>(image.width),
                                static_cast<std::uint32_t>(image.height), image.texels, image.format,
-                               static_cast<std::uint32_t>(image.levels), image.channels, image.decoded});
+                               static_cast<std::uint32_t>(image.levels), image.channels, image.decoded,
+                               image.dimension, static_cast<std::uint32_t>(image.layers)});
     }
     data.textures.push_back(std::move(textures));
 }

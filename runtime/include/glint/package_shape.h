@@ -274,10 +274,28 @@ struct PrimitiveEntry {
     std::uint32_t alphaMode;      // 0 opaque, 1 mask, 2 blend, as in the file
 };
 
+// What a lookup of a texture takes, and so the type of its image view.
+enum class TextureDimension : std::uint16_t {
+    Flat,    // UVs: a 2D view
+    Array,   // UVs and the number of a layer: a 2D array view
+    Cube,    // a direction: a cube view
+    Volume,  // a place in space: a 3D view
+};
+inline constexpr Named<TextureDimension> kTextureDimensionNames[] = {
+    {TextureDimension::Flat, "2d", "2D"},
+    {TextureDimension::Array, "2d-array", "2D with layers"},
+    {TextureDimension::Cube, "cube", "a cube"},
+    {TextureDimension::Volume, "3d", "3D"},
+};
+constexpr std::span<const Named<TextureDimension>> namesOf(TextureDimension /*type*/) {
+    return kTextureDimensionNames;
+}
+
 // An image viewed in one colour space. A glTF image that is used both as colour and as data has two entries.
 struct TextureEntry {
     std::uint32_t image;  // index into the scene's images
-    std::uint32_t srgb;   // 1: 8-bit sRGB format, 0: 8-bit linear format
+    std::uint16_t srgb;   // 1: 8-bit sRGB format, 0: 8-bit linear format
+    TextureDimension dimension;
 };
 
 // The filter and the wrapping of a texture.

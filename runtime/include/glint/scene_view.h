@@ -7,10 +7,12 @@
 // precision. The difference of the two is all that a frame needs.
 #pragma once
 
+#include <glint/package_shape.h>
 #include <glint/result.h>
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -192,6 +194,7 @@ struct InstanceView {
 // blue are taken to be in sRGB.
 struct ImageView {
     using Format = TexelFormat;
+    using Dimension = package::TextureDimension;
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     std::span<const std::uint8_t> pixels;  // byteCount(levels) bytes: texels, or blocks row by row
@@ -206,10 +209,31 @@ struct ImageView {
     // The first level in RGBA of 8 bits. Only images in a block format need it, and only if triangles that
     // are lights (--emissive-lights) have it as their emission.
     std::span<const std::uint8_t> decoded{};
+    // As the package's textures with the image say (TextureEntry::dimension). Each level has its layers one
+    // after the other: 1 of a 2D image; the faces +X, -X, +Y, -Y, +Z and -Z of a cube; the slices of a 3D
+    // image, whose number halves from level to level. 3D images are in no block format.
+    Dimension dimension = Dimension::Flat;
+    std::uint32_t layers = 1;
 
+    std::uint32_t layersAt(std::uint32_t level) const {
+        return dimension == Dimension::Volume ? sizeAtLevel(layers, level) : layers;
+    }
+    // Returns the number of levels of a full pyramid.
+    std::uint32_t mostLevels() const {
+        const std::uint32_t depth = dimension == Dimension::Volume ? layers : 1;
+        return static_cast<std::uint32_t>(std::bit_width(std::max({width, height, depth})));
+    }
+    // Returns the size in bytes of one level, with all of its layers.
+    std::uint64_t bytesAt(std::uint32_t level) const {
+        return bytesOfLevel(format, width, height, level) * layersAt(level);
+    }
     // Returns the size in bytes of the first `count` levels.
     std::uint64_t byteCount(std::uint32_t count) const {
-        return bytesOfLevels(format, width, height, count);
+        std::uint64_t bytes = 0;
+        for (std::uint32_t level = 0; level < count; ++level) {
+            bytes += bytesAt(level);
+        }
+        return bytes;
     }
 };
 

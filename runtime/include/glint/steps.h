@@ -62,10 +62,11 @@ struct EngineSceneView {
         VkDeviceAddress primitiveMaterials = 0;
     };
 
-    // A texture of the package's scene (PackageScene::textures) as the host has it.
+    // A texture of the package's scene (PackageScene::textures) as the host has it. Its view has the type
+    // that TextureEntry::dimension says, as those of a material's own textures have.
     struct Texture {
         std::uint32_t index = 0;  // in the host's array of images, Bindings::textures
-        std::uint32_t width = 0;  // texels of mip 0
+        std::uint32_t width = 0;  // texels of mip 0, of one layer, face or slice
         std::uint32_t height = 0;
     };
 

@@ -79,18 +79,18 @@ void recordDependency(const Context::State& context, VkCommandBuffer commands,
 
 void recordTransition(const Context::State& context, VkCommandBuffer commands,
                       const ImageTransition& transition) {
-    VkImageMemoryBarrier2 barrier{
-        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-        .srcStageMask = transition.dependency.fromStages,
-        .srcAccessMask = transition.dependency.fromAccess,
-        .dstStageMask = transition.dependency.toStages,
-        .dstAccessMask = transition.dependency.toAccess,
-        .oldLayout = transition.from,
-        .newLayout = transition.to,
-        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .image = transition.image,
-        .subresourceRange = {transition.aspect, transition.firstMip, transition.mipCount, 0, 1}};
+    VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                                  .srcStageMask = transition.dependency.fromStages,
+                                  .srcAccessMask = transition.dependency.fromAccess,
+                                  .dstStageMask = transition.dependency.toStages,
+                                  .dstAccessMask = transition.dependency.toAccess,
+                                  .oldLayout = transition.from,
+                                  .newLayout = transition.to,
+                                  .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                  .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                                  .image = transition.image,
+                                  .subresourceRange = {transition.aspect, transition.firstMip,
+                                                       transition.mipCount, 0, VK_REMAINING_ARRAY_LAYERS}};
     VkDependencyInfo info{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
                           .imageMemoryBarrierCount = 1,
                           .pImageMemoryBarriers = &barrier};

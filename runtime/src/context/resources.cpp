@@ -301,11 +301,27 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
     return buffer;
 }
 
+namespace {
+
+// By TextureDimension.
+struct DimensionInfo {
+    VkImageViewType view;
+    VkImageType image;
+    VkImageCreateFlags flags;
+};
+constexpr DimensionInfo kDimensions[] = {
+    {VK_IMAGE_VIEW_TYPE_2D, VK_IMAGE_TYPE_2D, 0},
+    {VK_IMAGE_VIEW_TYPE_2D_ARRAY, VK_IMAGE_TYPE_2D, 0},
+    {VK_IMAGE_VIEW_TYPE_CUBE, VK_IMAGE_TYPE_2D, VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT},
+    {VK_IMAGE_VIEW_TYPE_3D, VK_IMAGE_TYPE_3D, 0}};
+
+}  // namespace
+
 Result<UniqueImageView> createImageView(Context::State& context, VkImage image, const ImageInfo& info,
                                         std::uint32_t firstMip) {
     VkImageViewCreateInfo view{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
                                .image = image,
-                               .viewType = VK_IMAGE_VIEW_TYPE_2D,
+                               .viewType = kDimensions[static_cast<std::size_t>(info.dimension)].view,
                                .format = info.format,
                                .components = info.components,
                                .subresourceRange = wholeImage(info.aspect)};
@@ -320,15 +336,21 @@ Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const
     image.extent = info.extent;
     image.mips = info.mips;
     image.components = info.components;
-    const VkImageCreateInfo create{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-                                   .imageType = VK_IMAGE_TYPE_2D,
-                                   .format = info.format,
-                                   .extent = {info.extent.width, info.extent.height, 1},
-                                   .mipLevels = info.mips,
-                                   .arrayLayers = 1,
-                                   .samples = VK_SAMPLE_COUNT_1_BIT,
-                                   .tiling = VK_IMAGE_TILING_OPTIMAL,
-                                   .usage = info.usage};
+    image.dimension = info.dimension;
+    image.layers = info.layers;
+    const DimensionInfo& dimension = kDimensions[static_cast<std::size_t>(info.dimension)];
+    const bool isVolume = info.dimension == package::TextureDimension::Volume;
+    const VkImageCreateInfo create{
+        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+        .flags = dimension.flags,
+        .imageType = dimension.image,
+        .format = info.format,
+        .extent = {info.extent.width, info.extent.height, isVolume ? info.layers : 1},
+        .mipLevels = info.mips,
+        .arrayLayers = isVolume ? 1 : info.layers,
+        .samples = VK_SAMPLE_COUNT_1_BIT,
+        .tiling = VK_IMAGE_TILING_OPTIMAL,
+        .usage = info.usage};
     GLINT_TRY(image.handle, createHandle<UniqueImage>(context, context.vk.CreateImage, "vkCreateImage",
                                                       create, pool.name()));
 
@@ -346,7 +368,7 @@ Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const
 }
 
 VkImageSubresourceRange wholeImage(VkImageAspectFlags aspect) {
-    return {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, 1};
+    return {aspect, 0, VK_REMAINING_MIP_LEVELS, 0, VK_REMAINING_ARRAY_LAYERS};
 }
 
 void addTo(std::vector<MemoryItem>& items, MemoryItem item) {

@@ -5,6 +5,7 @@
 #include "context/device_objects.h"
 
 #include <glint/context.h>
+#include <glint/package_shape.h>
 
 #include <cstdint>
 #include <string>
@@ -147,7 +148,9 @@ struct DeviceImage {
     VkExtent2D extent{};
     std::uint32_t mips = 1;
     VkComponentMapping components{};  // of the view
-    VkDeviceSize bytes = 0;           // size in memory
+    package::TextureDimension dimension = package::TextureDimension::Flat;
+    std::uint32_t layers = 1;  // or faces, or slices
+    VkDeviceSize bytes = 0;    // size in memory
     Allocation memory;
 };
 
@@ -158,18 +161,20 @@ struct ImageInfo {
     VkImageUsageFlags usage = 0;
     VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT;
     VkComponentMapping components{};  // of the view
+    package::TextureDimension dimension = package::TextureDimension::Flat;
+    std::uint32_t layers = 1;  // of all views; of a cube its faces, of a 3D image its slices
 };
 
 // Creates a view of the mips from `firstMip` on.
 Result<UniqueImageView> createImageView(Context::State& context, VkImage image, const ImageInfo& info,
                                         std::uint32_t firstMip);
 
-// Creates a two-dimensional image on the device, in an undefined layout. `pool` must outlive it. With
+// Creates an image on the device, in an undefined layout. `pool` must outlive it. With
 // Tiling::Shared buffers may share its memory.
 Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const ImageInfo& info,
                                 Tiling tiling = Tiling::Optimal);
 
-// Returns the range of layer 0 and all mips of an image.
+// Returns the range of all layers and mips of an image.
 VkImageSubresourceRange wholeImage(VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT);
 
 // Adds an item, or adds its bytes to the item of the same name and use.

@@ -115,6 +115,10 @@ void Uploader::startImage(const DeviceImage& target) {
 
 namespace {
 
+bool isVolume(const DeviceImage& image) {
+    return image.dimension == package::TextureDimension::Volume;
+}
+
 // The size of a mip in rows of texels or blocks, and of a row in bytes.
 struct RowSize {
     std::uint32_t rows = 0;
@@ -142,8 +146,9 @@ Status Uploader::copyRows(const MipRows& rows, std::uint32_t first, std::uint32_
         const std::uint32_t top = first * rows.block.height;
         VkBufferImageCopy region{
             .bufferOffset = used_,
-            .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, rows.mip, 0, 1},
-            .imageOffset = {0, static_cast<std::int32_t>(top), 0},
+            .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, rows.mip, isVolume(target) ? 0 : rows.layer, 1},
+            .imageOffset = {0, static_cast<std::int32_t>(top),
+                            isVolume(target) ? static_cast<std::int32_t>(rows.layer) : 0},
             .imageExtent = {width, std::min(count * rows.block.height, height - top), 1}};
         add([&vk = context_->vk, region, from = staging_[current_].handle.get(),
              to = target.handle.get()](VkCommandBuffer commands) {
@@ -159,8 +164,12 @@ Status Uploader::copyToImage(std::span<const std::span<const std::uint8_t>> mips
                              const DeviceImage& target) {
     startImage(target);
     for (std::uint32_t mip = 0; mip < mips.size(); ++mip) {
-        const MipRows rows{&target, mip, 0, mips[mip], block};
-        GLINT_TRY_DO(copyRows(rows, 0, rowSizeOf(rows).rows));
+        const std::uint32_t layers = isVolume(target) ? sizeAtLevel(target.layers, mip) : target.layers;
+        const std::size_t bytes = mips[mip].size() / layers;
+        for (std::uint32_t layer = 0; layer < layers; ++layer) {
+            const MipRows rows{&target, mip, 0, mips[mip].subspan(layer * bytes, bytes), block, layer};
+            GLINT_TRY_DO(copyRows(rows, 0, rowSizeOf(rows).rows));
+        }
     }
     addMips(target, static_cast<std::uint32_t>(mips.size()));
     return okStatus();
@@ -191,6 +200,8 @@ void Uploader::addMips(const DeviceImage& target, std::uint32_t given) {
     const std::uint32_t last = given - 1;
     auto width = static_cast<std::int32_t>(std::max(target.extent.width >> last, 1U));
     auto height = static_cast<std::int32_t>(std::max(target.extent.height >> last, 1U));
+    auto depth = isVolume(target) ? static_cast<std::int32_t>(std::max(target.layers >> last, 1U)) : 1;
+    const std::uint32_t layers = isVolume(target) ? 1 : target.layers;
     for (std::uint32_t mip = given; mip < target.mips; ++mip) {
         transition({image,
                     VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
@@ -199,12 +210,13 @@ void Uploader::addMips(const DeviceImage& target, std::uint32_t given) {
                      VK_ACCESS_2_TRANSFER_READ_BIT},
                     mip - 1,
                     1});
-        VkImageBlit region{.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, 1}};
-        region.srcOffsets[1] = {width, height, 1};
+        VkImageBlit region{.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip - 1, 0, layers}};
+        region.srcOffsets[1] = {width, height, depth};
         width = std::max(width / 2, 1);
         height = std::max(height / 2, 1);
-        region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1};
-        region.dstOffsets[1] = {width, height, 1};
+        depth = std::max(depth / 2, 1);
+        region.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, layers};
+        region.dstOffsets[1] = {width, height, depth};
         add([&vk = context_->vk, image, region](VkCommandBuffer commands) {
             vk.CmdBlitImage(commands, image, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, image,
                             VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region, VK_FILTER_LINEAR);

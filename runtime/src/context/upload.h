@@ -47,9 +47,10 @@ public:
     }
     // `target` needs VK_BUFFER_USAGE_TRANSFER_DST_BIT and room for offset + bytes.
     Status copyToBuffer(std::span<const std::uint8_t> bytes, const Buffer& target, VkDeviceSize offset = 0);
-    // Fills the first mips of an undefined image with texels or blocks. Blits each remaining mip from the one
-    // before, and leaves all of them in SHADER_READ_ONLY_OPTIMAL. Requires at least one mip, and all of them
-    // for blocks. `target` needs TRANSFER_DST usage, and TRANSFER_SRC usage if mips are blitted.
+    // Fills the first mips of an undefined image with texels or blocks, each with its layers one after the
+    // other. Blits each remaining mip from the one before, and leaves all of them in
+    // SHADER_READ_ONLY_OPTIMAL. Requires at least one mip, and all of them for blocks. `target` needs
+    // TRANSFER_DST usage, and TRANSFER_SRC usage if mips are blitted.
     Status copyToImage(std::span<const std::span<const std::uint8_t>> mips, const TexelBlock& block,
                        const DeviceImage& target);
 
@@ -60,8 +61,9 @@ public:
         const DeviceImage* target = nullptr;
         std::uint32_t mip = 0;
         std::uint32_t firstRow = 0;
-        std::span<const std::uint8_t> texels;  // of the whole mip
+        std::span<const std::uint8_t> texels;  // of the whole mip of one layer
         TexelBlock block{};
+        std::uint32_t layer = 0;  // or slice of a 3D image
     };
     Result<std::uint32_t> copyMipRows(const MipRows& rows, VkDeviceSize mostBytes);
     // Submits the commands that wait, with a dependency that makes their results visible to all commands that

@@ -5,7 +5,6 @@
 #include "package/package.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -82,16 +81,17 @@ ImageInfo textureInfo(const ImageView& image, bool srgb) {
     if (isBlockFormat(image.format)) {
         info.mips = image.levels;
     } else {
-        info.mips = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
+        info.mips = image.mostLevels();
         info.usage |= VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     }
     info.components = vulkanComponents(image.channels);
+    info.dimension = image.dimension;
+    info.layers = image.layers;
     return info;
 }
 
 std::span<const std::uint8_t> texelsOfLevel(const ImageView& image, std::uint32_t level) {
-    return image.pixels.subspan(image.byteCount(level),
-                                bytesOfLevel(image.format, image.width, image.height, level));
+    return image.pixels.subspan(image.byteCount(level), image.bytesAt(level));
 }
 
 Result<DeviceImage> uploadTexture(Context::State& context, MemoryPool& pool, Uploader& uploader,
@@ -237,9 +237,10 @@ const RecordField* RecordFields::find(std::string_view name, std::uint32_t model
     return found == list.end() ? nullptr : &*found;
 }
 
-bool RecordFields::hasAt(std::size_t offset, std::uint32_t model) const {
-    return std::ranges::any_of(
+const RecordField* RecordFields::findAt(std::size_t offset, std::uint32_t model) const {
+    const auto found = std::ranges::find_if(
         list, [&](const RecordField& field) { return field.offset == offset && field.model == model; });
+    return found == list.end() ? nullptr : &*found;
 }
 
 RecordFields recordFields(const Package& package, const PackageScene& known) {

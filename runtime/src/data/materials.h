@@ -93,8 +93,11 @@ struct RecordFields {
     }
     // Returns the field of that name in records of the model, or null.
     const RecordField* find(std::string_view name, std::uint32_t model) const;
-    // Returns whether records of the model have a field or a texture there.
-    bool hasAt(std::size_t offset, std::uint32_t model) const;
+    // Returns the field or the texture that records of the model have there, or null.
+    const RecordField* findAt(std::size_t offset, std::uint32_t model) const;
+    bool hasAt(std::size_t offset, std::uint32_t model) const {
+        return findAt(offset, model) != nullptr;
+    }
 };
 RecordFields recordFields(const Package& package, const PackageScene& known);
 

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -164,6 +163,7 @@ Status checkImages(const PackageScene& known, std::span<const ImageView> images,
                 "the package refers to this image, the scene has " + std::to_string(images.size()),
                 kSameScene);
         }
+        GLINT_TRY_DO(checkDimension(images[texture.image].dimension, texture.dimension, where));
         GLINT_TRY_DO(checkImage(images[texture.image], texture.srgb != 0, where, limits));
     }
     return okStatus();
@@ -198,18 +198,66 @@ Status checkEmission(const Package& package, const PackageScene& known, std::spa
 }  // namespace
 
 ImageLimits imageLimits(const Context::State& context) {
-    return {context.limits.core.maxImageDimension2D, context.limits.texelFormats};
+    const VkPhysicalDeviceLimits& core = context.limits.core;
+    return {core.maxImageDimension2D, context.limits.texelFormats, core.maxImageArrayLayers,
+            core.maxImageDimensionCube, core.maxImageDimension3D};
 }
 
-Status checkImage(const ImageView& image, bool srgb, const std::string& where, const ImageLimits& limits) {
-    if (image.width == 0 || image.height == 0 || image.width > limits.maxSize ||
-        image.height > limits.maxSize) {
+Status checkDimension(package::TextureDimension given, package::TextureDimension wanted,
+                      const std::string& where) {
+    if (given == wanted) {
+        return okStatus();
+    }
+    const auto of = [](package::TextureDimension dimension) {
+        return static_cast<std::size_t>(dimension) < std::size(package::kTextureDimensionNames)
+                   ? std::string(namesOf(dimension)[static_cast<std::size_t>(dimension)].what)
+                   : "of no known dimension";
+    };
+    return makeError("texture-dimension", where,
+                     "the texture is " + of(given) + ", and the package's shaders read " + of(wanted),
+                     "give an image with the dimension that the declaration of the texture has");
+}
+
+namespace {
+
+// Checks the number of texels of each axis, and of layers.
+Status checkSize(const ImageView& image, const std::string& where, const ImageLimits& limits) {
+    using Dimension = ImageView::Dimension;
+    const bool isVolume = image.dimension == Dimension::Volume;
+    const std::uint32_t most = isVolume                             ? limits.maxVolumeSize
+                               : image.dimension == Dimension::Cube ? limits.maxCubeSize
+                                                                    : limits.maxSize;
+    if (image.width == 0 || image.height == 0 || image.width > most || image.height > most) {
         return makeError("scene-image", where,
                          "the image is " + std::to_string(image.width) + " x " +
                              std::to_string(image.height) + " pixels, the device takes 1 to " +
-                             std::to_string(limits.maxSize),
+                             std::to_string(most),
                          "scale the image");
     }
+    const std::uint32_t mostLayers = image.dimension == Dimension::Flat    ? 1
+                                     : image.dimension == Dimension::Array ? limits.maxLayers
+                                     : isVolume                            ? limits.maxVolumeSize
+                                                                           : 6;
+    const bool isCube = image.dimension == Dimension::Cube;
+    if (image.layers == 0 || image.layers > mostLayers || (isCube && image.layers != mostLayers)) {
+        return makeError("scene-image", where,
+                         "the image has " + std::to_string(image.layers) + " layers, it takes " +
+                             (isCube || mostLayers == 1 ? "" : "1 to ") + std::to_string(mostLayers),
+                         "give ImageView::dimension and ImageView::layers as they are");
+    }
+    if (isCube && image.width != image.height) {
+        return makeError("scene-image", where, "the faces of the cube are not square", "scale the image");
+    }
+    if (isVolume && isBlockFormat(image.format)) {
+        return makeError("scene-image", where, "a 3D image is in a block format", "give it in RGBA8");
+    }
+    return okStatus();
+}
+
+}  // namespace
+
+Status checkImage(const ImageView& image, bool srgb, const std::string& where, const ImageLimits& limits) {
+    GLINT_TRY_DO(checkSize(image, where, limits));
     const bool knownChannels = std::ranges::all_of(
         image.channels, [](TexelChannel channel) { return channel <= TexelChannel::One; });
     if (static_cast<std::size_t>(image.format) >= kTexelFormatCount || !knownChannels) {
@@ -223,7 +271,7 @@ Status checkImage(const ImageView& image, bool srgb, const std::string& where, c
                              (srgb ? " as colours in sRGB" : " as linear data"),
                          "give a format of Context::texelFormats(), or the image in RGBA8");
     }
-    const auto most = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
+    const std::uint32_t most = image.mostLevels();
     if (image.levels == 0 || image.levels > most) {
         return makeError("scene-image", where,
                          "the image has " + std::to_string(image.levels) + " levels, its size takes 1 to " +

@@ -18,8 +18,11 @@ namespace glint {
 
 // The images that a device accepts.
 struct ImageLimits {
-    std::uint32_t maxSize = 0;  // texels of an axis
+    std::uint32_t maxSize = 0;  // texels of an axis of a 2D image
     TexelFormats formats;
+    std::uint32_t maxLayers = 256;
+    std::uint32_t maxCubeSize = 4096;
+    std::uint32_t maxVolumeSize = 256;
 };
 ImageLimits imageLimits(const Context::State& context);
 
@@ -52,6 +55,10 @@ struct MotionShape {
 
 // Pure. Errors: "scene-motion", "scene-light", "scene-origin".
 Status checkMotion(const MotionView& motion, const MotionShape& shape);
+
+// Error "texture-dimension": an image has another dimension than the package's shaders read.
+Status checkDimension(package::TextureDimension given, package::TextureDimension wanted,
+                      const std::string& where);
 
 // Checks the size, the format, the levels and the number of bytes of an image that is read as colour in sRGB
 // or as linear data. Error "scene-image".

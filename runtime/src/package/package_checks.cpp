@@ -297,8 +297,11 @@ Status checkScenes(const Package::State& state, const std::string& where) {
 }
 
 Status checkSamplers(const Package::State& state, const std::string& where) {
-    if (!std::ranges::all_of(state.textures, [](const auto& texture) { return texture.srgb <= 1; })) {
-        return altered(where, "a texture has an unknown colour space");
+    if (!std::ranges::all_of(state.textures, [](const package::TextureEntry& texture) {
+            return texture.srgb <= 1 &&
+                   static_cast<std::size_t>(texture.dimension) < std::size(package::kTextureDimensionNames);
+        })) {
+        return altered(where, "a texture has an unknown colour space or dimension");
     }
     const auto known = [](const package::SamplerEntry& sampler) {
         return sampler.wrapU <= kLastWrap && sampler.wrapV <= kLastWrap && sampler.magnification <= 1 &&

@@ -40,6 +40,20 @@ Status checkUse(const SceneStore& store, const TextureUse& use, const std::strin
     return okStatus();
 }
 
+// Checks that textures have the dimensions of their slots in records of the key's model.
+Status checkDimensions(const SceneStore& store, std::span<const TextureUse> uses, const MaterialKey& key,
+                       const std::string& where) {
+    for (const TextureUse& use : uses) {
+        const std::size_t place = placeOfTexture(store.scene.materialLayout, 0, use.slot);
+        const RecordField* const field = store.scene.package.fields.findAt(place, key.features.model);
+        if (field != nullptr) {
+            GLINT_TRY_DO(checkDimension(store.textures.find(use.texture)->dimension,
+                                        static_cast<package::TextureDimension>(field->type), where));
+        }
+    }
+    return okStatus();
+}
+
 // Checks a source on its own, without the scene.
 Status checkSource(const SceneStore& store, const MaterialSource& source, const std::string& where) {
     if (source.record.size() != store.scene.materialLayout.recordBytes) {
@@ -60,6 +74,7 @@ Status checkSource(const SceneStore& store, const MaterialSource& source, const 
     }
     for (const MaterialKey& key : source.keys) {
         GLINT_TRY_DO(store.cases->checkAttributes(key, where));
+        GLINT_TRY_DO(checkDimensions(store, source.textures, key, where));
     }
     return okStatus();
 }
@@ -261,7 +276,7 @@ Result<TextureHandle> SceneEditor::addTexture(const ImageView& image, bool srgb)
     }
     GLINT_TRY(auto made, makeImage(*store_, image, srgb, next.index));
     const TextureHandle texture =
-        store_->textures.add({image.width, image.height, srgb, emissionTexels(image, srgb)});
+        store_->textures.add({image.width, image.height, srgb, image.dimension, emissionTexels(image, srgb)});
     scene.textures.resize(std::max<std::size_t>(scene.textures.size(), store_->textures.end()));
     scene.textures[texture.index] = std::move(made);
     store_->setDirty = true;
@@ -275,6 +290,7 @@ Status SceneEditor::replaceTexture(TextureHandle texture, const ImageView& image
         return makeError("texture-trusted", "", "the shaders of the package rely on what its textures hold",
                          "compile it with --no-trust-textures, or with --fallback");
     }
+    GLINT_TRY_DO(checkDimension(image.dimension, entry->dimension, placeOf("texture", texture.index)));
     GLINT_TRY(auto made, makeImage(*store_, image, entry->srgb, texture.index));
     DeviceImage& place = store_->scene.textures[texture.index];
     store_->retired.add(std::move(place));

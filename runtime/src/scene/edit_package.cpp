@@ -104,7 +104,8 @@ private:
         const std::vector<package::TextureEntry>& uploaded = store_.scene.package.textures;
         for (const package::TextureEntry& entry : known_.textures) {
             const auto place = std::ranges::find_if(uploaded, [&](const package::TextureEntry& other) {
-                return other.image == entry.image && other.srgb == entry.srgb;
+                return other.image == entry.image && other.srgb == entry.srgb &&
+                       other.dimension == entry.dimension;
             });
             if (place == uploaded.end()) {
                 return otherContent(placeOf("image", entry.image),

@@ -60,6 +60,7 @@ struct StoredTexture {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     bool srgb = false;
+    package::TextureDimension dimension = package::TextureDimension::Flat;
     std::shared_ptr<const EmissionTexels> texels{};  // of a colour
     Users materials{};
 };

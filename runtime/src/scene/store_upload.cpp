@@ -120,8 +120,8 @@ private:
             GLINT_TRY(auto made, uploadSceneTexture(scene_, *store_.uploader, number, image, srgb));
             scene_.textures.push_back(std::move(made));
             if (store_.editable) {
-                store_.firstTextures.push_back(
-                    store_.textures.add({image.width, image.height, srgb, emissionTexels(image, srgb)}));
+                store_.firstTextures.push_back(store_.textures.add(
+                    {image.width, image.height, srgb, image.dimension, emissionTexels(image, srgb)}));
             }
         }
         store_.uploadedTextures = store_.firstTextures;

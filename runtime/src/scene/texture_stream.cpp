@@ -205,7 +205,7 @@ Result<DeviceImage> uploadStreamed(TextureStream::State& stream, Uploader& uploa
     while (streamed.level + 1 < info.mips && largestSide(stored, streamed.level) > stream.firstSize) {
         ++streamed.level;
     }
-    if (streamed.level == 0 || stored.levels < info.mips) {
+    if (streamed.level == 0 || stored.levels < info.mips || stored.dimension != ImageView::Dimension::Flat) {
         Result<DeviceImage> whole = uploadTexture(scene.context, scene.pool, uploader, image, srgb);
         if (whole) {
             stream.textures.erase(texture);

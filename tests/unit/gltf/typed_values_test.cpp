@@ -32,8 +32,9 @@ const materials::MaterialModel& typedModel() {
                 {"name": "turn", "type": "mat3", "default": [1, 0, 0, 0, 1, 0, 0, 0, 1]},
                 {"name": "ramp", "type": "vec2", "count": 3, "range": [0, 4], "default": [0, 0]},
                 {"name": "edges", "type": "enum", "values": ["low", "high"], "count": 2, "default": "low"},
+                {"name": "table", "type": "address"},
                 {"name": "clearcoatFactor", "type": "int", "default": 7}],
-            "textures": [{"name": "specularTexture"}]})json")));
+            "textures": [{"name": "specularTexture"}, {"name": "mood", "dimension": "cube"}]})json")));
         return materials::loadMaterialModel(std::vector{folder.path().string()});
     }();
     EXPECT_TRUE(model) << toString(model.error());
@@ -95,6 +96,7 @@ TEST(TypedValues, OfGltfHaveTheTypesOfTheirDeclarations) {
              {R"({"ramp": 1})", "/ramp", "must be an array of 3 values"},
              {R"({"ramp": [[0, 1], [0], [0, 1]]})", "/ramp/1", "must be an array of 2 numbers"},
              {R"({"ramp": [[0, 1], [0, null], [0, 1]]})", "/ramp/1/1", "must be a number"},
+             {R"({"table": 0})", "/table", "is the address of a buffer, which only a program can give"},
              {R"({"edges": ["low", "hi"]})", "/edges/1", "\"hi\" is none of low, high"},
          }) {
         const Diagnostic refused = mustFail(importValues(one.values));
@@ -108,7 +110,8 @@ TEST(TypedValues, AnimationsChangeFloatsAlone) {
     for (const auto& [member, type] : {std::pair{"step", "the type int"},
                                        {"edge", "the type enum (soft, hard)"},
                                        {"ramp", "the type vec2[3]"},
-                                       {"turn", "the type mat3"}}) {
+                                       {"turn", "the type mat3"},
+                                       {"table", "the type address"}}) {
         GltfBuilder builder;
         builder.addTriangle()["material"] = 0;
         builder.append("materials", Json::parse(R"({"extensions": {"EXT_opal": {}}})"));
@@ -195,6 +198,11 @@ TEST(TypedValues, OfListsAreCheckedAtTheirPlaces) {
               "/materials/0/values/edges: has 1 values; it must be an array of 2");
     EXPECT_EQ(refusal(R"("values": {"roughnessFactor": 1})").substr(0, 70),
               "/materials/0/values/roughnessFactor: roughnessFactor is of another bas");
+    EXPECT_NE(refusal(R"("values": {"table": [0, 0]})").find("/values/table: is the address of a buffer"),
+              std::string::npos);
+    EXPECT_NE(
+        refusal(R"("edited": [{"parameter": "table", "range": [0, 1]}])").find("/range: is for numbers"),
+        std::string::npos);
     EXPECT_NE(refusal(R"("edited": [{"parameter": "flag", "range": [0, 1]}])")
                   .find("/edited/0/range: is for numbers"),
               std::string::npos);
@@ -203,6 +211,22 @@ TEST(TypedValues, OfListsAreCheckedAtTheirPlaces) {
               std::string::npos);
     EXPECT_NE(refusal(R"("edited": [{"parameter": "step", "range": [0, 3]}])").find("which is -1 to 2"),
               std::string::npos);
+}
+
+// Files have 2D images. A program gives the others, for which pictures show white until then.
+TEST(TypedValues, TexturesOfOtherDimensionsComeAtRunTime) {
+    const Diagnostic refused = mustFail(importList(R"("textures": {"mood": "mood.png"})"));
+    EXPECT_EQ(refused.id, "texture-dimension") << toString(refused);
+    EXPECT_TRUE(refused.where.ends_with("#/materials/0/textures/mood")) << refused.where;
+    gltf::ImportOptions decoding = options();
+    decoding.decodeImages = true;
+    gltf::MaterialDescription made{.name = "a", .model = "opal"};
+    made.textures["mood"] = {};
+    const gltf::Scene scene = must(gltf::importMaterials({"list", {made}}, decoding));
+    const gltf::Image& image = scene.images.at(0);
+    EXPECT_EQ(image.dimension, package::TextureDimension::Cube);
+    EXPECT_EQ(image.layers, 6);
+    EXPECT_EQ(image.pixels, std::vector<std::uint8_t>(24, 255));
 }
 
 }  // namespace

@@ -639,6 +639,10 @@ TEST(Declarations, TypesHaveValuesOfTheirOwn) {
               "/default/1/1: is outside of the range"},
              {R"("type": "int", "count": 2, "default": 0.5)", "/default: is 0.5; it must be a whole number"},
              {R"("type": "int", "unit": "radians", "default": 0)", "/unit: angles are"},
+             {R"("type": "address", "default": 0)", "/default: is for values, and a program gives addresses"},
+             {R"("type": "address", "range": [0, 1])", "/range: is for numbers"},
+             {R"("type": "address", "unit": "radians")", "/unit: angles are"},
+             {R"("type": "int")", "has no \"default\""},
          }) {
         const std::string refused = refusal(layerWith(one.parameter));
         EXPECT_NE(refused.find(one.refusal), std::string::npos) << one.parameter << ": " << refused;
@@ -652,6 +656,7 @@ TEST(Declarations, TypesHaveValuesOfTheirOwn) {
     EXPECT_EQ(numbersOf(R"("type": "int", "default": -2147483648)"), Numbers{-2147483648.0});
     EXPECT_EQ(numbersOf(R"("type": "enum", "values": ["soft", "hard"], "default": "hard")"), Numbers{1.0});
     EXPECT_EQ(numbersOf(R"("type": "bool", "count": 2, "default": [false, true])"), (Numbers{0.0, 1.0}));
+    EXPECT_EQ(numbersOf(R"("type": "address")"), (Numbers{0.0, 0.0}));
     EXPECT_EQ(numbersOf(R"("type": "vec2", "count": 2, "default": [3, 4])"), (Numbers{3.0, 4.0, 3.0, 4.0}));
 }
 
@@ -692,6 +697,8 @@ TEST(Declarations, ConditionsKnowWholeNumbersAndNames) {
     EXPECT_NE(refusedBy(R"("type": "float", "count": 2, "default": 0)", "rim == 0")
                   .find("\"rim\" is an array, which conditions can't name"),
               std::string::npos);
+    EXPECT_NE(refusedBy(R"("type": "address")", "rim == 0").find("\"rim\" is an address, which conditions"),
+              std::string::npos);
     EXPECT_NE(refusal(layerWith(step, R"(, "textures": [{"name": "wetTexture", "scales": ["rim"]}])"))
                   .find("#/textures/0/scales: \"rim\" has the type int"),
               std::string::npos);
@@ -706,6 +713,41 @@ TEST(Declarations, ConditionsKnowWholeNumbersAndNames) {
     EXPECT_TRUE(
         modelWith(layerWith(step, R"(, "derived": [{"name": "damp", "type": "float", "value": "rim / 2"}])"))
             .ok());
+}
+
+TEST(Declarations, TexturesHaveADimension) {
+    const auto textures = [](const std::string& members, const std::string& when = "MASK") {
+        return R"({"name": "wet", "extension": "EXT_wet", "stage": "layer",
+                   "neutral": [{"when": ")" +
+               when + R"(", "because": "it is so"}], "textures": [{"name": "rim", )" + members + "}]}";
+    };
+    for (const auto& [members, expected] :
+         {std::pair(R"("dimension": "Cube")",
+                    "/textures/0/dimension: there is no \"Cube\"; did you mean cube?"),
+          {R"("dimension": "cube", "reads": "rg")", "/textures/0/reads: is for 2D textures"},
+          {R"("dimension": "3d", "roughness": "g")", "/textures/0/roughness: is for 2D textures"},
+          {R"("dimension": "cube", "coordinates": "own")",
+           "/textures/0/coordinates: a texture with the dim"}}) {
+        EXPECT_NE(refusal(textures(members)).find(expected), std::string::npos) << refusal(textures(members));
+    }
+    // Only those that have UVs need any, and nobody knows what they hold: floats may be beyond [0, 1].
+    const auto key = [&](const std::string& members) {
+        const materials::MaterialModel model = must(modelWith(textures(members, "texel(rim).r <= 1")));
+        materials::Material material(model);
+        material.give("EXT_wet");
+        material.texture("rim").texture = 0;
+        return model.names(
+            compiler::makeKey(material, {.hasTexCoords0 = members.find("d-a") == std::string::npos}, {}));
+    };
+    const auto has = [&](const std::string& members, std::string_view feature) {
+        const auto names = key(members);
+        return std::ranges::find(names, feature) != names.end();
+    };
+    EXPECT_FALSE(has(R"("dimension": "2d")", "wet"));
+    EXPECT_TRUE(has(R"("dimension": "cube")", "wet"));
+    EXPECT_TRUE(has(R"("dimension": "3d")", "rim"));
+    EXPECT_FALSE(has(R"("dimension": "2d-array")", "rim"));
+    EXPECT_TRUE(has(R"("dimension": "2d-array", "coordinates": "own")", "rim"));
 }
 
 // Models of packs have names of their own, which hide those that all models share.

@@ -46,7 +46,7 @@ public:
             }
         }
         for (const MaterialTexture& one : model.textures) {
-            add(one.name, one.feature, static_cast<int>(one.role));
+            add(one.name, one.feature, static_cast<int>(one.role), static_cast<int>(one.dimension));
             for (const MaterialTexture::Place& place : one.places) {
                 add(place.object, place.member, place.isColor, place.reads.channels, place.reads.isNormals,
                     place.reads.roughness, place.reads.glossiness);
@@ -217,6 +217,7 @@ const std::map<std::string_view, std::vector<const char*>> kValues{
     {"diffuse", {R"("moist.glsl")"}},
     {"emission", {R"("moist.glsl")"}},
     {"coordinates", {R"("moist.glsl")", R"("own")"}},
+    {"dimension", {R"("cube")"}},
     {"opacity", {R"("moist.glsl")"}},
     {"after", {R"(["specularGlossiness"])"}},
     {"coversEmission", {"true"}},

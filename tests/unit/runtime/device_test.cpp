@@ -316,7 +316,7 @@ TEST_F(UploadTest, BlasesKeepToTheStorageBufferRange) {
 // The textures are larger than the staging buffer, of odd sizes, and thin.
 TEST_F(UploadTest, TexturesOfAllShapes) {
     test::PackageSpec spec = test::makeDeviceSpec();
-    spec.textures = {{0, 1}, {1, 0}, {2, 1}, {0, 0}};
+    spec.textures = {{0, 1, {}}, {1, 0, {}}, {2, 1, {}}, {0, 0, {}}};
     spec.samplers = {{0, 1, 0, 1, 0, 0}, {2, 0, 1, 0, 1, 1}};
     const Package package = load(spec);
     TestScene scene;
@@ -334,7 +334,7 @@ TEST_F(UploadTest, TexturesOfAllShapes) {
 // 16-bit images keep their precision if the device can filter them, even as colour.
 TEST_F(UploadTest, WideTexturesAreNarrowedOnlyWhereTheDeviceDemands) {
     test::PackageSpec spec = test::makeDeviceSpec();
-    spec.textures = {{0, 1}, {0, 0}, {1, 1}};
+    spec.textures = {{0, 1, {}}, {0, 0, {}}, {1, 1, {}}};
     const Package package = load(spec);
     TestScene scene;
     scene.images.push_back(
@@ -357,7 +357,7 @@ TEST_F(UploadTest, WideTexturesAreNarrowedOnlyWhereTheDeviceDemands) {
 
 TEST_F(UploadTest, BrokenScenesAreErrors) {
     test::PackageSpec spec = test::makeDeviceSpec();
-    spec.textures = {{0, 1}};
+    spec.textures = {{0, 1, {}}};
     spec.primitives[0].key.inputs = test::inputOf(package::Role::Normals);
     spec.cases[0].always = std::uint64_t{spec.primitives[0].key.inputs} << 32U;
     const Package package = load(spec);

@@ -75,7 +75,7 @@ std::vector<std::uint8_t> bytesOf(const auto& span) {
 
 PackageSpec makeScene() {
     PackageSpec spec = test::makeSpec();
-    spec.textures = {{0, 1}, {0, 0}};
+    spec.textures = {{0, 1, {}}, {0, 0, {}}};
     spec.samplers = {{0, 1, 1, 1, 1, 1}};
     spec.materials[0].roughnessFactor = 0.25F;
     spec.primitives = {test::makePrimitive(0, 0), test::makePrimitive(2, 1)};

@@ -47,7 +47,7 @@ PackageSpec makeRichSpec() {
     PackageSpec spec = test::makeSpec();
     spec.alpha = package::AlphaPolicy::Tested;
     spec.precision = package::ShadingPrecision::Half;
-    spec.textures = {{0, 1}, {0, 0}};
+    spec.textures = {{0, 1, {}}, {0, 0, {}}};
     spec.samplers = {{0, 1, 1, 1, 1, 1}};
     spec.materials[0].textures[0].textureIndex = 1;
     spec.primitives = {test::makePrimitive(0, 0, gpu::kGeometryAlphaTested), test::makePrimitive(2, 1)};
@@ -329,6 +329,7 @@ TEST_F(PackageTest, BrokenPromisesAreErrors) {
         {"sampler", [](PackageSpec& s) { s.materials[0].textures[1].samplerIndex = 1; }},
         {"UV set", [](PackageSpec& s) { s.materials[0].textures[1].texCoord = 2; }},
         {"colour space", [](PackageSpec& s) { s.textures[0].srgb = 2; }},
+        {"dimension", [](PackageSpec& s) { s.textures[0].dimension = package::TextureDimension{4}; }},
         {"wrap", [](PackageSpec& s) { s.samplers[0].wrapV = 3; }},
         {"filter", [](PackageSpec& s) { s.samplers[0].mip = 2; }},
         {"order", [](PackageSpec& s) { std::swap(s.primitives[0], s.primitives[1]); }},

@@ -232,7 +232,7 @@ TEST_P(RendererTest, SceneWithoutAnything) {
 
 TEST_P(RendererTest, MipsAreMeansInLinearLight) {
     test::PackageSpec spec = test::makeDeviceSpec();
-    spec.textures = {{0, 1}, {0, 0}};
+    spec.textures = {{0, 1, {}}, {0, 0, {}}};
     spec.samplers = {{0, 0, 0, 0, 0, 1}};
     TestScene scene = test::squareScene();
     scene.images = {{2, 2, {0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 255, 0, 0, 0, 255}}};
@@ -250,7 +250,7 @@ TEST_P(RendererTest, MipsAreMeansInLinearLight) {
 // see how the mips that are missing are made.
 TEST_P(RendererTest, MipsOfAnImageAreKept) {
     test::PackageSpec spec = test::makeDeviceSpec();
-    spec.textures = {{0, 0}, {1, 0}, {2, 0}};
+    spec.textures = {{0, 0, {}}, {1, 0, {}}, {2, 0, {}}};
     spec.samplers = {{0, 0, 0, 0, 0, 1}};
     TestScene scene = test::squareScene();
     const auto addLevels = [&](std::uint32_t size, const std::vector<std::uint8_t>& values,

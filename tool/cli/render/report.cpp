@@ -8,7 +8,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -494,11 +493,10 @@ TextureReport textureReport(std::span<const ImageView> images) {
     TextureReport report;
     for (const ImageView& image : images) {
         const bool isBlitted = !isBlockFormat(image.format);
-        const auto most = static_cast<std::uint32_t>(std::bit_width(std::max(image.width, image.height)));
         ++report.images;
         ++report.formats[infoOf(image.format).name];
-        report.texels += std::uint64_t{image.width} * image.height;
-        report.bytes += image.byteCount(isBlitted ? most : image.levels);
+        report.texels += std::uint64_t{image.width} * image.height * image.layers;
+        report.bytes += image.byteCount(isBlitted ? image.mostLevels() : image.levels);
     }
     return report;
 }

@@ -16,6 +16,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -165,8 +166,10 @@ std::vector<FieldEntry> makeFields(const MaterialLayout& layout, StringTable& st
     }
     constexpr auto kBytes = static_cast<std::uint32_t>(sizeof(gpu::TextureRecord));
     for (const TextureSlot& row : layout.textures) {
-        add(layout.model->textures[static_cast<std::size_t>(row.texture)].name,
-            layout.textureOffset + static_cast<std::uint32_t>(row.slot) * kBytes, kBytes, 0, row.models);
+        const materials::MaterialTexture& texture =
+            layout.model->textures[static_cast<std::size_t>(row.texture)];
+        add(texture.name, layout.textureOffset + static_cast<std::uint32_t>(row.slot) * kBytes, kBytes,
+            static_cast<std::uint32_t>(texture.dimension), row.models);
     }
     std::ranges::stable_sort(entries, {}, [](const FieldEntry& entry) {
         return std::pair(entry.model & gpu::kModelNumber, entry.offset);
@@ -414,7 +417,7 @@ using package::TextureEntry;
 
 MaterialTables makeMaterialTables(const gltf::Scene& scene, const MaterialLayout& layout) {
     MaterialTables tables;
-    std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> indexOf;
+    std::map<std::tuple<std::uint32_t, std::uint16_t, TextureDimension>, std::uint32_t> indexOf;
     for (const materials::Material& material : scene.materials) {
         std::vector<std::uint8_t> record = makeMaterialRecord(material, layout);
         for (const auto& [i, info] : material.textures) {
@@ -423,10 +426,13 @@ MaterialTables makeMaterialTables(const gltf::Scene& scene, const MaterialLayout
             }
             // A texture that no key reads is in the tables all the same, so that images keep their numbers.
             const gltf::Texture& texture = scene.textures[static_cast<std::size_t>(info.texture)];
+            const bool isColor = material.isColor(static_cast<int>(i));
             const TextureEntry entry{static_cast<std::uint32_t>(texture.image),
-                                     material.isColor(static_cast<int>(i)) ? 1U : 0U};
-            const auto [place, isNew] = indexOf.try_emplace(
-                {entry.image, entry.srgb}, static_cast<std::uint32_t>(tables.textures.size()));
+                                     static_cast<std::uint16_t>(isColor ? 1 : 0),
+                                     layout.model->textures[i].dimension};
+            const auto [place, isNew] =
+                indexOf.try_emplace({entry.image, entry.srgb, entry.dimension},
+                                    static_cast<std::uint32_t>(tables.textures.size()));
             if (isNew) {
                 tables.textures.push_back(entry);
             }

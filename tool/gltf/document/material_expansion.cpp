@@ -405,9 +405,7 @@ private:
             if (parameter == nullptr) {
                 return;
             }
-            const bool isNamed = parameter->type->kind == materials::NumberKind::Truth ||
-                                 parameter->type->kind == materials::NumberKind::Name;
-            if (edited.range && isNamed) {
+            if (edited.range && !parameter->type->hasRange()) {
                 fail(place + "/range", fmt::format("is for numbers; {} has the type {}", edited.parameter,
                                                    parameter->typeText()));
                 return;

@@ -233,6 +233,13 @@ TexelFormat targetFormat(const ImageUse& use, bool hasAlpha, bool packs, const T
 
 Result<FittedImage> fitImage(const Scene& scene, const Image& image, const ImageUse& use,
                              const FitOptions& options) {
+    if (image.dimension != package::TextureDimension::Flat) {
+        return FittedImage{.width = image.width,
+                           .height = image.height,
+                           .texels = image.pixels,
+                           .dimension = image.dimension,
+                           .layers = image.layers};
+    }
     return Fitter(scene, image, use, options).fit();
 }
 

@@ -132,8 +132,9 @@ materials::Material baseMaterial(const materials::MaterialModel& model, int numb
     return material;
 }
 
-// One texture whose texels are at the ends of the range and between, as they come from files.
-void addCheckedTexture(gltf::Scene& scene) {
+// Textures of each dimension, by its number, whose texels are at the ends of the range and between, as they
+// come from files.
+void addCheckedTextures(gltf::Scene& scene) {
     constexpr int kSide = 8;
     gltf::Image image;
     image.name = "checked";
@@ -150,6 +151,21 @@ void addCheckedTexture(gltf::Scene& scene) {
     sampler.mipmapped = false;
     scene.samplers.push_back(sampler);
     scene.textures.push_back({0, 0});
+    // One of each other dimension with the same texels.
+    using package::TextureDimension;
+    for (const auto& [dimension, layers] : {std::pair(TextureDimension::Array, 4),
+                                            {TextureDimension::Cube, 6},
+                                            {TextureDimension::Volume, 8}}) {
+        gltf::Image other = scene.images.front();
+        other.dimension = dimension;
+        other.layers = layers;
+        for (int layer = 1; layer < layers; ++layer) {
+            const std::vector<std::uint8_t>& first = scene.images.front().pixels;
+            other.pixels.insert(other.pixels.end(), first.begin(), first.end());
+        }
+        scene.textures.push_back({static_cast<int>(scene.images.size()), 0});
+        scene.images.push_back(std::move(other));
+    }
 }
 
 // A square of two metres in the plane z = 0, whose front faces +Z.
@@ -235,7 +251,7 @@ Combined combine(const materials::MaterialModel& model, const materials::Feature
     }
     if (textured) {
         for (const materials::MaterialTexture* const texture : ingredients.textures) {
-            made.material.texture(texture->name).texture = 0;
+            made.material.texture(texture->name).texture = static_cast<int>(texture->dimension);
             made.material.texture(texture->name).texCoord = isRich ? 1 : 0;
         }
         made.place.parameters.emplace_back("textures", std::vector<float>{1.0F});
@@ -300,6 +316,9 @@ std::vector<CheckedMaterial> addBases(const materials::MaterialModel& model,
 
 std::vector<double> checkedValues(const materials::Parameter& parameter) {
     const double fallback = parameter.fallback[0];
+    if (parameter.type->isAddress()) {
+        return {fallback};
+    }
     if (parameter.type->kind == materials::NumberKind::Truth ||
         parameter.type->kind == materials::NumberKind::Name) {
         std::vector<double> values{fallback};
@@ -335,7 +354,7 @@ std::vector<double> checkedValues(const materials::Parameter& parameter) {
 Result<CheckedScene> makeCheckedScene(const materials::MaterialModel& model, std::uint32_t combinations) {
     CheckedScene made;
     made.scene.path = "check-materials";
-    addCheckedTexture(made.scene);
+    addCheckedTextures(made.scene);
     for (int base = 0; base < static_cast<int>(std::size(kCheckedBases)); ++base) {
         materials::Material material = baseMaterial(model, base);
         material.doubleSided = true;  // It is also seen from behind.

@@ -295,7 +295,9 @@ struct FieldEntry {
     // The model whose records have it, as in keys; 0: glTF's bases. Several models have it by an entry each.
     // Fields of different models share their places.
     std::uint32_t model;
-    std::uint32_t type;  // a hash of the type and of an enum's names: other values have another meaning
+    // A hash of the type and of an enum's names: other values have another meaning. Of a texture: its
+    // TextureDimension.
+    std::uint32_t type;
 };
 
 static_assert(sizeof(PackageHeader) == 160);
