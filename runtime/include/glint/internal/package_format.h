@@ -80,7 +80,7 @@ constexpr void forEachEffect(std::uint32_t effects, const Visit& visit) {
 // --- The file ---
 
 inline constexpr char kMagic[8] = {'G', 'L', 'I', 'N', 'T', 'P', 'K', 'G'};
-inline constexpr std::uint32_t kVersion = 26;
+inline constexpr std::uint32_t kVersion = 27;
 inline constexpr const char* kTablesFile = "tables.bin";
 inline constexpr const char* kManifestFile = "manifest.json";
 inline constexpr const char* kHeaderFile = "glint_tables.h";
@@ -122,6 +122,8 @@ struct PackageHeader {
     std::uint32_t firstShadowRays;  // of a round, which wait for a pass of their own; 0: traced inline
     SampleRecordFormat sampleRecord;
     std::uint32_t sizedLights;  // 1: rays of lobes find punctual lights that have a size, too
+    std::uint32_t diskLights;   // 1: shaders know disks among the lights
+    std::uint32_t pad;
 };
 
 enum class SectionKind : std::uint32_t {
@@ -272,7 +274,7 @@ struct FieldEntry {
     std::uint32_t type;  // a hash of the type and of an enum's names: other values have another meaning
 };
 
-static_assert(sizeof(PackageHeader) == 160);
+static_assert(sizeof(PackageHeader) == 168);
 static_assert(sizeof(PackageSection) == 24);
 static_assert(sizeof(ModuleEntry) == 40);
 static_assert(sizeof(CaseEntry) == 68);
