@@ -533,6 +533,188 @@ TEST(EngineSceneContent, TrianglesHaveMaterialsOfTheirOwn) {
     }
 }
 
+// The room with two lamps of two triangles, which are instances of one mesh, and lights with a size.
+gltf::Scene roomWithLamps() {
+    gltf::Scene scene = roomScene();
+    materials::Material lamp = paint({0, 0, 0});
+    lamp["emissiveFactor"] = {1.0F, 0.75F, 0.5F};
+    lamp["emissiveStrength"] = 4.0F;
+    addQuad(scene, lamp, {-1, 2, -4}, {1, 0, 0}, {0, 0, 1});
+    const int mesh = static_cast<int>(scene.meshes.size()) - 1;
+    gltf::Matrix4 aside = scaling(1, 1, 1);
+    aside[12] = 2.0;
+    addInstance(scene, mesh, aside);
+    return scene;
+}
+
+compiler::CompileSettings lampSteps(std::uint32_t lights) {
+    compiler::CompileSettings settings = roomSteps();
+    settings.strategies = package::kStrategyUber;
+    settings.plan.merge = compiler::MergePolicy::All;
+    settings.maxBounces = 2;
+    settings.lightSamples = lights;
+    settings.emissiveLights = compiler::EmissiveLights::On;
+    settings.sizedLights = compiler::SizedLights::On;
+    return settings;
+}
+
+void addSizedLights(session::SceneViewData& data) {
+    for (const LightView::Type type : {LightView::Type::Point, LightView::Type::Disk}) {
+        LightView light;
+        light.type = type;
+        light.position = {type == LightView::Type::Point ? -2.0F : 2.0F, 1.0F, -3.0F};
+        light.direction = {0, -1, 0};
+        light.intensity = {1.0F, 2.0F, 3.0F};
+        light.size = 0.3F;
+        data.lights.push_back(light);
+    }
+}
+
+// Gives the corners of the lamps' triangles, as makeQuad() has them.
+void giveCorners(Content& content, const Package& package, const gltf::Scene& scene,
+                 std::vector<std::array<float, 3>>& corners) {
+    const auto isLamp = [&](const EngineSceneView::Geometry& geometry) {
+        const auto* const entry = package.scene(0).findPrimitive(geometry.mesh, geometry.primitive);
+        return (entry->geometryFlags & gpu::kGeometryEmitter) != 0;
+    };
+    for (EngineSceneView::Geometry& geometry : content.geometries) {
+        if (!isLamp(geometry)) {
+            continue;
+        }
+        const gltf::Primitive& quad = scene.meshes[geometry.mesh].primitives[geometry.primitive];
+        if (corners.empty()) {
+            for (const std::uint32_t index : quad.indices) {
+                corners.push_back(quad.positions[index]);
+            }
+        }
+        geometry.lightCorners = corners;
+    }
+}
+
+double meanOfAnswers(const std::vector<float>& answers) {
+    double sum = 0.0;
+    for (const float value : answers) {
+        sum += static_cast<double>(value);
+    }
+    return sum / static_cast<double>(answers.size());
+}
+
+// The list of triangles and the hierarchy are those of the same scene that Glint has uploaded. They follow
+// transforms, values of materials and another package.
+TEST(EngineSceneLights, AreThoseOfGlintsOwnScene) {
+    const gltf::Scene room = roomWithLamps();
+    gltf::Scene bright = room;
+    const std::size_t lamp = room.materials.size() - 1;
+    bright.materials[lamp]["emissiveStrength"] = 12.0F;
+    const auto move = [](session::SceneViewData& data) {
+        addSizedLights(data);
+        data.instances.back().objectToWorld[3] += 0.5F;
+        data.instances.back().objectToWorld[7] -= 0.5F;
+    };
+    for (const std::uint32_t lights : {0U, 2U}) {
+        SCOPED_TRACE(lights);
+        const std::shared_ptr<const Package> package = packageOf(room, lampSteps(lights));
+        const std::shared_ptr<const Package> brighter = packageOf(bright, lampSteps(lights));
+        ASSERT_TRUE(package != nullptr && package->emission() != nullptr);
+        Content content = contentOf(*package, room, addSizedLights);
+        const Content moved = contentOf(*package, room, move);
+        const Content brightened = contentOf(*brighter, bright, move);
+        Engine engine(*content.gpu);
+        constexpr package::Strategy kUber = package::kStrategyUber;
+        const std::vector<float> first = engine.expected(*package, *content.gpu, kUber);
+        const std::vector<float> second = engine.expected(*package, *moved.gpu, kUber);
+        const std::vector<float> third = engine.expected(*brighter, *brightened.gpu, kUber);
+        expectOthers(first, second);
+        expectOthers(second, third);
+
+        std::vector<std::array<float, 3>> corners;
+        EngineSceneView view = content.view();
+        VkCommandBuffer commands = engine.begin();
+        auto scene = must(EngineScene::record(sharedContext(), *package, view, commands, engine.frame()));
+        const auto steps = engine.makeSteps(*package, *scene, kUber);
+        ASSERT_TRUE(engine.ask(*steps, *content.gpu));  // 0: without corners
+        giveCorners(content, *package, room, corners);
+        const EngineSceneView::Material own{static_cast<std::uint32_t>(lamp),
+                                            package->scene(0).materials.part(lamp, 1).bytes};
+        for (EngineSceneView::Geometry& geometry : content.geometries) {
+            geometry.material = geometry.lightCorners.empty() ? geometry.material : 0;
+        }
+        view = content.view();
+        view.materials = std::span(&own, 1);
+        must(scene->update(commands, *package, view, engine.frame()));
+        ASSERT_TRUE(engine.ask(*steps, *content.gpu));  // 1
+        engine.submit();
+        engine.drain();
+        commands = engine.begin();
+        must(scene->update(commands, moved.instances, moved.lights, engine.frame()));
+        ASSERT_TRUE(engine.ask(*steps, *moved.gpu));  // 2
+        must(scene->updateMaterial(
+            commands, 0, {own.material, brighter->scene(0).materials.part(lamp, 1).bytes}, engine.frame()));
+        ASSERT_TRUE(engine.ask(*steps, *moved.gpu));  // 3
+        engine.submit();
+        engine.drain();
+        commands = engine.begin();
+        view.instances = moved.instances;
+        must(scene->update(commands, *package, view, engine.frame()));
+        ASSERT_TRUE(engine.ask(*steps, *moved.gpu));  // 4: built anew
+        ASSERT_TRUE(steps->replacePackage(brighter));
+        ASSERT_TRUE(engine.ask(*steps, *moved.gpu));  // 5: the host's values stay
+        engine.submit();
+        engine.drain();
+        EXPECT_LT(meanOfAnswers(engine.answers(0)), 0.9 * meanOfAnswers(first));
+        EXPECT_EQ(engine.answers(1), first);
+        EXPECT_EQ(engine.answers(4), second);
+        EXPECT_EQ(engine.answers(5), second);
+        if (lights == 0) {
+            EXPECT_EQ(engine.answers(2), second);
+            EXPECT_EQ(engine.answers(3), third);
+        } else {  // the hierarchy keeps its order
+            EXPECT_NEAR(meanOfAnswers(engine.answers(2)) / meanOfAnswers(second), 1.0, 0.1);
+            EXPECT_NEAR(meanOfAnswers(engine.answers(3)) / meanOfAnswers(third), 1.0, 0.1);
+        }
+        corners.pop_back();
+        for (EngineSceneView::Geometry& geometry : content.geometries) {
+            geometry.lightCorners = geometry.lightCorners.empty() ? geometry.lightCorners : corners;
+        }
+        view.geometries = content.geometries;
+        EXPECT_EQ(mustFail(scene->update(VK_NULL_HANDLE, *package, view, engine.frame())).id, "engine-scene");
+    }
+}
+
+// A package that knows no disks gets none, by whatever call, and a call that is refused changes nothing.
+TEST(EngineSceneLights, DisksNeedAPackageThatKnowsThem) {
+    compiler::CompileSettings settings = roomSteps();
+    settings.strategies = package::kStrategyUber;
+    const gltf::Scene room = roomScene();
+    const std::shared_ptr<const Package> knowing = packageOf(room, settings);
+    settings.diskLights = compiler::DiskLights::Off;
+    const std::shared_ptr<const Package> package = packageOf(room, settings);
+    const Content content = contentOf(*package, room, keepAll);
+    std::vector<LightView> disks = content.lights;
+    disks.emplace_back().type = LightView::Type::Disk;
+    EngineSceneView view = content.view();
+    Engine engine(*content.gpu);
+    const std::vector<float> wanted = engine.expected(*package, *content.gpu, package::kStrategyUber);
+    VkCommandBuffer commands = engine.begin();
+    auto scene = must(EngineScene::record(sharedContext(), *package, view, commands, engine.frame()));
+    const auto steps = engine.makeSteps(*package, *scene, package::kStrategyUber);
+    view.lights = disks;
+    EXPECT_EQ(mustFail(EngineScene::create(sharedContext(), *package, view)).id, "scene-light");
+    EXPECT_EQ(mustFail(scene->update(commands, *package, view, engine.frame())).id, "scene-light");
+    EXPECT_EQ(mustFail(scene->update(commands, content.instances, disks, engine.frame())).id, "scene-light");
+    ASSERT_TRUE(engine.ask(*steps, *content.gpu));
+    engine.submit();
+    engine.drain();
+    EXPECT_EQ(engine.answers(0), wanted);
+    // Disks that are there keep such a package out.
+    must(scene->update(engine.begin(), *knowing, view, engine.frame()));
+    must(steps->replacePackage(knowing));
+    ASSERT_TRUE(engine.ask(*steps, *content.gpu));
+    engine.submit();
+    engine.drain();
+    EXPECT_EQ(mustFail(steps->replacePackage(package)).id, "scene-light");
+}
+
 TEST(RayStepsReplacement, BatchesUseTheNewPackageAtOnce) {
     const gltf::Scene room = texturedRoom();
     const auto [changed, settings] = otherCompilation();
