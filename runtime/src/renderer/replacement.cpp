@@ -412,7 +412,8 @@ void switchPackage(PackageUser& state, VkCommandBuffer commands) {
 }
 
 Status checkReplaced(const PackageUser& state) {
-    if (state.drawn.records != state.records) {
+    const bool lacksTree = state.package->lightSamples() > 0 && !state.drawn.hasLightTree();
+    if (state.drawn.records != state.records || lacksTree) {
         return makeError("package-replaced", "",
                          "EngineScene::update() has given the scene the content of another package",
                          "give that package to replacePackage()");

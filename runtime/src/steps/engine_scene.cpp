@@ -449,7 +449,7 @@ void settleLights(EngineScene::State& state, bool refits) {
         state.lightTree = {};
     }
     if (state.host.buildsTree || state.host.emission) {
-        std::vector<InstanceView> instances(state.placed.size());
+        std::vector<InstanceView> instances(state.emitters.records.empty() ? 0 : state.placed.size());
         for (std::size_t i = 0; i < instances.size(); ++i) {
             instances[i].objectToWorld = state.placed[i];
         }
