@@ -77,6 +77,7 @@ template <typename Change>
 Content contentOf(const Package& package, const gltf::Scene& scene, const Change& change) {
     session::SceneViewData data = session::makeSceneView(scene);
     data.vertices = VertexForm::Full;
+    data.traversalOrder = TraversalOrder::Input;  // an engine's triangles are in its own order
     change(data);
     const SceneView view = data.view();
     Content content;
