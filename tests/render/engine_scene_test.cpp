@@ -662,7 +662,9 @@ TEST(EngineSceneLights, AreThoseOfGlintsOwnScene) {
         ASSERT_TRUE(engine.ask(*steps, *moved.gpu));  // 5: the host's values stay
         engine.submit();
         engine.drain();
-        EXPECT_LT(meanOfAnswers(engine.answers(0)), 0.9 * meanOfAnswers(first));
+        // Without corners, paths find the same light by chance.
+        expectOthers(engine.answers(0), first);
+        EXPECT_NEAR(meanOfAnswers(engine.answers(0)) / meanOfAnswers(first), 1.0, 0.05);
         EXPECT_EQ(engine.answers(1), first);
         EXPECT_EQ(engine.answers(4), second);
         EXPECT_EQ(engine.answers(5), second);

@@ -698,7 +698,7 @@ TEST(RaySteps, AnEmissiveQuadLightsByItsFormFactor) {
         settings.maxBounces = bounces;
         settings.shadows =
             bounces > 1 ? package::ShadowPlacement::Deferred : package::ShadowPlacement::Inline;
-        const LoadedScene loaded(scene, settings);
+        const LoadedScene loaded(scene, settings, noLights);
         ASSERT_NE(loaded.package().emission(), nullptr);
         RayStepsOptions options;
         options.strategy = package::kStrategyUber;
