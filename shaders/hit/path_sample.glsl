@@ -80,6 +80,9 @@ PathStep nextStep(Hit hit, Surface surface, Features features, BsdfSample drawn,
     if (seesSkyFromBefore(hit, features, passes)) {
         // A ray brings all light behind the glass if no sample could have taken its place.
         float before = GLINT_FRAME.lobeRays.data[samplePlace(hit.target)].density;
+#if GLINT_STEPS
+        before = GLINT_FRAME.bounce <= 1u ? 0.0 : before;  // A host's rays are of no lobe.
+#endif
         step.density = before > 0.0 ? -1.0 : before;
     }
 #endif

@@ -212,6 +212,11 @@ float emitterDensity(LightReceiver receiver, Hit hit) {
 
 // The share of the emission of a hit that its ray brings. The lights of the surface that sent it bring the rest.
 float emissionOfRay(Hit hit) {
+#if GLINT_STEPS
+    if (GLINT_FRAME.bounce <= 1u) {
+        return 1.0;  // A host's rays are of no lobe.
+    }
+#endif
     LobeRay ray = GLINT_FRAME.lobeRays.data[samplePlace(hit.target)];
 #if GLINT_SHADOW_GLASS
     if (ray.density < 0.0) {

@@ -56,6 +56,8 @@ float seenHeight(HostLight light, LightSample centre) {
     return sine < 1.0 ? height : 0.0;
 }
 
+#if GLINT_DISK_LIGHTS
+
 // A point of the plane of a disk, along a direction.
 struct DiskPoint {
     float distance;  // metres; 0 if the direction does not meet the plane from its front
@@ -77,17 +79,22 @@ DiskPoint diskPointAlong(LightRecord disk, LightSample centre, vec3 direction) {
     return point;
 }
 
+#endif
+
 // The density, by solid angle, of the point in that direction that hostSampleLightPoint() gives, for all samples of the
 // light that a surface expects to take; 0 from within the light.
 float lightPointDensity(HostLight light, LightSample centre, vec3 direction) {
     LightRecord punctual = GLINT_PUNCTUAL(light);
     float density;
+#if GLINT_DISK_LIGHTS
     if (punctual.type == kLightDisk) {
         DiskPoint point = diskPointAlong(punctual, centre, direction);
         density = point.distance > 0.0 ? point.distance * point.distance /
                                              (kPi * punctual.size * punctual.size * point.facing)
                                        : 0.0;
-    } else {
+    } else
+#endif
+    {
         float height = seenHeight(light, centre);
         density = height > 0.0 ? 1.0 / (2.0 * kPi * height) : 0.0;
     }
@@ -102,6 +109,7 @@ float lightPointDensity(HostLight light, LightSample centre, vec3 direction) {
 // direction passes the light.
 LightSample lightAlong(HostLight light, LightSample centre, vec3 direction) {
     LightSample point = LightSample(direction, centre.distance, vec3(0.0), centre.gate);
+#if GLINT_DISK_LIGHTS
     if (GLINT_PUNCTUAL(light).type == kLightDisk) {
         LightRecord disk = GLINT_PUNCTUAL(light);
         DiskPoint met = diskPointAlong(disk, centre, direction);
@@ -114,6 +122,7 @@ LightSample lightAlong(HostLight light, LightSample centre, vec3 direction) {
         }
         return point;
     }
+#endif
     float height = seenHeight(light, centre);
     // Half of the squared chord is 1 - cosine, and keeps the digits of a small sun.
     precise vec3 chord = direction - centre.direction;

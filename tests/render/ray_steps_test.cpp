@@ -620,6 +620,29 @@ TEST(RaySteps, AskForVisibility) {
     }
 }
 
+// Rays that all go the same way.
+std::vector<EngineRay> alike(std::uint32_t count, const std::array<float, 3>& origin) {
+    std::vector<EngineRay> rays;
+    for (std::uint32_t slot = 0; slot < count; ++slot) {
+        rays.push_back({origin, slot, {0, 0, -1}});
+    }
+    return rays;
+}
+
+double meanRed(const std::vector<EngineRadiance>& answers) {
+    double sum = 0.0;
+    for (const EngineRadiance& answer : answers) {
+        sum += static_cast<double>(answer.radiance[0]);
+    }
+    return sum / static_cast<double>(answers.size());
+}
+
+FrameOptions blackSky() {
+    FrameOptions frame;
+    frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+    return frame;
+}
+
 // The irradiance below the middle of a disk is intensity / (height² + radius²), on its front. A disk without
 // a size lights a place to the side by the squares of its cosine.
 TEST(RaySteps, ADiskLightsByLambertsLaw) {
@@ -641,24 +664,90 @@ TEST(RaySteps, ADiskLightsByLambertsLaw) {
             light.direction = {0, 0, front};
             light.size = radius;
         });
-        std::vector<EngineRay> rays;
-        for (std::uint32_t slot = 0; slot < kSlots; ++slot) {
-            rays.push_back({{x, 0, 0}, slot, {0, 0, -1}});
-        }
-        Host host(loaded, rays, kSlots, sizeof(EngineRadiance));
+        Host host(loaded, alike(kSlots, {x, 0, 0}), kSlots, sizeof(EngineRadiance));
         RayStepsOptions options;
         options.strategy = package::kStrategyUber;
-        FrameOptions frame;
-        frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-        double mean = 0.0;
-        for (const EngineRadiance& answer : host.answers<EngineRadiance>(options, frame)) {
-            mean += static_cast<double>(answer.radiance[0]) / kSlots;
-        }
+        const double mean = meanRed(host.answers<EngineRadiance>(options, blackSky()));
         const double squared = 4.0 + static_cast<double>(x * x);
         const double facing = 4.0 / squared;
         const double irradiance = 3.0 * facing / (squared + static_cast<double>(radius * radius));
         const double expected = front < 0.0F ? 0.5 / 3.14159265 * irradiance : 0.0;
         EXPECT_NEAR(mean, expected, (radius > 0.0F ? 0.02 : 1e-4) * expected) << radius << ", " << x;
+    }
+}
+
+// A square lamp that faces a wall lights the point below its middle by its form factor, whether samples alone
+// or rays of paths find it, too. The host's own rays see all of its light.
+TEST(RaySteps, AnEmissiveQuadLightsByItsFormFactor) {
+    constexpr double kRadiance = 3.0;
+    gltf::Scene scene = emptyScene();
+    addQuad(scene, matte(0.5F), {-5, -5, -4}, {10, 0, 0}, {0, 10, 0});
+    materials::Material lamp = matte(0.0F);
+    lamp["emissiveFactor"] = {1.0F, 1.0F, 1.0F};
+    lamp["emissiveStrength"] = static_cast<float>(kRadiance);
+    addQuad(scene, lamp, {1, -1, -3}, {-2, 0, 0}, {0, 2, 0});
+    // Half of the side over the height is 1.
+    const double away = 1.0 / std::sqrt(2.0);
+    const double factor = 4.0 / 3.14159265 * away * std::atan(away);
+    constexpr std::uint32_t kSlots = 4096;
+    for (const std::uint32_t bounces : {1U, 2U}) {
+        compiler::CompileSettings settings = stepSettings();
+        settings.strategies = package::kStrategyUber;
+        settings.emissiveLights = compiler::EmissiveLights::On;
+        settings.lightSamples = 1;
+        settings.maxBounces = bounces;
+        settings.shadows =
+            bounces > 1 ? package::ShadowPlacement::Deferred : package::ShadowPlacement::Inline;
+        const LoadedScene loaded(scene, settings, noLights);
+        ASSERT_NE(loaded.package().emission(), nullptr);
+        RayStepsOptions options;
+        options.strategy = package::kStrategyUber;
+        Host below(loaded, alike(kSlots, {0, 0, -3.5F}), kSlots, sizeof(EngineRadiance));
+        const double expected = 0.5 * kRadiance * factor;
+        EXPECT_NEAR(meanRed(below.answers<EngineRadiance>(options, blackSky())), expected, 0.03 * expected);
+        std::vector<EngineRay> up = alike(8, {0, 0, -3.5F});
+        for (EngineRay& ray : up) {
+            ray.direction = {0, 0, 1};
+        }
+        Host seen(loaded, up, up.size(), sizeof(EngineRadiance));
+        EXPECT_NEAR(meanRed(seen.answers<EngineRadiance>(options, blackSky())), kRadiance, 1e-4);
+    }
+}
+
+// A mirror shows a sphere and a disk, whether all lights are looked for or those that a hierarchy leads to.
+TEST(RaySteps, MirrorsShowSizedLights) {
+    gltf::Scene scene = emptyScene();
+    addQuad(scene, mirrorMaterial(), {-5, -5, -4}, {10, 0, 0}, {0, 10, 0});
+    gltf::Light lamp;
+    lamp.type = gltf::LightType::Point;
+    lamp.intensity = 3.0F;
+    for (const float x : {0.0F, 3.0F}) {
+        lamp.position = {x, 0, -2};
+        scene.lights.push_back(lamp);
+    }
+    constexpr float kRadius = 0.5F;
+    const double expected = 3.0 / (3.14159265 * kRadius * kRadius);
+    for (const bool finds : {false, true}) {
+        for (const std::uint32_t lights : {0U, 1U}) {
+            compiler::CompileSettings settings = stepSettings();
+            settings.strategies = package::kStrategyUber;
+            settings.maxBounces = 2;
+            settings.lightSamples = lights;
+            settings.sizedLights = finds ? compiler::SizedLights::On : compiler::SizedLights::Off;
+            const LoadedScene loaded(scene, settings, [](session::SceneViewData& data) {
+                data.lights.at(0).size = data.lights.at(1).size = kRadius;
+                data.lights.at(1).type = LightView::Type::Disk;
+                data.lights.at(1).direction = {0, 0, -1};
+            });
+            std::vector<EngineRay> rays = alike(2, {0, 0, -3});
+            rays[1].origin[0] = 3.0F;
+            Host host(loaded, rays, rays.size(), sizeof(EngineRadiance));
+            RayStepsOptions options;
+            options.strategy = package::kStrategyUber;
+            for (const EngineRadiance& answer : host.answers<EngineRadiance>(options, blackSky())) {
+                EXPECT_NEAR(answer.radiance[0], finds ? expected : 0.0, 0.01 * expected) << lights;
+            }
+        }
     }
 }
 
@@ -686,6 +775,10 @@ TEST(RaySteps, RefuseWhatTheyCannotDo) {
         idOf(Renderer::create(sharedContext(), stepPackage.package(), stepPackage.gpuScene(), renderer)),
         "package-passes");
     EXPECT_EQ(idOf((*shared)->update(VK_NULL_HANDLE, {}, {}, 0)), "engine-scene");
+    settings.lightSamples = 1;
+    const LoadedScene choosing(scene, settings);
+    EXPECT_EQ(idOf(RaySteps::create(sharedContext(), choosing.package(), **shared, options)), "scene-package")
+        << "the scene has no hierarchy of lights";
 }
 
 // A scene of a host's own is checked before anything is made of it.

@@ -436,14 +436,11 @@ TEST(FoundLights, AutoDecidesByBouncesEffectsAndSizes) {
     EXPECT_EQ(mustFail(compiler::planPackage({&scene, 1}, settings)).id, "sized-lights");
 }
 
-// A host's own lights, and the steps of its own rays, are not Glint's to find.
+// A host's own lights are not Glint's to find.
 TEST(FoundLights, AHostsOwnLightsAreNotFound) {
     const gltf::Scene scene = room(false);
     compiler::CompileSettings settings = settingsOf({SizedLights::On, 2});
     settings.skyLight = compiler::SkyLight::Off;
-    settings.passes = package::Passes::Steps;
-    EXPECT_EQ(mustFail(compiler::planPackage({&scene, 1}, settings)).id, "sized-lights");
-    settings.passes = package::Passes::Frame;
     const test::TemporaryFolder folder;
     ASSERT_TRUE(base::writeFile(folder.path() / "lights.glsl", "// lights of a host\n"));
     settings.host = folder.path().string();

@@ -221,6 +221,7 @@ base::Json toJson(const inspect::InspectedPackage& inspected) {
           {"emissiveLights", package.emission() != nullptr},
           {"skyLight", package.skyLight()},
           {"sizedLights", package.sizedLights()},
+          {"diskLights", package.diskLights()},
           {"energyCompensation", manifest.setting("energyCompensation") == "on"},
           {"trustTextures", manifest.setting("trustTextures") == "on"},
           {"textureLod", std::string(manifest.setting("textureLod"))},

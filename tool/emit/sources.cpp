@@ -162,8 +162,7 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     text += fmt::format("#define GLINT_SKY_LIGHT {}\n", flag(sky));
     const bool sized = settings.sizedLights == SizedLights::On;
     text += fmt::format("#define GLINT_SIZED_LIGHTS {}\n", flag(sized));
-    text += fmt::format("#define GLINT_DISK_LIGHTS {}\n",
-                        flag(sized || emissive || settings.passes == package::Passes::Steps));
+    text += fmt::format("#define GLINT_DISK_LIGHTS {}\n", flag(settings.diskLights == DiskLights::On));
     text += "// Some lights are found by rays of lobes, too.\n";
     text += fmt::format("#define GLINT_SHARED_LIGHTS {}\n", flag(emissive || sky || sized));
     if (emissive) {

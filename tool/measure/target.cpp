@@ -24,6 +24,7 @@ compiler::DecidedPackage decidedBy(const Package& package, const gltf::Scene& sc
                                      .emissiveLights = package.emission() != nullptr,
                                      .skyLight = package.skyLight(),
                                      .sizedLights = package.sizedLights(),
+                                     .diskLights = package.diskLights(),
                                      .lightSamples = package.lightSamples(),
                                      .cases = {},
                                      .hits = {}};

@@ -36,6 +36,7 @@ struct DecidedPackage {
     bool emissiveLights = false;
     bool skyLight = false;
     bool sizedLights = false;
+    bool diskLights = false;
     std::uint32_t lightSamples = 0;
     std::vector<CaseFeatures> cases;  // by shader ID
     std::vector<CaseHits> hits;       // of the scene, as they are expected

@@ -58,8 +58,10 @@ std::uint32_t lightSamplesFor(const LightCounts& counts) {
 namespace {
 
 // The files of a host that decide where emissive triangles and their materials are, those that decide what
-// the sky is and who samples it, and that of punctual lights.
-constexpr std::string_view kEmitterFiles[] = {"lights.glsl", "geometry.glsl", "material.glsl"};
+// the sky is and who samples it, and that of punctual lights. With steps the host's scene says where the
+// triangles are, in whatever format its geometry is.
+constexpr std::string_view kEmitterFiles[] = {"lights.glsl", "material.glsl", "geometry.glsl"};
+constexpr std::span<const std::string_view> kEmitterFilesOfSteps = std::span(kEmitterFiles).first(2);
 constexpr std::string_view kSkyFiles[] = {"lights.glsl", "sky.glsl"};
 constexpr std::string_view kLightFiles[] = {"lights.glsl"};
 
@@ -85,15 +87,19 @@ public:
           plan_{.effects = lit_} {}
 
     Result<LightPlan> plan() && {
-        GLINT_TRY(plan_.emissive, decide(settings_.emissiveLights, [&] { return emits(); }, kEmitterFiles,
-                                         {"emissive-lights", "", "the lights or the geometry"}));
-        GLINT_TRY(plan_.sky,
-                  decide(settings_.skyLight, [&] { return settings_.skyLight == SkyLight::On || scatters(); },
-                         kSkyFiles, {"sky-light", " and a sky", "the lights or the sky"}));
+        GLINT_TRY(plan_.emissive,
+                  decide(settings_.emissiveLights, [&] { return emits(); },
+                         replaces(isOfSteps() ? kEmitterFilesOfSteps : std::span(kEmitterFiles)),
+                         {"emissive-lights", "", "the lights or the geometry"}));
+        GLINT_TRY(
+            plan_.sky,
+            decide(settings_.skyLight, [&] { return settings_.skyLight == SkyLight::On || scatters(); },
+                   isOfSteps() || replaces(kSkyFiles), {"sky-light", " and a sky", "the lights or the sky"}));
         GLINT_TRY(plan_.sized,
                   decide(settings_.sizedLights,
                          [&] { return settings_.sizedLights == SizedLights::On || settings_.sizesLights; },
-                         kLightFiles, {"sized-lights", "", "the lights"}));
+                         replaces(kLightFiles), {"sized-lights", "", "the lights"}));
+        plan_.disks = disks();
         GLINT_TRY_DO(countSamples());
         const bool isAnyLit = settings_.addsLight || plan_.emissive == EmissiveLights::On ||
                               plan_.sky == SkyLight::On || std::ranges::any_of(scenes_.scenes(), isLit);
@@ -150,22 +156,34 @@ private:
     }
 
     bool replaces(std::span<const std::string_view> files) const {
-        return settings_.passes == package::Passes::Steps ||
-               std::ranges::any_of(files, [&](std::string_view file) {
-                   return std::ranges::find(replaced_, file) != replaced_.end();
-               });
+        return std::ranges::any_of(files, [&](std::string_view file) {
+            return std::ranges::find(replaced_, file) != replaced_.end();
+        });
     }
 
-    // Returns On or Off. `isUseful` says whether these lights would change the picture. `files` are those of
-    // a host that has them itself.
+    bool isOfSteps() const {
+        return settings_.passes == package::Passes::Steps;
+    }
+
+    // Steps have disks because the scene is a program's, which glTF does not limit.
+    DiskLights disks() const {
+        const bool isUseful =
+            isOfSteps() || plan_.emissive == EmissiveLights::On || plan_.sized == SizedLights::On;
+        return settings_.diskLights != DiskLights::Auto ? settings_.diskLights
+               : isUseful                               ? DiskLights::On
+                                                        : DiskLights::Off;
+    }
+
+    // Returns On or Off. `isUseful` says whether these lights would change the picture. `ofHost`: a host has
+    // them itself. Without a word of the user's, steps have none: a host's scene may not know of them.
     template <typename Choice, typename IsUseful>
-    Result<Choice> decide(Choice asked, const IsUseful& isUseful, std::span<const std::string_view> files,
-                          const Wording& wording) const {
+    Result<Choice> decide(Choice asked, const IsUseful& isUseful, bool ofHost, const Wording& wording) const {
         const bool isOn = asked == Choice::On;
-        if (asked == Choice::Off || (!isOn && settings_.maxBounces == 1) || !isUseful()) {
+        const bool isAutoOff = settings_.maxBounces == 1 || isOfSteps();
+        if (asked == Choice::Off || (!isOn && isAutoOff) || !isUseful()) {
             return Choice::Off;
         }
-        const std::string why = replaces(files)            ? fmt::format("{} are the host's", wording.ofHost)
+        const std::string why = ofHost                     ? fmt::format("{} are the host's", wording.ofHost)
                                 : lit_.effects.lights == 0 ? "the package has no effect shadow"
                                                            : "";
         if (isOn && !why.empty()) {
@@ -178,7 +196,8 @@ private:
     }
 
     // Without a number in the settings it is the most of lightSamplesFor() over the scenes. A host that has
-    // its own lights, or that sends its own rays, has no hierarchy.
+    // its own lights has no hierarchy. With steps nobody knows how many lights the host's scene has: auto
+    // takes all, and the samples of many emissive triangles where these are lights.
     Status countSamples() {
         const bool ofHost = replaces(kLightFiles);
         if (settings_.lightSamples) {
@@ -192,6 +211,11 @@ private:
                                  "are the host's",
                                  plan_.samples),
                              "leave out --lights, and let the host's hostLight() choose"));
+        }
+        if (isOfSteps()) {
+            const bool emits = plan_.emissive == EmissiveLights::On;
+            plan_.samples = emits ? samplesOfEmitters(kMostEmitters) : 0;
+            return okStatus();
         }
         for (std::size_t i = 0; i < scenes_.scenes().size() && !ofHost; ++i) {
             plan_.samples = std::max(plan_.samples, lightSamplesFor(countLights(scenes_, i, plan_.emissive)));

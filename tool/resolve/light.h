@@ -60,13 +60,14 @@ struct LightPlan {
     EmissiveLights emissive = EmissiveLights::Off;  // Off where nothing emits light
     SkyLight sky = SkyLight::Off;
     SizedLights sized = SizedLights::Off;
+    DiskLights disks = DiskLights::Off;
     std::uint32_t samples = 0;  // CompileSettings::lightSamples
 };
 
 // Decides by the materials that primitives use, by the lights of the scenes, and by the files of shaders/host
 // that the host replaces. Errors: those of hostFiles(); "emissive-lights", "sky-light", "sized-lights" and
-// "lights" if the settings demand what a host with lights of its own, or a package without shadow rays, can't
-// have.
+// "lights" if the settings demand what a host with lights of its own, a package without shadow rays, or steps
+// can't have.
 Result<LightPlan> planLight(const gltf::SceneList& scenes, const CompileSettings& settings);
 
 // Returns the number of triangles of all instances of a scene that emit light, now or at a time of an

@@ -379,6 +379,7 @@ private:
             light.emissive = known->emissiveLights ? EmissiveLights::On : EmissiveLights::Off;
             light.sky = known->skyLight ? SkyLight::On : SkyLight::Off;
             light.sized = known->sizedLights ? SizedLights::On : SizedLights::Off;
+            light.disks = known->diskLights ? DiskLights::On : DiskLights::Off;
             light.samples = known->lightSamples;
             compile_.shadowThrough = known->shadowThrough;
         }
@@ -386,6 +387,7 @@ private:
         compile_.emissiveLights = light.emissive;
         compile_.skyLight = light.sky;
         compile_.sizedLights = light.sized;
+        compile_.diskLights = light.disks;
         compile_.lightSamples = light.samples;
         return okStatus();
     }

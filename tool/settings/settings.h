@@ -73,6 +73,17 @@ constexpr std::span<const Named<SizedLights>> namesOf(SizedLights /*type*/) {
     return kSizedLightsNames;
 }
 
+// The choice whether shaders know disks among the lights (LightView::Type::Disk), which only programs have.
+enum class DiskLights : std::uint8_t { Auto, Off, On };
+inline constexpr Named<DiskLights> kDiskLightsNames[] = {
+    {DiskLights::Auto, "auto", "in packages with emissive or sized lights, and with --passes steps"},
+    {DiskLights::Off, "off", "a program that gives a disk gets an error"},
+    {DiskLights::On, "on", "a program may have disks"},
+};
+constexpr std::span<const Named<DiskLights>> namesOf(DiskLights /*type*/) {
+    return kDiskLightsNames;
+}
+
 struct CompileSettings {
     std::uint32_t strategies = package::kDefaultStrategies;
     std::uint32_t tracers = package::kTracerRayQuery;
@@ -104,6 +115,7 @@ struct CompileSettings {
     EmissiveLights emissiveLights = EmissiveLights::Auto;
     SkyLight skyLight = SkyLight::Auto;
     SizedLights sizedLights = SizedLights::Auto;
+    DiskLights diskLights = DiskLights::Auto;
     bool energyCompensation = true;  // Compensates light that bounces between microfacets more than once.
     TextureLod textureLod = TextureLod::Cones;
     // True if planning reads the contents of textures (gltf::ImportOptions::trustTextures). Packages with a

@@ -358,6 +358,10 @@ std::span<const Descriptor> settingsTable() {
             {.bench = approximatesTransport("on", "off on", {}, withoutSizedLights, exactSizedLights),
              .document = "lights.md#lights-with-a-size",
              .recorded = true}),
+        row("disk-lights", kOfCompile, Package, kShaders,
+            "whether a program's lights may be disks (LightView::Type::Disk)",
+            enumerator<&Settings::compile, &CompileSettings::diskLights>(),
+            {.bench = kNoPicture, .document = "lights.md#lights-with-a-size", .recorded = true}),
         row("energy-compensation", kMakers, Package, kShaders,
             "add the light that bounces between microfacets more than once, which rough surfaces otherwise "
             "lose",

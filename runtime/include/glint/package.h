@@ -118,6 +118,8 @@ public:
     bool skyLight() const;
     // Returns whether rays of lobes find area lights (LightView::size), as samples of these lights do.
     bool sizedLights() const;
+    // Returns whether lights may be disks (LightView::Type::Disk).
+    bool diskLights() const;
     // Returns where records of materials keep their emission, or null in packages without emissive lights.
     const package::EmissionEntry* emission() const;
     // Returns where records of materials keep alpha. It is null for packages that do not test alpha, and for

@@ -60,6 +60,13 @@ struct EngineSceneView {
         // material, because the geometry's case shades all of its triangles. The host may write others at any
         // time between batches.
         VkDeviceAddress primitiveMaterials = 0;
+        // In packages with emissive lights: the corners of all triangles, three points each, in the space of
+        // `positions` and the order of `indices`. If the primitive's material emits light, its triangles are
+        // then lights, as bright as the values of the material say; without corners only rays that meet them
+        // find their light. The host needs the corners for the hierarchy of lights, and shaders read
+        // `positions`. Those of a mesh that deforms are to be given again when they move. Geometries with
+        // primitiveMaterials have none. Geometries with the same span share the memory, 16 bytes a corner.
+        std::span<const std::array<float, 3>> lightCorners{};
     };
 
     // A texture of the package's scene (PackageScene::textures) as the host has it. Its view has the type
@@ -126,9 +133,10 @@ public:
     // spans are not kept. Errors: "position-fetch" and "half-precision" (the device was created without what
     // the package needs), "scene-package" (the package has no such scene or primitive), "engine-scene" (a
     // number is out of range, an attribute that a key needs is missing, or a transform is not finite),
-    // "scene-light", "scene-material" (the package has no such material, or records of another size, or a
-    // texture of a material has no texels), "texture-trusted" (a material has own textures, and
-    // Package::trustTextures() is true), and those of memory and Vulkan's calls.
+    // "scene-light" (a value is not finite, or the package knows no disks), "scene-material" (the package has
+    // no such material, or records of another size, or a texture of a material has no texels),
+    // "texture-trusted" (a material has own textures, and Package::trustTextures() is true), and those of
+    // memory and Vulkan's calls.
     static Result<std::unique_ptr<EngineScene>> record(Context& context, const Package& package,
                                                        const EngineSceneView& scene, VkCommandBuffer commands,
                                                        std::uint64_t frame);

@@ -333,13 +333,16 @@ std::vector<EmitterBounds> Emitters::boundsAt(std::span<const InstanceView> inst
     return all;
 }
 
-void Emitters::takeMaterials(std::span<const ChangingMaterial> changing) {
+bool Emitters::takeMaterials(std::span<const ChangingMaterial> changing) {
+    bool changes = false;
     for (EmitterPart& part : parts_) {
         const auto found = std::ranges::lower_bound(changing, part.material, {}, &ChangingMaterial::material);
         if (found != changing.end() && found->material == part.material) {
-            part.luminance = emittedLuminance(found->record, emission_);
+            const double before = std::exchange(part.luminance, emittedLuminance(found->record, emission_));
+            changes = changes || before != part.luminance;
         }
     }
+    return changes;
 }
 
 void Emitters::setLeaves(const LightTree& tree) {
@@ -357,6 +360,19 @@ void Emitters::setLeaves(const LightTree& tree) {
 void Emitters::setLeaves(std::span<const EmitterBounds> bounds) {
     for (std::size_t i = 0; i < records.size(); ++i) {
         records[i].leaf = bounds[i].intensity > 0.0 ? 0 : gpu::kNoEmitter;
+    }
+}
+
+void followLights(std::span<const gpu::LightRecord> lights, std::span<const InstanceView> instances,
+                  TreeChange change, Emitters& emitters, LightTree& tree) {
+    const std::vector<EmitterBounds> bounds = emitters.boundsAt(instances);
+    if (change == TreeChange::None) {
+        emitters.setLeaves(bounds);
+    } else if (change == TreeChange::Refit) {
+        refitLightTree(tree, lights, bounds);
+    } else {
+        tree = buildLightTree(lights, bounds, change == TreeChange::BuildWithDark);
+        emitters.setLeaves(tree);
     }
 }
 

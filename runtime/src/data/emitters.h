@@ -140,8 +140,9 @@ public:
     // Returns the bounds of each at a pose. Triangles of instances that change their shape have the
     // instance's box. Hidden ones are dark.
     std::vector<EmitterBounds> boundsAt(std::span<const InstanceView> instances) const;
-    // Takes the values of materials that have changed. They are sorted by their numbers.
-    void takeMaterials(std::span<const ChangingMaterial> changing);
+    // Takes the values of materials that have changed. They are sorted by their numbers. Returns whether a
+    // triangle got darker or brighter.
+    bool takeMaterials(std::span<const ChangingMaterial> changing);
     // Stores where the tree has each triangle; without a tree, only whether it shines.
     void setLeaves(const LightTree& tree);
     void setLeaves(std::span<const EmitterBounds> bounds);
@@ -150,5 +151,14 @@ private:
     package::EmissionEntry emission_{};
     std::vector<EmitterPart> parts_;  // in the order of `records`
 };
+
+// How a hierarchy of lights follows them: there is none, it gets new bounds, or it is built anew. A new one
+// may have leaves for triangles that are dark and may shine later.
+enum class TreeChange { None, Refit, Build, BuildWithDark };
+
+// Brings the hierarchy, and the places of the triangles in it, to the lights and triangles as they are now.
+// TreeChange::Refit needs the triangles, and the types of the lights, of the last build.
+void followLights(std::span<const gpu::LightRecord> lights, std::span<const InstanceView> instances,
+                  TreeChange change, Emitters& emitters, LightTree& tree);
 
 }  // namespace glint

@@ -298,20 +298,17 @@ Status checkGeometry(const PrimitiveView& view, const std::string& where) {
     return checkIndices(view, where);
 }
 
-Status checkDisks(const Package& package, std::span<const LightView> lights) {
+Status checkDisks(bool areKnown, std::span<const LightView> lights) {
     const auto disk = std::ranges::find(lights, LightView::Type::Disk, &LightView::type);
-    const bool known =
-        package.sizedLights() || package.emission() != nullptr || package.passes() == package::Passes::Steps;
-    return known || disk == lights.end()
+    return areKnown || disk == lights.end()
                ? okStatus()
                : makeError("scene-light", "light " + std::to_string(disk - lights.begin()),
-                           "the package's shaders know no disks",
-                           "compile it with --sized-lights on, --emissive-lights on or --passes steps");
+                           "the package's shaders know no disks", "compile it with --disk-lights on");
 }
 
 Status checkLights(const Package& package, std::span<const LightView> lights) {
     GLINT_TRY_DO(checkLights(lights));
-    return checkDisks(package, lights);
+    return checkDisks(package.diskLights(), lights);
 }
 
 Status checkLights(std::span<const LightView> lights) {

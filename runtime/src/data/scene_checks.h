@@ -73,8 +73,8 @@ Status checkOrigin(const std::array<double, 3>& origin);
 
 // Checks that every light is finite and of a known type. Error "scene-light".
 Status checkLights(std::span<const LightView> lights);
-// Checks that the package's shaders know disks, if any light is one. Error "scene-light".
-Status checkDisks(const Package& package, std::span<const LightView> lights);
+// Checks that the shaders know disks (Package::diskLights()), if any light is one. Error "scene-light".
+Status checkDisks(bool areKnown, std::span<const LightView> lights);
 // Checks both.
 Status checkLights(const Package& package, std::span<const LightView> lights);
 

@@ -197,6 +197,8 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
     static_assert(gpu::kFirstGroupSize * gpu::kFirstPixelsOfThread <=
                   gpu::kLargeTileThreads * gpu::kTileHitsOfThread);
     const VkDeviceSize buckets = ordered > 0 ? bucketBytes(size) : 0;
+    // A host chooses its own rays, so only those that follow are of lobes.
+    const VkDeviceSize lobeRays = size.emissiveLights && (size.paths || !size.hostRays) ? samples : 0;
     const VkDeviceSize lists = rays > 0 ? 1 : 0;
     const VkDeviceSize orderings = ordered > 0 ? size.bucketCount + 1 : 0;
     const VkDeviceSize shadowLists = shadows > 0 ? 1 : 0;
@@ -213,8 +215,7 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
          size.paths && !size.hostRays ? samples * sizeof(gpu::vec4) : 0, kRead},
         {"next rays", &Frame::nextListed, size.paths ? ownRays * sizeof(std::uint32_t) : 0, kStorage},
         {"paths", &Frame::paths, size.paths ? samples * sizeof(gpu::PathState) : 0, kStorage},
-        {"rays of lobes", &Frame::lobeRays, size.emissiveLights ? samples * sizeof(gpu::LobeRay) : 0,
-         kStorage},
+        {"rays of lobes", &Frame::lobeRays, lobeRays * sizeof(gpu::LobeRay), kStorage},
         {"shares of the sky", &Frame::skyShares, size.skyLight ? samples * sizeof(float) : 0, kStorage},
         {"hits of layers", &Frame::rayHits, size.layerRays ? samples * sizeof(gpu::RayHit) : 0, kStorage},
         {"light of bounces", &Frame::bounceLight, samples * size.layerBounces * sizeof(gpu::BounceLight),

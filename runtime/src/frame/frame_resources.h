@@ -52,7 +52,7 @@ struct FrameResources {
     Buffer radiance;       // present if paths have several bounces, unless a host has the answers
     Buffer nextListed;     // this buffer and the next are present if paths have several bounces
     Buffer paths;
-    Buffer lobeRays;     // present if the package has emissive lights
+    Buffer lobeRays;     // present if the package has emissive lights, and Glint chooses rays
     Buffer skyShares;    // present if the sky is a light of the package
     Buffer rayHits;      // present if layers need the hits of rays
     Buffer bounceLight;  // present if layers need the light of bounces

@@ -127,6 +127,10 @@ bool Package::sizedLights() const {
     return state_->header.sizedLights != 0;
 }
 
+bool Package::diskLights() const {
+    return state_->header.diskLights != 0;
+}
+
 const package::EmissionEntry* Package::emission() const {
     return state_->emission.empty() ? nullptr : state_->emission.data();
 }

@@ -114,6 +114,7 @@ Status checkHeader(const Package::State& state, const std::string& where) {
         {"the number of light samples", header.lightSamples, 0, package::kMaxLightSamples},
         {"the kind of the sky's light", header.skyLight, 0, 1},
         {"the kind of lights with a size", header.sizedLights, 0, 1},
+        {"the kind of disks", header.diskLights, 0, 1},
         {"the kind of sky", header.environmentMap, 0, 1},
     };
     for (const auto& [what, value, least, most] : fields) {

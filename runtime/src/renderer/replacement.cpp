@@ -10,6 +10,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <tuple>
 #include <utility>
 
 namespace glint {
@@ -296,7 +297,13 @@ void PipelineDisposal::destroyOne() {
 
 Status checkUse(package::Passes passes, const Package& package, const DrawnScene& scene) {
     GLINT_TRY_DO(checkPasses(passes, package));
-    return checkRecords(package, scene.records);
+    GLINT_TRY_DO(checkRecords(package, scene.records));
+    return package.lightSamples() == 0 || scene.hasLightTree()
+               ? okStatus()
+               : makeError("scene-package", "",
+                           "the package chooses lights by a hierarchy, and the scene was made with a package "
+                           "that takes all",
+                           "make the scene with this package, or compile both with the same --lights");
 }
 
 void enter(PackageUser& state, const Package& package) {
@@ -374,10 +381,13 @@ bool joinReplacement(PackageUser& state) {
 void switchPackage(PackageUser& state, VkCommandBuffer commands) {
     std::vector<PackageUser*> users = usersWith(state);
     std::erase_if(users, [](const PackageUser* user) { return !user->next; });
-    // The scene gets the package of a renderer, if one waits for it, because steps have no emissive lights.
-    const auto renderer = std::ranges::find_if(
-        users, [](const PackageUser* user) { return user->passes() == package::Passes::Frame; });
-    const NextPackage& leading = *(renderer == users.end() ? &state : *renderer)->next;
+    // The scene gets the package that needs most of it: emissive triangles, or a hierarchy of lights.
+    const auto needs = [](const PackageUser* user) {
+        const Package& next = *user->next->package;
+        return std::tuple(next.emission() != nullptr, next.lightSamples() > 0,
+                          user->passes() == package::Passes::Frame);
+    };
+    const NextPackage& leading = *(*std::ranges::max_element(users, {}, needs))->next;
     for (PackageUser* const user : users) {
         if (Status status = joinPasses(*user, *user->next); !status) {
             refuse(state, status.error());
@@ -402,7 +412,8 @@ void switchPackage(PackageUser& state, VkCommandBuffer commands) {
 }
 
 Status checkReplaced(const PackageUser& state) {
-    if (state.drawn.records != state.records) {
+    const bool lacksTree = state.package->lightSamples() > 0 && !state.drawn.hasLightTree();
+    if (state.drawn.records != state.records || lacksTree) {
         return makeError("package-replaced", "",
                          "EngineScene::update() has given the scene the content of another package",
                          "give that package to replacePackage()");

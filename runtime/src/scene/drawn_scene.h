@@ -46,6 +46,9 @@ struct DrawnScene {
     virtual Result<RetiredLot> recordReplacement(const std::shared_ptr<const Package>& package,
                                                  std::uint32_t index, VkCommandBuffer commands) = 0;
 
+    // Returns whether there is a hierarchy of lights, for packages with Package::lightSamples().
+    virtual bool hasLightTree() const = 0;
+
     Context::State& context;
     std::uint64_t records = 0;  // recordsHash()
     // The shader IDs of the shader binding table. Its number changes when they do without another package.

@@ -258,6 +258,10 @@ void fillScene(const GpuScene::State& state, gpu::FrameConstants& constants) {
     constants.emitterCount = state.emitterCount;
 }
 
+bool GpuScene::State::hasLightTree() const {
+    return store->buildsTree;
+}
+
 bool isChanging(const GpuScene::State& state) {
     return state.store->keeps();
 }

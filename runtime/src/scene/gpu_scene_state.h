@@ -94,6 +94,7 @@ struct GpuScene::State final : DrawnScene {
     Result<PackageFit> fit(const std::shared_ptr<const Package>& other) const override;
     Result<RetiredLot> recordReplacement(const std::shared_ptr<const Package>& other, std::uint32_t index,
                                          VkCommandBuffer commands) override;
+    bool hasLightTree() const override;
 
     // Renderers keep it for what a replaced package leaves to them.
     std::shared_ptr<MemoryPool> sharedPool;

@@ -365,7 +365,7 @@ Result<PackageFit> GpuScene::State::fit(const std::shared_ptr<const Package>& ot
     for (const LightHandle light : store->lightOrder) {
         shining.push_back(store->lightSlots.at(light.index));
     }
-    GLINT_TRY_DO(checkDisks(*other, shining));
+    GLINT_TRY_DO(checkDisks(other->diskLights(), shining));
     GLINT_TRY_DO(checkPrimitives(*this, *other, known));
     GLINT_TRY_DO(checkEmission(*this, *other, known));
     GLINT_TRY_DO(checkDecided(*this, *other, known));

@@ -252,15 +252,11 @@ void settleLights(SceneStore& store) {
     }
     std::vector<InstanceView> views;
     forEachEmissive(store, [&](const StoredInstance& instance) { views.push_back(poseOf(store, instance)); });
-    const std::vector<EmitterBounds> bounds = scene.emitters.boundsAt(views);
-    if (!store.buildsTree) {
-        scene.emitters.setLeaves(bounds);
-    } else if (store.moves && !restructured) {
-        refitLightTree(scene.lightTree, records, bounds);
-    } else {
-        scene.lightTree = buildLightTree(records, bounds, store.moves);
-        scene.emitters.setLeaves(scene.lightTree);
-    }
+    const TreeChange change = !store.buildsTree ? TreeChange::None
+                              : !store.moves    ? TreeChange::Build
+                              : restructured    ? TreeChange::BuildWithDark
+                                                : TreeChange::Refit;
+    followLights(records, views, change, scene.emitters, scene.lightTree);
     if (store.buildsTree) {
         store.lightNodes.replace(std::span<const gpu::LightNode>(scene.lightTree.nodes));
     }

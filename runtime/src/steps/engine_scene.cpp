@@ -11,6 +11,10 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -72,20 +76,61 @@ Result<const package::PrimitiveEntry*> entryOf(const Package& package, const Pac
     return entry;
 }
 
+// The corners of triangles that may be lights. Geometries that name the same corners share them.
+class Shapes {
+public:
+    Result<std::shared_ptr<const EmitterShape>> find(const EngineSceneView::Geometry& view,
+                                                     const std::string& where) {
+        const std::span<const std::array<float, 3>> corners = view.lightCorners;
+        if (corners.empty()) {
+            return std::shared_ptr<const EmitterShape>();
+        }
+        if (view.primitiveMaterials != 0) {
+            return makeError("engine-scene", where,
+                             "it has lightCorners, and a list of materials on the device, which says how "
+                             "bright its triangles are",
+                             "leave out lightCorners, or give it one material");
+        }
+        std::shared_ptr<const EmitterShape>& known = known_[{corners.data(), corners.size()}];
+        if (known == nullptr) {
+            if (corners.size() % 3 != 0 ||
+                !std::ranges::all_of(corners, [](const auto& corner) { return isFinite(corner); })) {
+                return makeError("engine-scene", where,
+                                 "its lightCorners are not three for each triangle, or not finite",
+                                 "give the three corners of each triangle");
+            }
+            PrimitiveView triangles;
+            triangles.positions = corners;
+            std::vector<std::uint32_t> indices(corners.size());
+            std::iota(indices.begin(), indices.end(), 0U);
+            known = std::make_shared<const EmitterShape>(triangles, indices, false);
+        }
+        return known;
+    }
+
+private:
+    std::map<std::pair<const void*, std::size_t>, std::shared_ptr<const EmitterShape>> known_;
+};
+
 // The records of geometries, without what their entries say, and the lists that those name whose triangles
 // have materials of their own.
 struct Geometries {
     std::vector<gpu::GeometryRecord> records;
     std::vector<gpu::PrimitiveMaterials> primitiveMaterials;
+    std::vector<EngineScene::State::Primitive> primitives;
 };
 
 Result<Geometries> makeGeometries(const EngineSceneView& scene) {
     Geometries made;
+    Shapes shapes;
     for (std::size_t i = 0; i < scene.geometries.size(); ++i) {
         const EngineSceneView::Geometry& view = scene.geometries[i];
         if (view.instance >= scene.instances.size()) {
             return outOfRange(geometryPlace(i), "instance", view.instance, scene.instances.size());
         }
+        GLINT_TRY(auto shape, shapes.find(view, geometryPlace(i)));
+        made.primitives.push_back(
+            {view.mesh, view.primitive, view.material, view.primitiveMaterials != 0, std::move(shape)});
         gpu::GeometryRecord& record = made.records.emplace_back(recordOf({}, view, view.instance));
         record.flags = std::uint32_t{view.hostFlags} << gpu::kGeometryHostFlagsShift;
         if (view.primitiveMaterials != 0) {
@@ -116,11 +161,6 @@ std::vector<Rows> movedBack(std::vector<Rows> instances, const std::array<double
         }
     }
     return instances;
-}
-
-Result<std::vector<gpu::LightRecord>> makeLights(std::span<const LightView> lights) {
-    GLINT_TRY_DO(checkLights(lights));
-    return makeLightRecords(lights);
 }
 
 // The package's materials, with the host's numbers of textures and samplers.
@@ -313,6 +353,9 @@ void takeLayout(const Package& package, const PackageScene& known, Host& host) {
     host.layout = tableWith(known.materials, {});
     host.trustsTextures = package.trustTextures();
     host.ofPackage = static_cast<std::uint32_t>(known.materials.size());
+    host.emission = package.emission() != nullptr ? std::optional(*package.emission()) : std::nullopt;
+    host.buildsTree = package.lightSamples() > 0;
+    host.knowsDisks = package.diskLights();
 }
 
 // Carries the host's values into records of a package. What these have beside is that of `records`, the
@@ -341,6 +384,7 @@ Status carryValues(const Package& package, const PackageScene& known, std::span<
 // The content by a package of what the host has given before.
 Result<PackageContent> contentBy(const EngineScene::State& state, const Package& package,
                                  std::uint32_t index) {
+    GLINT_TRY_DO(checkDisks(package.diskLights(), state.lights));
     const RecordStore& geometries = state.arrays[EngineScene::State::Geometries].store;
     std::vector<gpu::GeometryRecord> records;
     for (std::uint32_t i = 0; i < geometries.count(); ++i) {
@@ -371,12 +415,69 @@ void replace(EngineScene::State& state, EngineScene::State::Kind kind, const std
     state.arrays[kind].store.replace(std::span<const T>(records));
 }
 
-// Places the instances. Motion is measured from their transforms before; new ones are still.
+// Lists the triangles that are lights: those whose corners the host has given, if their material emits light.
+void gatherEmitters(EngineScene::State& state) {
+    using State = EngineScene::State;
+    const RecordStore& geometries = state.arrays[State::Geometries].store;
+    std::vector<EmitterPart> parts;
+    std::vector<std::uint32_t> firsts;
+    state.emitters = {};
+    if (state.host.emission) {
+        for (std::uint32_t i = 0; i < geometries.count(); ++i) {
+            const auto record = geometries.read<gpu::GeometryRecord>(i);
+            const auto& shape = state.host.primitives[i].shape;
+            if (shape == nullptr || (record.flags & gpu::kGeometryEmitter) == 0) {
+                continue;
+            }
+            EmitterPart& part = parts.emplace_back();
+            part.geometry = part.primitive = i;
+            part.instance = record.instanceIndex;
+            part.material = record.materialIndex;
+            part.count = static_cast<std::uint32_t>(shape->indices.size() / 3);
+            part.twoSided = (record.flags & gpu::kGeometryDoubleSided) != 0;
+            part.luminance = emittedLuminance(state.arrays[State::Materials].store.at(record.materialIndex),
+                                              *state.host.emission);
+            part.shape = shape;
+        }
+        state.emitters = Emitters(*state.host.emission, std::move(parts));
+        firsts = state.emitters.firstsOf(geometries.count());
+    }
+    replace(state, State::FirstEmitters, firsts);
+}
+
+// Brings the hierarchy of lights to their present places. `refits`: there are the same lights.
+void settleLights(EngineScene::State& state, bool refits) {
+    using State = EngineScene::State;
+    if (!state.host.buildsTree) {
+        state.lightTree = {};
+    }
+    if (state.host.buildsTree || state.host.emission) {
+        std::vector<InstanceView> instances(state.emitters.records.empty() ? 0 : state.placed.size());
+        for (std::size_t i = 0; i < instances.size(); ++i) {
+            instances[i].objectToWorld = state.placed[i];
+        }
+        const TreeChange change = !state.host.buildsTree ? TreeChange::None
+                                  : refits               ? TreeChange::Refit
+                                                         : TreeChange::BuildWithDark;
+        followLights(makeLightRecords(state.lights), instances, change, state.emitters, state.lightTree);
+    }
+    replace(state, State::LightNodes, state.lightTree.nodes);
+    replace(state, State::EmitterRecords, state.emitters.records);
+}
+
+// Brings triangles and lights to another content.
+void rebuildLights(EngineScene::State& state) {
+    gatherEmitters(state);
+    settleLights(state, false);
+}
+
+// Places the instances and lights. Motion is measured from the transforms before; new instances are still.
 Status place(EngineScene::State& state, std::span<const Rows> instances, std::span<const LightView> lights,
-             const std::array<double, 3>& originMoved) {
+             bool knowsDisks, const std::array<double, 3>& originMoved) {
     using State = EngineScene::State;
     GLINT_TRY(auto records, makeInstances(instances));
-    GLINT_TRY(auto lightRecords, makeLights(lights));
+    GLINT_TRY_DO(checkLights(lights));
+    GLINT_TRY_DO(checkDisks(knowsDisks, lights));
     std::vector<Rows> before = movedBack(state.placed, originMoved);
     before.resize(std::min(before.size(), instances.size()));
     before.insert(before.end(), instances.begin() + static_cast<std::ptrdiff_t>(before.size()),
@@ -384,8 +485,9 @@ Status place(EngineScene::State& state, std::span<const Rows> instances, std::sp
     GLINT_TRY(auto previous, makeInstances(before));
     replace(state, State::Instances, records);
     replace(state, State::PreviousInstances, previous);
-    replace(state, State::Lights, lightRecords);
+    replace(state, State::Lights, makeLightRecords(lights));
     state.placed.assign(instances.begin(), instances.end());
+    state.lights.assign(lights.begin(), lights.end());
     return okStatus();
 }
 
@@ -422,13 +524,13 @@ Status recordContent(EngineScene::State& state, VkCommandBuffer commands, const 
     takeLayout(package, package.scene(scene.packageScene), host);
     std::uint32_t leastInstances = 0;
     for (const EngineSceneView::Geometry& view : scene.geometries) {
-        host.primitives.push_back({view.mesh, view.primitive, view.material, view.primitiveMaterials != 0});
         leastInstances = std::max(leastInstances, view.instance + 1);
     }
     for (const EngineSceneView::Material& view : scene.materials) {
         host.materials.push_back(keptMaterial(view));
     }
     GLINT_TRY(auto geometries, makeGeometries(scene));
+    host.primitives = std::move(geometries.primitives);
     GLINT_TRY(const auto content, makeContent(state.context, package, scene.packageScene,
                                               std::move(geometries.records), std::move(host)));
     for (std::size_t i = 0; i < scene.firstRecords.size(); ++i) {
@@ -437,7 +539,7 @@ Status recordContent(EngineScene::State& state, VkCommandBuffer commands, const 
                               scene.firstRecords[i], content.geometries.size());
         }
     }
-    GLINT_TRY_DO(place(state, scene.instances, scene.lights, originMoved));
+    GLINT_TRY_DO(place(state, scene.instances, scene.lights, content.host.knowsDisks, originMoved));
     state.shaderIdsVersion += state.shaderIds != content.shaderIds ? 1 : 0;
     take(state, content);
     state.arrays[State::FirstRecords].store.replace(scene.firstRecords);
@@ -445,7 +547,21 @@ Status recordContent(EngineScene::State& state, VkCommandBuffer commands, const 
     state.name = package.scene(scene.packageScene).name;
     state.leastInstances = leastInstances;
     state.recordsBy = scene.recordsBy;
+    rebuildLights(state);
     return state.recordChanges(commands, frame);
+}
+
+// Brings lights to the brightness of a material whose record has changed.
+void brightenLights(EngineScene::State& state, std::uint32_t index) {
+    const RecordStore& materials = state.arrays[EngineScene::State::Materials].store;
+    if (index >= materials.count()) {
+        return;
+    }
+    const std::span<const std::uint8_t> record = materials.at(index);
+    const ChangingMaterial changed{index, {record.begin(), record.end()}};
+    if (state.emitters.takeMaterials(std::span(&changed, 1))) {
+        settleLights(state, true);
+    }
 }
 
 // Error "engine-scene": a geometry names the material.
@@ -502,7 +618,10 @@ EngineScene::State::State(Context::State& contextState)
               {RecordStore(sizeof(std::uint32_t)), {}},
               {RecordStore(sizeof(gpu::LightRecord)), {}},
               {RecordStore(sizeof(std::uint32_t)), {}},
-              {RecordStore(sizeof(gpu::PrimitiveMaterials)), {}}}},
+              {RecordStore(sizeof(gpu::PrimitiveMaterials)), {}},
+              {RecordStore(sizeof(gpu::LightNode)), {}},
+              {RecordStore(sizeof(gpu::EmitterRecord)), {}},
+              {RecordStore(sizeof(std::uint32_t)), {}}}},
       retired(*pool) {}
 
 Status EngineScene::State::recordChanges(VkCommandBuffer commands, std::uint64_t frame,
@@ -525,7 +644,8 @@ Status EngineScene::State::recordChanges(VkCommandBuffer commands, std::uint64_t
     } else {
         retired.close(frame);
     }
-    lightCount = arrays[Lights].store.count();
+    counts = {arrays[Lights].store.count(), arrays[EmitterRecords].store.count(), lightTree.treeNodes,
+              lightTree.apart};
     lastFrame = frame;
     return okStatus();
 }
@@ -549,6 +669,7 @@ Result<RetiredLot> EngineScene::State::recordReplacement(const std::shared_ptr<c
     const std::uint64_t recordsBefore = records;
     const std::vector<std::uint32_t> idsBefore = shaderIds;
     take(*this, content);
+    rebuildLights(*this);
     RetiredLot leftovers;
     if (Status status = recordChanges(commands, lastFrame, &leftovers); !status) {
         arrays[Materials].store = materials;
@@ -556,6 +677,7 @@ Result<RetiredLot> EngineScene::State::recordReplacement(const std::shared_ptr<c
         host = hostBefore;
         records = recordsBefore;
         shaderIds = idsBefore;
+        rebuildLights(*this);
         return status.error();
     }
     leftovers.keep(pool);
@@ -593,23 +715,28 @@ Result<std::unique_ptr<EngineScene>> EngineScene::share(Context& context, GpuSce
 }
 GLINT_CATCH
 
-EngineScene::State::Addresses EngineScene::State::addresses() const {
+void EngineScene::State::fill(gpu::FrameConstants& constants) const {
     if (shared != nullptr) {
-        return {shared->geometries.address,
-                shared->instances.address,
-                shared->instances.address,
-                shared->materials.address,
-                shared->lights.address,
-                0,
-                0};
+        fillScene(*shared, constants);
+        constants.previousInstances = constants.instances;
+        return;
     }
     const auto at = [&](Kind kind) { return arrays[kind].device.address; };
-    return {at(Geometries), at(Instances),    at(PreviousInstances), at(Materials),
-            at(Lights),     at(FirstRecords), at(PrimitiveMaterials)};
-}
-
-std::uint32_t EngineScene::State::lightsNow() const {
-    return shared != nullptr ? shared->lightCount : lightCount;
+    constants.geometries = at(Geometries);
+    constants.instances = at(Instances);
+    constants.previousInstances = at(PreviousInstances);
+    constants.materials = at(Materials);
+    constants.firstRecords = at(FirstRecords);
+    constants.primitiveMaterials = at(PrimitiveMaterials);
+    constants.recordsBy = static_cast<std::uint32_t>(recordsBy);
+    constants.lights = at(Lights);
+    constants.lightCount = counts.lights;
+    constants.lightNodes = at(LightNodes);
+    constants.lightTreeNodes = counts.treeNodes;
+    constants.lightsApart = counts.apart;
+    constants.emitters = at(EmitterRecords);
+    constants.firstEmitters = at(FirstEmitters);
+    constants.emitterCount = counts.emitters;
 }
 
 EngineScene::EngineScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -629,7 +756,9 @@ Status EngineScene::update(VkCommandBuffer commands, std::span<const std::array<
     if (instances.size() < state_->leastInstances) {
         return outOfRange("", "instance", state_->leastInstances - 1, instances.size());
     }
-    GLINT_TRY_DO(place(*state_, instances, lights, originMoved));
+    const bool refits = std::ranges::equal(state_->lights, lights, {}, &LightView::type, &LightView::type);
+    GLINT_TRY_DO(place(*state_, instances, lights, state_->host.knowsDisks, originMoved));
+    settleLights(*state_, refits);
     return state_->recordChanges(commands, frame);
 }
 GLINT_CATCH
@@ -638,12 +767,15 @@ Status EngineScene::updateMaterial(VkCommandBuffer commands, std::uint32_t numbe
                                    const EngineSceneView::Material& material, std::uint64_t frame) try {
     GLINT_TRY_DO(checkOwn(*state_, frame));
     GLINT_TRY_DO(setMaterial(*state_, number, keptMaterial(material)));
+    brightenLights(*state_, state_->host.ofPackage + number);
     return state_->recordChanges(commands, frame);
 }
 GLINT_CATCH
 
 VkDeviceAddress EngineScene::materials() const {
-    return state_->addresses().materials;
+    const State& state = *state_;
+    return state.shared != nullptr ? state.shared->materials.address
+                                   : state.arrays[State::Materials].device.address;
 }
 
 std::uint64_t EngineScene::bytes() const {

@@ -3,18 +3,24 @@
 
 #include "context/context.h"
 #include "context/resources.h"
+#include "data/emitters.h"
+#include "data/light_tree.h"
 #include "data/materials.h"
 #include "data/retired.h"
+#include "interop/frame.h"
 #include "scene/drawn_scene.h"
 #include "scene/gpu_scene_state.h"
 #include "scene/record_store.h"
 
+#include <glint/internal/package_format.h>
+#include <glint/scene_view.h>
 #include <glint/steps.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,26 +33,19 @@ struct EngineScene::State final : DrawnScene {
     Result<PackageFit> fit(const std::shared_ptr<const Package>& package) const override;
     Result<RetiredLot> recordReplacement(const std::shared_ptr<const Package>& package, std::uint32_t index,
                                          VkCommandBuffer commands) override;
+    bool hasLightTree() const override {
+        return host.buildsTree;
+    }
 
     // Records the changes of the stores, for a frame that is at or after the last one. `leftovers`, if given,
     // gets the resources that are no longer needed when the recording is complete; else complete() for the
     // frame frees them. With an error nothing is recorded, and the changes wait for the next call.
     Status recordChanges(VkCommandBuffer commands, std::uint64_t frame, RetiredLot* leftovers = nullptr);
 
-    // The addresses of the records, or of those of `shared` as it is now.
-    struct Addresses {
-        VkDeviceAddress geometries = 0;
-        VkDeviceAddress instances = 0;
-        VkDeviceAddress previousInstances = 0;
-        VkDeviceAddress materials = 0;
-        VkDeviceAddress lights = 0;
-        VkDeviceAddress firstRecords = 0;
-        VkDeviceAddress primitiveMaterials = 0;
-    };
-    Addresses addresses() const;
+    // Fills in the records and lights, or those of `shared` as they are now.
+    void fill(gpu::FrameConstants& constants) const;
     // The scene whose records are read: this one, or the GpuScene that it shares.
     DrawnScene& drawn();
-    std::uint32_t lightsNow() const;
 
     GpuScene::State* shared = nullptr;  // null if the records are the scene's own, below
 
@@ -63,23 +62,38 @@ struct EngineScene::State final : DrawnScene {
         Lights,
         FirstRecords,
         PrimitiveMaterials,
+        LightNodes,
+        EmitterRecords,
+        FirstEmitters,
         Count
     };
     std::shared_ptr<MemoryPool> pool;
     std::array<Records, Count> arrays;
     Retired retired;
     std::uint64_t lastFrame = 0;
-    std::uint32_t lightCount = 0;  // of the last recording
+    // Of the last recording.
+    struct Counts {
+        std::uint32_t lights = 0;
+        std::uint32_t emitters = 0;
+        std::uint32_t treeNodes = 0;
+        std::uint32_t apart = 0;
+    };
+    Counts counts;
     EngineSceneView::RecordsBy recordsBy = EngineSceneView::RecordsBy::CustomIndex;
     std::vector<std::array<float, 12>> placed;  // the transforms of the instances
     std::uint32_t leastInstances = 0;           // that the geometries name
+    std::vector<LightView> lights;
+    // The triangles that are lights, and the hierarchy, if the package has them.
+    Emitters emitters;
+    LightTree lightTree;
 
     // The host's content, from which another package makes its records.
     struct Primitive {
         std::uint32_t mesh = 0;
         std::uint32_t primitive = 0;
         std::uint32_t material = EngineSceneView::Geometry::kOfPackage;
-        bool ownMaterials = false;  // each of its triangles names one
+        bool ownMaterials = false;                    // each of its triangles names one
+        std::shared_ptr<const EmitterShape> shape{};  // EngineSceneView::Geometry::lightCorners; may be null
     };
     struct OwnMaterial {
         std::uint32_t material = 0;
@@ -96,6 +110,9 @@ struct EngineScene::State final : DrawnScene {
         MaterialTable layout;         // of these records, without bytes
         bool trustsTextures = false;  // Package::trustTextures()
         std::uint32_t ofPackage = 0;  // materials of the package, whose records come first
+        std::optional<package::EmissionEntry> emission{};  // Package::emission()
+        bool buildsTree = false;                           // Package::lightSamples() is not 0
+        bool knowsDisks = false;                           // Package::diskLights()
     };
     Host host;
     std::string name;  // of the scene in the package

@@ -210,19 +210,10 @@ gpu::FrameConstants makeConstants(const RaySteps::State& state, const RayBatch& 
     constants.seed = batch.seed;
     constants.time = batch.time;
     constants.effects = state.size.effects.all;
-    constants.lightCount = state.scene.lightsNow();
     constants.maxSampleRadiance = std::numeric_limits<float>::infinity();
     constants.lengthUnit = constants.perLengthUnit = 1.0F;
     fillOutside(outsideOf(batch), constants);
-    const EngineScene::State::Addresses addresses = state.scene.addresses();
-    constants.geometries = addresses.geometries;
-    constants.instances = addresses.instances;
-    constants.previousInstances = addresses.previousInstances;
-    constants.materials = addresses.materials;
-    constants.lights = addresses.lights;
-    constants.firstRecords = addresses.firstRecords;
-    constants.primitiveMaterials = addresses.primitiveMaterials;
-    constants.recordsBy = static_cast<std::uint32_t>(state.scene.recordsBy);
+    state.scene.fill(constants);
     constants.rayMask = batch.mask;
     constants.tlasAddress = {static_cast<std::uint32_t>(batch.tlas),
                              static_cast<std::uint32_t>(batch.tlas >> 32)};

@@ -127,6 +127,29 @@ TEST(Resolve, BouncesCallForEffects) {
     EXPECT_TRUE(effectsOf(resolved(scene, settings)).contains("shadow"));
 }
 
+// An engine says where its triangles are, so steps take them only if they are asked to. Nobody knows how many
+// there will be. Steps know disks, and frames do with lights that programs have.
+TEST(Resolve, LightsOfSteps) {
+    const gltf::Scene scene = sceneOfEmitters();
+    Settings settings;
+    EXPECT_EQ(resolved(scene, settings).settings.compile.diskLights, DiskLights::Off);
+    settings.compile.maxBounces = 4;
+    EXPECT_EQ(resolved(scene, settings).settings.compile.diskLights, DiskLights::On);
+    settings.compile.passes = package::Passes::Steps;
+    const CompileSettings without = resolved(scene, settings).settings.compile;
+    EXPECT_EQ(without.emissiveLights, EmissiveLights::Off);
+    EXPECT_EQ(without.lightSamples, 0U);
+    EXPECT_EQ(without.diskLights, DiskLights::On);
+    settings.compile.emissiveLights = EmissiveLights::On;
+    settings.compile.sizedLights = SizedLights::On;
+    settings.compile.diskLights = DiskLights::Off;
+    const CompileSettings with = resolved(scene, settings).settings.compile;
+    EXPECT_EQ(with.emissiveLights, EmissiveLights::On);
+    EXPECT_EQ(with.sizedLights, SizedLights::On);
+    EXPECT_EQ(with.lightSamples, 8U);
+    EXPECT_EQ(with.diskLights, DiskLights::Off);
+}
+
 TEST(Resolve, LeavesNothingToBeDecided) {
     const gltf::Scene scene = richScene();
     Settings settings;
@@ -141,6 +164,7 @@ TEST(Resolve, LeavesNothingToBeDecided) {
     EXPECT_NE(build.settings.compile.emissiveLights, EmissiveLights::Auto);
     EXPECT_NE(build.settings.compile.skyLight, SkyLight::Auto);
     EXPECT_NE(build.settings.compile.sizedLights, SizedLights::Auto);
+    EXPECT_NE(build.settings.compile.diskLights, DiskLights::Auto);
     EXPECT_TRUE(build.settings.compile.lightSamples);
     EXPECT_NE(build.settings.sun, Sun::Auto);
     // The decided settings decide the same once more.

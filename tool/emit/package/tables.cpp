@@ -330,6 +330,7 @@ PackageHeader makeTablesHeader(const gltf::SceneList& scenes, const Plan& plan,
     header.lightSamples = settings.lightSamples.value_or(0);
     header.skyLight = settings.skyLight == SkyLight::On ? 1 : 0;
     header.sizedLights = settings.sizedLights == SizedLights::On ? 1 : 0;
+    header.diskLights = settings.diskLights == DiskLights::On ? 1 : 0;
     header.precision = settings.precision;
     header.passes = settings.passes;
     header.answer = settings.answer;

@@ -122,6 +122,8 @@ struct PackageHeader {
     std::uint32_t firstShadowRays;  // of a round, which wait for a pass of their own; 0: traced inline
     SampleRecordFormat sampleRecord;
     std::uint32_t sizedLights;  // 1: rays of lobes find punctual lights that have a size, too
+    std::uint32_t diskLights;   // 1: shaders know disks among the lights
+    std::uint32_t pad;
 };
 
 enum class SectionKind : std::uint32_t {
@@ -300,7 +302,7 @@ struct FieldEntry {
     std::uint32_t type;
 };
 
-static_assert(sizeof(PackageHeader) == 160);
+static_assert(sizeof(PackageHeader) == 168);
 static_assert(sizeof(PackageSection) == 24);
 static_assert(sizeof(ModuleEntry) == 40);
 static_assert(sizeof(CaseEntry) == 68);
