@@ -150,7 +150,9 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
             material.values[static_cast<std::size_t>(parameter.first + i)] = parameter.hold(parameter.high);
         }
     }
-    std::ranges::fill(material.given, std::uint8_t{1});
+    for (std::size_t object = 0; object < model->objects.size(); ++object) {
+        material.given.add(static_cast<int>(object));
+    }
     require((glint::compiler::makeKey(material, primitive, {}) & ~all) == 0, "keys have declared features");
     return 0;
 }
