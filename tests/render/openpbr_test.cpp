@@ -412,7 +412,7 @@ std::vector<LobeCase> lobeCases() {
                              const double value = 0.75 * fuzz(v, l, roughness);
                              return Light{value, 0.5 * value, 0.25 * value};
                          },
-                         2e-5});
+                         1e-5});
     }
     // As for metal, the light of later bounces is below the tolerance near the mirror direction.
     for (const float ior : {1.3F, 1.9F}) {
@@ -431,7 +431,7 @@ std::vector<LobeCase> lobeCases() {
                              }
                              return light;
                          },
-                         1e-3, 1.0, LobeCase::AtMirror});
+                         1e-4, 1.0, LobeCase::AtMirror});
     }
     {
         materials::Material anodised = openPbrMaterial();
