@@ -168,6 +168,17 @@ GlintMirror libraryMirror(GlintSurface given, Features features) {
     return result;
 }
 
+vec3 libraryShadeAll(GlintSurface given, Features features, vec3 wo, vec3 whole, vec3 seen) {
+#if GLINT_SHADES_ALL
+    float sum = luminance(whole);
+    if (isLit(features) && shadesAll(features) && sum > 0.0) {
+        Surface surface = surfaceSeenFrom(given, features, wo);
+        return shadeAll(surface.bsdf.layers, features, surface.bsdf.view, whole) * (luminance(seen) / sum);
+    }
+#endif
+    return seen;
+}
+
 // Returns the surface of a shader ID that the library does not have. Only its emission is seen.
 GlintSurface unknownSurface(GlintHit given, HostGeometry geometry) {
     GlintSurface result;
@@ -211,6 +222,12 @@ GlintRadiance glintRadiance(const GlintSurface surface);
 // glintRadiance() - sky + weight times the light that the ray finds. It stands for a rough lobe, too, if only roughly;
 // glintSample() is exact. Coats and sheen keep their sky.
 GlintMirror glintMirror(const GlintSurface surface);
+
+// Returns the light of all lights that goes to `wo`. `whole` is what they would bring if nothing cast a shadow: the sum
+// of glintEvaluate() times the irradiance of each; `seen` is the sum of those that are not in shadow. Most materials
+// return `seen`. A model that shades all lights at once (cel shading) makes a tone of `whole`, of which it returns the
+// part that `seen` has of the luminance.
+vec3 glintShadeAll(const GlintSurface surface, const vec3 wo, const vec3 whole, const vec3 seen);
 
 // Returns where a ray in a direction must start, so that it does not meet the surface that it leaves.
 vec3 glintRayOrigin(const GlintSurface surface, const vec3 direction);

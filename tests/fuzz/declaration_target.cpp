@@ -8,6 +8,7 @@
 #include "plan/plan.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -16,7 +17,7 @@ using glint::materials::DeclarationFile;
 using glint::materials::MaterialModel;
 
 // Features that packs name. All of Glint's own take more than ten times as long to read, so most inputs are
-// read beside these.
+// read beside these. Neither is parsed again for each input.
 constexpr DeclarationFile kNeighbours[] = {
     {"materials/attributes/attributes.json",
      R"({"name": "attributes", "stage": "attributes", "features": [
@@ -40,17 +41,19 @@ constexpr DeclarationFile kNeighbours[] = {
 };
 
 struct Others {
-    std::vector<DeclarationFile> files;
+    glint::materials::ParsedDeclarations files;
     MaterialModel model;  // of these files alone
 };
 
-Others makeOthers(std::vector<DeclarationFile> files) {
-    glint::Result<MaterialModel> model = glint::materials::readDeclarations(files);
+Others makeOthers(const std::vector<DeclarationFile>& files) {
+    glint::Result<glint::materials::ParsedDeclarations> parsed = glint::materials::parseDeclarations(files);
+    glint::fuzz::require(parsed.ok(), "the declarations without the input can be parsed");
+    glint::Result<MaterialModel> model = glint::materials::readDeclarations(*parsed);
     if (!model) {
         std::fprintf(stderr, "%s\n", toString(model.error()).c_str());
     }
     glint::fuzz::require(model.ok(), "the declarations without the input can be read");
-    return {std::move(files), std::move(*model)};
+    return {std::move(*parsed), std::move(*model)};
 }
 
 // Glint's own declarations for one input in 256, chosen by its bytes, so that a finding can be repeated.
@@ -61,7 +64,7 @@ const Others& othersFor(const std::uint8_t* data, std::size_t size) {
         for (const glint::base::BuiltinFile& file : glint::materials::declarationFiles()) {
             files.push_back({file.name, file.text});
         }
-        return makeOthers(std::move(files));
+        return makeOthers(files);
     }();
     std::uint8_t sum = 0;
     std::for_each(data, data + size,
@@ -113,9 +116,12 @@ const glint::fuzz::InputSchema& glint::fuzz::inputSchema() {
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using glint::fuzz::require;
     const Others& others = othersFor(data, size);
-    std::vector<DeclarationFile> files = others.files;
-    files.push_back({"pack/pack.json", glint::fuzz::asText(data, size), true});
-    const glint::Result<MaterialModel> model = glint::materials::readDeclarations(files);
+    const DeclarationFile input{"pack/pack.json", glint::fuzz::asText(data, size), true};
+    const glint::Result<MaterialModel> model = [&]() -> glint::Result<MaterialModel> {
+        GLINT_TRY(auto files, glint::materials::parseDeclarations({&input, 1}));
+        files.insert(files.end(), others.files.begin(), others.files.end());
+        return glint::materials::readDeclarations(std::move(files));
+    }();
     if (!model) {
         require(model.error().id == "declaration" && !model.error().message.empty(),
                 "an error has an id and a message");
@@ -144,7 +150,9 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
             material.values[static_cast<std::size_t>(parameter.first + i)] = parameter.hold(parameter.high);
         }
     }
-    std::ranges::fill(material.given, std::uint8_t{1});
+    for (std::size_t object = 0; object < model->objects.size(); ++object) {
+        material.given.add(static_cast<int>(object));
+    }
     require((glint::compiler::makeKey(material, primitive, {}) & ~all) == 0, "keys have declared features");
     return 0;
 }

@@ -8,6 +8,7 @@
 #include <random>
 #include <regex>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -23,8 +24,7 @@ struct Slot {
 
 class Mutator {
 public:
-    Mutator(unsigned int seed, Json& document)
-        : random_(seed), document_(document), words_(glint::fuzz::inputSchema().words) {
+    Mutator(unsigned int seed, Json& document) : random_(seed), document_(document) {
         visit(document, glint::fuzz::inputSchema().schema);
     }
 
@@ -55,8 +55,15 @@ private:
         return below(count) == 0;
     }
 
+    // Returns a member of a schema without a copy, which would be that of all below it.
+    static const Json& memberOf(const Json& schema, const char* name) {
+        static const Json kNone;
+        const auto found = schema.find(name);
+        return found == schema.end() ? kNone : *found;
+    }
+
     static bool fits(const Json& value, const Json& schema) {
-        const Json type = schema.value("type", Json());
+        const Json& type = memberOf(schema, "type");
         const auto is = [&](std::string_view name) { return type == name || type.is_null(); };
         return value.is_object()   ? is("object") && !schema.contains("enum")
                : value.is_array()  ? is("array") && !schema.contains("enum")
@@ -78,17 +85,14 @@ private:
         if (value.is_string()) {
             words_.push_back(value.get<std::string>());
         }
-        const bool named = schema.contains("properties");
-        const Json* const others =
-            schema.contains("additionalProperties") && schema["additionalProperties"].is_object()
-                ? &schema["additionalProperties"]
-                : nullptr;
+        const Json& named = memberOf(schema, "properties");
+        const Json& others = memberOf(schema, "additionalProperties");
         for (auto& [name, member] : (value.is_object() ? value : none_).items()) {
-            if (named && schema["properties"].contains(name)) {
-                visit(member, schema["properties"][name]);
-            } else if (others != nullptr) {
+            if (const auto known = named.find(name); known != named.end()) {
+                visit(member, *known);
+            } else if (others.is_object()) {
                 words_.push_back(name);
-                visit(member, *others);
+                visit(member, others);
             }
         }
         for (Json& element : value.is_array() && schema.contains("items") ? value : none_) {
@@ -139,8 +143,9 @@ private:
         if (schema.contains("const")) {
             return schema["const"];
         }
-        const Json types = schema.value("type", Json("string"));
-        const std::string type = types.is_array() ? types[below(types.size())] : types;
+        const Json& types = memberOf(schema, "type");
+        const Json& chosen = types.is_array() ? types[below(types.size())] : types;
+        const std::string type = chosen.is_string() ? chosen : Json("string");
         if (type == "object") {
             return makeObject(schema, depth);
         }
@@ -160,33 +165,69 @@ private:
             constexpr double kNumbers[] = {0.0, 1.0, 2.0, 0.5, -1.0, 1e6, 1e-30, 1e39, 3.0, 64.0};
             return kNumbers[below(std::size(kNumbers))];
         }
-        return type == "null" || words_.empty() ? Json() : Json(word(schema.value("pattern", "")));
+        return type == "null" ? Json() : Json(word(schema.value("pattern", "")));
+    }
+
+    // A word of the schema or of the document; empty if there is none.
+    std::string anyWord() {
+        const std::vector<std::string>& usual = glint::fuzz::inputSchema().words;
+        const std::size_t place = below(usual.size() + words_.size());
+        return place < usual.size()                   ? usual[place]
+               : place - usual.size() < words_.size() ? words_[place - usual.size()]
+                                                      : std::string();
     }
 
     // A word, which mostly fits the pattern.
-    const std::string& word(const std::string& pattern) {
-        static std::map<std::string, std::regex> patterns;
-        const auto [known, isNew] = patterns.try_emplace(pattern, pattern);
-        std::size_t place = below(words_.size());
-        for (std::size_t tries = 0; tries < 16 && !std::regex_search(words_[place], known->second); ++tries) {
-            place = below(words_.size());
+    std::string word(const std::string& pattern) {
+        std::string word = anyWord();
+        for (std::size_t tries = 0; tries < 16 && !fitsPattern(word, pattern); ++tries) {
+            word = anyWord();
         }
-        return words_[place];
+        return word;
+    }
+
+    // Remembers words, because to match one takes longer than to read many an input.
+    static bool fitsPattern(const std::string& word, const std::string& pattern) {
+        struct Pattern {
+            std::regex regex;
+            std::unordered_map<std::string, bool> fits{};
+        };
+        static std::map<std::string, Pattern> patterns;
+        if (pattern.empty()) {
+            return true;
+        }
+        auto known = patterns.find(pattern);
+        if (known == patterns.end()) {
+            known = patterns.emplace(pattern, Pattern{std::regex(pattern)}).first;
+        }
+        constexpr std::size_t kMostWords = 4096;
+        std::unordered_map<std::string, bool>& fits = known->second.fits;
+        if (fits.size() >= kMostWords) {
+            fits.clear();
+        }
+        const auto [found, isNew] = fits.try_emplace(word, false);
+        if (isNew) {
+            found->second = std::regex_search(word, known->second.regex);
+        }
+        return found->second;
     }
 
     Json makeObject(const Json& schema, int depth) {
         Json object = Json::object();
         constexpr int kDeepest = 4;
-        const Json needed = schema.value("required", Json::array());
-        const Json members = schema.value("properties", Json::object());
+        const Json& needed = memberOf(schema, "required");
+        const Json& members = memberOf(schema, "properties");
+        const auto isNeeded = [&needed](const std::string& name) {
+            return std::any_of(needed.begin(), needed.end(), [&](const Json& one) { return one == name; });
+        };
         for (const auto& [name, member] : members.items()) {
-            if (std::ranges::find(needed, Json(name)) != needed.end() ||
-                (depth < kDeepest && oneIn(share_))) {
+            if (isNeeded(name) || (depth < kDeepest && oneIn(share_))) {
                 object[name] = make(member, depth + 1);
             }
         }
-        if (members.empty() && schema.value("additionalProperties", Json()).is_object() && !words_.empty()) {
-            object[words_[below(words_.size())]] = make(schema["additionalProperties"], depth + 1);
+        if (const Json& others = memberOf(schema, "additionalProperties");
+            members.empty() && others.is_object()) {
+            object[anyWord()] = make(others, depth + 1);
         }
         return object;
     }
@@ -194,8 +235,8 @@ private:
     std::minstd_rand random_;
     Json& document_;
     Json none_ = Json::array();
-    std::size_t share_ = 4;  // one optional member in so many is made
-    std::vector<std::string> words_;
+    std::size_t share_ = 4;           // one optional member in so many is made
+    std::vector<std::string> words_;  // of the document
     std::vector<Slot> slots_;
 };
 

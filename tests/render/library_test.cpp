@@ -5,13 +5,17 @@
 #include "emit/glsl/passes.h"
 #include "gltf/import.h"
 #include "materials/declarations.h"
+#include "plan/effects.h"
 #include "render/hit_kernel.h"
 #include "render/pixel_test.h"
+#include "render/scene_builder.h"
 #include "spirv/compiler.h"
 #include "spirv/optimize.h"
 #include "support/must.h"
 #include "support/nightly.h"
+#include "support/printed_files.h"
 #include "support/shared_modules.h"
+#include "support/temporary_folder.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -22,6 +26,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -88,7 +93,7 @@ std::vector<std::string> functionsOfCases(const compiler::Plan& plan) {
     for (const compiler::Case& shaderCase : plan.cases) {
         names.push_back("shade" + shaderCase.name);
         for (const char* const function :
-             {"surface", "evaluate", "sample", "density", "radiance", "mirror"}) {
+             {"surface", "evaluate", "sample", "density", "radiance", "mirror", "shadeAll"}) {
             names.push_back(fmt::format("glint_{}OfCase{}", function, shaderCase.shaderId));
         }
     }
@@ -336,7 +341,8 @@ TEST(LibraryFiles, CompileInAShaderOfAUser) {
         "    GlintSurface surface = glintSurface(GlintHit(0u, 0u, vec2(0.3), sum, 0.0, 0u));\n"
         "    sum = glintEvaluate(surface, sum, sum) + glintRadiance(surface).radiance +\n"
         "          glintSample(surface, sum, sum).weight * glintDensity(surface, sum, sum) +\n"
-        "          glintMirror(surface).weight + glintRayOrigin(surface, sum);\n";
+        "          glintMirror(surface).weight + glintRayOrigin(surface, sum) +\n"
+        "          glintShadeAll(surface, sum, sum, sum);\n";
     for (std::size_t i = 1; i < files.size(); ++i) {
         // Every text is compiled. Only the switch and one case are called, too, which takes most of the time.
         const std::string text = textOf(files[i]);
@@ -349,6 +355,86 @@ TEST(LibraryFiles, CompileInAShaderOfAUser) {
              functionsOfCases(plan)},
             {});
         EXPECT_TRUE(words) << toString(words.error());
+    }
+}
+
+// Sums the lights of a wall as a host does: all of them, and all but the first.
+constexpr const char* kLightLoop = R"(#version 460
+const uint kTestMaterials = 1u;
+#include "library.glsl"
+#include "library_host.glsl"
+
+layout(local_size_x = kRayGroupSize) in;
+
+void main() {
+    GlintSurface surface = glintSurface(GlintHit(0u, 0u, vec2(0.3), vec3(0.0, 0.0, -1.0), 0.0, 0u));
+    vec3 first = vec3(0.0);
+    vec3 whole = vec3(0.0);
+    for (uint i = 0u; i < glintHostLightCount(surface.position); ++i) {
+        GlintLight light = glintHostLight(i, surface.position, vec3(0.0));
+        vec3 scattered = glintEvaluate(surface, surface.view, light.direction) * light.irradiance;
+        first = i == 0u ? scattered : first;
+        whole += scattered;
+    }
+    vec3 seen[2] = vec3[](glintShadeAll(surface, surface.view, whole, whole),
+                          glintShadeAll(surface, surface.view, whole, whole - first));
+    for (uint i = 0u; i < 6u && gl_GlobalInvocationID.x == 0u; ++i) {
+        GLINT_FRAME.counters.data[i] = floatBitsToUint(seen[i / 3u][i % 3u]);
+    }
+}
+)";
+
+// A wall of the model cel under two lights, of which a roof takes one away.
+TEST(LibraryFiles, ModelsThatShadeAllLightsHaveTheTonesOfTheFrame) {
+    const test::TemporaryFolder folder;
+    test::writePrintedFiles("material_features.md", folder.path(),
+                            {"cel/cel.json", "cel/cel.glsl", "cel/cel_surface.glsl"});
+    materials::Material cel(*must(materials::loadMaterialModel(std::vector{folder.path().string()})));
+    cel.give("EXAMPLE_materials_cel");
+    cel["celColor"] = {0.6F, 0.4F, 0.2F, 1.0F};
+    const auto room = [&](bool blocked) {
+        gltf::Scene scene = sceneWithCamera();
+        addQuad(scene, cel, {-3, -1, -6}, {6, 0, 0}, {0, 4, 0});
+        if (blocked) {
+            addQuad(scene, cel, {-40, 30, 1000}, {0, 0, -2000}, {39, 0, 0});
+        }
+        for (const float side : {0.48F, -0.48F}) {
+            addDirectionalLight(scene, {side, -0.62F, -0.62F}, 1.5F);
+        }
+        return scene;
+    };
+    const auto middle = [&](bool blocked) {
+        const gltf::Scene scene = room(blocked);
+        compiler::CompileSettings settings;
+        settings.strategies = package::kStrategyUber;
+        settings.effects = {false, compiler::builtinEffects({"shadow"})};
+        RenderSetup setup = defaultSetup(scene, 9, 9);
+        setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+        return at(LoadedScene(scene, settings).render(package::kStrategyUber, setup), 4, 4);
+    };
+
+    const gltf::Scene scene = room(false);
+    const gltf::SceneList list({&scene, 1});
+    const LoadedScene loaded(scene, librarySettings());
+    compiler::CompileSettings settings = librarySettings();
+    settings.emitLibrary = true;
+    const std::vector<compiler::PackageFile> files =
+        must(makeLibrary(list, loaded.compiled().plan, settings));
+    compiler::SourceSet sources = must(makeSourceSet(list, loaded.compiled().plan, settings));
+    sources.add("library.glsl", textOf(files.at(1)));
+    sources.add("library_host.glsl", textAt(kShaders + "library_host.glsl"));
+    const std::string glsl =
+        must(flatten("light_loop.comp", kLightLoop, sources.lookup(), compiler::FlattenSide::Glsl))
+            .withPlaces();
+    const auto kernel = must(HitKernel::create(
+        loaded,
+        must(compiler::compileShader({"light_loop.comp", compiler::ShaderStage::Compute, glsl, {}}, {}))));
+    const std::vector<std::uint32_t> words = must(kernel->run({}, {}, 1, 6));
+    const Pixel pixels[] = {middle(false), middle(true)};
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const float expected = pixels[i / 3][i % 3];
+        EXPECT_GT(expected, 0.05F);
+        EXPECT_NEAR(std::bit_cast<float>(words[i]), expected, 1e-5F) << i;
     }
 }
 

@@ -2,6 +2,7 @@
 #include "base/files.h"
 #include "gltf/import.h"
 #include "materials/declarations.h"
+#include "plan/effects.h"
 #include "plan/key.h"
 #include "render/harness.h"
 #include "render/light_pictures.h"
@@ -17,9 +18,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <initializer_list>
 #include <numbers>
 #include <regex>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace {
@@ -171,6 +174,43 @@ TEST(Models, AHighlightIsThatOfDoublePrecision) {
     const double half = std::cos(0.5 * std::acos(0.8));
     const double scale = 22.0 * 24.0 / (8.0 * (std::exp2(-10.0) + 20.0));
     expectLight(litBy(material, {0.6F, 0, -0.8F}), scale * std::pow(half, 20.0) * 0.8, "");
+}
+
+// Rays of a model are those of indirect diffuse, so the effect reflection adds nothing and takes nothing
+// away: neither where the sky stands in for the model's light, nor where samples of the sky share it.
+TEST(Models, ReflectionSendsNoRaysOfTheirs) {
+    materials::Material shiny(models());
+    shiny.name = "Shiny";
+    shiny.give("EXAMPLE_materials_blinn_phong");
+    shiny["blinnPhongDiffuse"] = {0.1F, 0.1F, 0.1F, 1.0F};
+    shiny["blinnPhongSpecular"] = {0.8F, 0.7F, 0.6F};
+    shiny["blinnPhongShininess"] = 300.0F;
+    gltf::Scene scene = sceneWithCamera();
+    addQuad(scene, shiny, {-3, -1, -6}, {6, 0, 0}, {0, 4, 0});
+    addQuad(scene, lambert(true), {-3, -1, 1}, {6, 0, 0}, {0, 0, -7});
+    addDirectionalLight(scene, {0.3F, -0.8F, -0.52F}, 1.5F);
+    for (const compiler::SkyLight skyLight : {compiler::SkyLight::Off, compiler::SkyLight::On}) {
+        const auto draw = [&](std::initializer_list<std::string_view> effects) {
+            compiler::CompileSettings settings;
+            settings.strategies = package::kStrategyUber;
+            settings.skyLight = skyLight;
+            settings.effects = {false, compiler::builtinEffects(effects)};
+            RenderSetup setup = defaultSetup(scene, 16, 16);
+            setup.samples = 2;
+            return LoadedScene(scene, settings).render(package::kStrategyUber, setup);
+        };
+        expectSameImage(draw({"shadow", "reflection"}), draw({"shadow"}), "reflection alone");
+        const LinearImage followed = draw({"shadow", "indirect-diffuse"});
+        EXPECT_GT(meanOf(followed), 0.05);
+        expectSameImage(draw({"shadow", "reflection", "indirect-diffuse"}), followed, "both");
+    }
+    const materials::PrimitiveInputs primitive{.hasNormals = true};
+    const compiler::EffectPlan plan =
+        compiler::decideEffects({&shiny, 1}, {&primitive, 1}, {.lit = true}, {.automatic = true});
+    EXPECT_EQ(
+        plan.decisions[package::effectNumber(compiler::builtinEffects({"reflection"}))].reason,
+        "no surface is smoother than the roughness limit 0.3 (material \"Shiny\" has the model blinnPhong, "
+        "whose rays are those of indirect-diffuse)");
 }
 
 // The documents print the model, and a list of materials with it, as they are.

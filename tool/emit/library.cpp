@@ -111,7 +111,8 @@ Result<std::string> makeFile(const SourceSet& sources, const SourceSet& own, con
 constexpr const char* kExported[] = {"glintSurface",  "glintEvaluate", "glintSample",   "glintDensity",
                                      "glintRadiance", "glintMirror",   "glintRayOrigin"};
 // The functions that each case has.
-constexpr const char* kOfCase[] = {"surface", "evaluate", "sample", "density", "radiance", "mirror"};
+constexpr const char* kOfCase[] = {"surface",  "evaluate", "sample",  "density",
+                                   "radiance", "mirror",   "shadeAll"};
 
 // Calls every function, so that none is dropped.
 constexpr std::string_view kMain = R"(
@@ -125,6 +126,7 @@ void main() {
     v += glintDensity(surface, v, v);
     v += glintRadiance(surface).radiance;
     v += glintMirror(surface).weight;
+    v += glintShadeAll(surface, v, v, v);
     v += glintRayOrigin(surface, v);
 }
 )";

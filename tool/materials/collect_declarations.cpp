@@ -153,10 +153,10 @@ void ModelBuilder::checkOwn(const Members& members, const Feature& feature) {
 
 void ModelBuilder::collect(File& file) {
     model_.indexNames();
-    isOfPack_ = file.isOfPack;
+    isOfPack_ = file->isOfPack;
     base_ = -1;
     scope_.clear();
-    const Members members = membersOf(file);
+    const Members& members = *file->members;
     const std::string name = newName(members);
     const std::string stageName = members.text("stage");
     const Stage stage = choose(kStages, members, "stage", stageName).stage;
@@ -177,23 +177,20 @@ void ModelBuilder::collect(File& file) {
         file.scope = scope_ = isModel ? name : "";
         file.mainFeature = addFeature(members, std::move(feature), light);
     }
-    for (const auto& [json, where] : members.list("parameters")) {
-        const Members parameter(*json, where, Place::Parameter);
+    for (const Members& parameter : file->parameters) {
         if (!fills(parameter, Place::Parameter)) {
             addParameter(file, parameter);
         }
     }
-    for (const auto& [json, where] : members.list("textures")) {
-        const Members texture(*json, where, Place::Texture);
+    for (const Members& texture : file->textures) {
         if (!fills(texture, Place::Texture)) {
             addTexture(file, texture);
         }
     }
-    for (const auto& [json, where] : members.list("attributes")) {
-        addAttribute(file, Members(*json, where, Place::Attribute));
+    for (const Members& attribute : file->attributes) {
+        addAttribute(file, attribute);
     }
-    for (const auto& [json, where] : members.list("features")) {
-        const Members further(*json, where, Place::Feature);
+    for (const Members& further : file->features) {
         Feature feature;
         feature.name = newName(further);
         feature.role = roleOf(further);
@@ -338,7 +335,7 @@ void ModelBuilder::addParameter(const File& file, const Members& members) {
     // A parameter may have the name of its feature: "dispersion". The JSON stands on the left, because
     // nlohmann-json 3.11.3 (Debian 13) compares it with a string in that order only.
     std::string name = members.text("name");
-    if (file.json["name"] != name) {
+    if (file->json["name"] != name) {
         name = newName(members);
     }
     refuseWordOfGlsl(members, name);
@@ -495,9 +492,7 @@ void ModelBuilder::addTexture(const File& file, const Members& members) {
 
 void ModelBuilder::collectAliases(const File& file) {
     scope_ = file.scope;
-    const Members members = membersOf(file);
-    for (const auto& [json, where] : members.list("parameters")) {
-        const Members alias(*json, where, Place::Parameter);
+    for (const Members& alias : file->parameters) {
         if (!fills(alias, Place::Parameter)) {
             continue;
         }
@@ -518,8 +513,7 @@ void ModelBuilder::collectAliases(const File& file) {
         readDefault(alias, parameter);
         model_.parameters.push_back(std::move(parameter));
     }
-    for (const auto& [json, where] : members.list("textures")) {
-        const Members alias(*json, where, Place::Texture);
+    for (const Members& alias : file->textures) {
         if (fills(alias, Place::Texture)) {
             newName(alias);
             model_.textures[static_cast<std::size_t>(filledTexture(alias))].places.push_back(

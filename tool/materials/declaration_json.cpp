@@ -1,5 +1,9 @@
 #include "materials/declaration_json.h"
 
+#include <bit>
+#include <cassert>
+#include <cstdint>
+
 namespace glint::materials {
 
 namespace {
@@ -27,6 +31,64 @@ bool isWordOfGlsl(std::string_view name) {
             std::ranges::find(kGlslTypes, name.substr(0, letters)) != std::end(kGlslTypes));
 }
 
+// The members that objects of a place may have, each with a bit.
+struct MembersOfPlace {
+    struct Rule {
+        const MemberRule* row;
+        std::uint64_t members;
+        std::uint64_t with;
+        std::uint64_t without;
+    };
+
+    std::vector<std::string_view> names;
+    std::uint64_t needed = 0;
+    std::vector<Rule> rules;
+
+    // Returns the bits of the members that `isOne` is true for.
+    template <typename IsOne>
+    std::uint64_t bitsWhere(const IsOne& isOne) const {
+        std::uint64_t bits = 0;
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            bits |= isOne(names[i]) ? std::uint64_t{1} << i : 0;
+        }
+        return bits;
+    }
+    std::uint64_t bitsOf(std::string_view name) const {
+        return bitsWhere([name](std::string_view one) { return one == name; });
+    }
+};
+
+MembersOfPlace makeMembersOf(Place place) {
+    MembersOfPlace members;
+    for (const MemberRow& row : memberRows()) {
+        if (row.standsAt(place)) {
+            members.needed |= row.isNeededAt(place) ? std::uint64_t{1} << members.names.size() : 0;
+            members.names.push_back(row.name);
+        }
+    }
+    assert(members.names.size() <= 64);
+    for (const MemberRule& rule : memberRules()) {
+        const auto bits = [&](std::string_view words) {
+            return members.bitsWhere([words](std::string_view name) { return hasWord(words, name); });
+        };
+        if (rule.place == place) {
+            members.rules.push_back({&rule, bits(rule.members), bits(rule.with), bits(rule.without)});
+        }
+    }
+    return members;
+}
+
+const MembersOfPlace& membersOf(Place place) {
+    static const std::vector<MembersOfPlace> kAll = [] {
+        std::vector<MembersOfPlace> all;
+        for (std::size_t i = 0; i < static_cast<std::size_t>(Place::Count); ++i) {
+            all.push_back(makeMembersOf(static_cast<Place>(i)));
+        }
+        return all;
+    }();
+    return kAll[static_cast<std::size_t>(place)];
+}
+
 }  // namespace
 
 Members::Members(const DeclarationJson& json, std::string where, Place place)
@@ -34,38 +96,26 @@ Members::Members(const DeclarationJson& json, std::string where, Place place)
     if (!json.is_object()) {
         failAt(where_, "must be an object");
     }
+    const MembersOfPlace& table = membersOf(place);
+    std::uint64_t present = 0;
     for (const auto& item : json.items()) {
-        const std::string_view name = item.key();
-        if (std::ranges::none_of(memberRows(), [&](const MemberRow& row) {
-                return row.standsAt(place) && row.name == name;
-            })) {
-            std::vector<std::string> known;
-            for (const MemberRow& row : memberRows()) {
-                if (row.standsAt(place)) {
-                    known.emplace_back(row.name);
-                }
-            }
-            refuseOthers(known);
+        const std::uint64_t bit = table.bitsOf(item.key());
+        if (bit == 0) {
+            refuseOthers({table.names.begin(), table.names.end()});
         }
+        present |= bit;
     }
-    for (const MemberRow& row : memberRows()) {
-        if (row.isNeededAt(place)) {
-            static_cast<void>((*this)[row.name]);
-        }
+    if (const std::uint64_t missing = table.needed & ~present; missing != 0) {
+        static_cast<void>((*this)[table.names[static_cast<std::size_t>(std::countr_zero(missing))]]);
     }
-    for (const MemberRule& rule : memberRules()) {
-        if (rule.place != place) {
+    for (const MembersOfPlace::Rule& rule : table.rules) {
+        const bool broken = (rule.with != 0 && (rule.with & present) == 0) || (rule.without & present) != 0;
+        if (!broken || (rule.members & present) == 0) {
             continue;
         }
-        const auto hasAny = [&](std::string_view names) {
-            return std::ranges::any_of(memberRows(), [&](const MemberRow& row) {
-                return hasWord(names, row.name) && has(row.name);
-            });
-        };
-        const bool broken = (!rule.with.empty() && !hasAny(rule.with)) || hasAny(rule.without);
         for (const auto& item : json.items()) {
-            if (broken && hasWord(rule.members, item.key())) {
-                failAt(at(item.key()), std::string(rule.message), std::string(rule.hint));
+            if ((rule.members & table.bitsOf(item.key())) != 0) {
+                failAt(at(item.key()), std::string(rule.row->message), std::string(rule.row->hint));
             }
         }
     }

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "base/text.h"
+#include "materials/declaration_files.h"
 #include "materials/declaration_members.h"
 #include "materials/interval.h"
+#include "materials/material_model.h"
 
 #include <glint/result.h>
 
@@ -14,6 +16,7 @@
 #include <cctype>
 #include <initializer_list>
 #include <iterator>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -88,11 +91,12 @@ public:
         std::vector<std::pair<const DeclarationJson*, std::string>> elements;
         if (has(member)) {
             const DeclarationJson& array = (*this)[member];
+            const std::string place = at(member);
             if (!array.is_array()) {
-                failAt(at(member), "must be an array");
+                failAt(place, "must be an array");
             }
             for (std::size_t i = 0; i < array.size(); ++i) {
-                elements.emplace_back(&array[i], fmt::format("{}/{}", at(member), i));
+                elements.emplace_back(&array[i], fmt::format("{}/{}", place, i));
             }
         }
         return elements;
@@ -134,6 +138,26 @@ private:
 
     const DeclarationJson& json_;
     std::string where_;
+};
+
+// A declaration whose objects have their members: what is known of a file without others. Members refer to
+// `json`.
+struct ParsedDeclaration {
+    // Throws DeclarationFault.
+    explicit ParsedDeclaration(const DeclarationFile& file);
+    ParsedDeclaration(const ParsedDeclaration&) = delete;
+    ParsedDeclaration& operator=(const ParsedDeclaration&) = delete;
+    ~ParsedDeclaration() = default;
+
+    std::string name;
+    bool isOfPack;
+    DeclarationJson json;
+    std::optional<EffectDeclaration> effect{};  // Declarations of effects have nothing of the following.
+    std::optional<Members> members{};
+    std::vector<Members> parameters{};
+    std::vector<Members> textures{};
+    std::vector<Members> attributes{};
+    std::vector<Members> features{};
 };
 
 // Refuses the object whose name in GLSL, where it is that of a member, would be `name`.

@@ -218,18 +218,47 @@ bool isIdentifier(std::string_view name) {
 
 }  // namespace
 
-ModelBuilder::ModelBuilder(std::span<const DeclarationFile> files) {
-    addObject("", false);
-    std::vector<DeclarationFile> sorted(files.begin(), files.end());
-    std::ranges::sort(sorted, {}, &DeclarationFile::name);
-    for (const DeclarationFile& file : sorted) {
-        parse(file);
+ParsedDeclaration::ParsedDeclaration(const DeclarationFile& file) : name(file.name), isOfPack(file.isOfPack) {
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(file.text.data());
+    if (base::nestsTooDeep({bytes, file.text.size()})) {
+        failAt(name, "nests too deep");
     }
-    readEffects();
+    json = DeclarationJson::parse(file.text, nullptr, false);
+    if (json.is_discarded()) {
+        failAt(name, "is no JSON", "look for a missing comma or bracket");
+    }
+    // Declarations of effects have a kind; those of features have none.
+    if (json.is_object() && json.contains("kind")) {
+        effect = readEffect({json, name + "#", effectMembers()}, name, isOfPack);
+        return;
+    }
+    members.emplace(json, name + "#", Place::File);
+    const auto readList = [this](std::string_view member, Place place, std::vector<Members>& list) {
+        for (const auto& [element, where] : members->list(member)) {
+            list.emplace_back(*element, where, place);
+        }
+    };
+    readList("parameters", Place::Parameter, parameters);
+    readList("textures", Place::Texture, textures);
+    readList("attributes", Place::Attribute, attributes);
+    readList("features", Place::Feature, features);
+}
+
+ModelBuilder::ModelBuilder(ParsedDeclarations files) {
+    addObject("", false);
+    std::ranges::sort(files, {}, [](const auto& file) { return std::string_view(file->name); });
+    for (std::shared_ptr<const ParsedDeclaration>& file : files) {
+        if (file->effect) {
+            model_.effects.push_back(*file->effect);
+        } else {
+            files_.push_back({std::move(file)});
+        }
+    }
+    numberEffects(model_.effects);
     // The core comes before the extensions. This is not std::ranges, whose subrange Clang 14 can't read
     // in libstdc++ 12.
     std::stable_partition(files_.begin(), files_.end(),
-                          [](const File& file) { return !file.json.contains("extension"); });
+                          [](const File& file) { return !file->members->has("extension"); });
 }
 
 MaterialModel ModelBuilder::build() {
@@ -257,11 +286,10 @@ MaterialModel ModelBuilder::build() {
     }
     std::vector<DeclaredCode> code;
     for (const File& file : files_) {
-        const Members members = membersOf(file);
-        if (members.has("glsl")) {
-            code.push_back(readFeatureCode(members, file.name, file.mainFeature));
+        if (file->members->has("glsl")) {
+            code.push_back(readFeatureCode(*file->members, file->name, file.mainFeature));
             code.back().code.unless = replacing(file.object);
-            code.back().code.isOfPack = file.isOfPack;
+            code.back().code.isOfPack = file->isOfPack;
         }
     }
     model_.code = orderCode(std::move(code));
@@ -284,37 +312,6 @@ FeatureMask ModelBuilder::replacing(int object) const {
         }
     }
     return mask;
-}
-
-void ModelBuilder::parse(const DeclarationFile& file) {
-    File parsed{std::string(file.name), {}, 0, -1, file.isOfPack};
-    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(file.text.data());
-    if (base::nestsTooDeep({bytes, file.text.size()})) {
-        failAt(parsed.name, "nests too deep");
-    }
-    parsed.json = DeclarationJson::parse(file.text, nullptr, false);
-    if (parsed.json.is_discarded()) {
-        failAt(parsed.name, "is no JSON", "look for a missing comma or bracket");
-    }
-    files_.push_back(std::move(parsed));
-}
-
-void ModelBuilder::readEffects() {
-    const auto isEffect = [](const File& file) {
-        return file.json.is_object() && file.json.contains("kind");
-    };
-    for (const File& file : files_) {
-        if (isEffect(file)) {
-            model_.effects.push_back(
-                readEffect({file.json, file.name + "#", effectMembers()}, file.name, file.isOfPack));
-        }
-    }
-    std::erase_if(files_, isEffect);
-    numberEffects(model_.effects);
-}
-
-Members ModelBuilder::membersOf(const File& file) const {
-    return {file.json, file.name + "#", Place::File};
 }
 
 int ModelBuilder::addObject(const std::string& name, bool isExtension) {
@@ -385,14 +382,41 @@ std::string roleMacro(package::Role role) {
     return "GLINT_ROLE_" + fieldMacro(std::ranges::find(kRoles, role, &NamedRole::role)->name);
 }
 
-Result<MaterialModel> readDeclarations(std::span<const DeclarationFile> files) {
+namespace {
+
+// Returns what `make` does, or the fault that it throws.
+template <typename Make>
+auto caught(const Make& make) -> Result<decltype(make())> {
     try {
-        return ModelBuilder(files).build();
+        return make();
     } catch (const DeclarationFault& fault) {
         return fault.diagnostic;
     } catch (const DeclarationJson::exception& error) {
         return makeError("declaration", "", error.what());
     }
+}
+
+}  // namespace
+
+Result<ParsedDeclarations> parseDeclarations(std::span<const DeclarationFile> files) {
+    std::vector<DeclarationFile> sorted(files.begin(), files.end());
+    std::ranges::sort(sorted, {}, &DeclarationFile::name);
+    return caught([&] {
+        ParsedDeclarations parsed;
+        for (const DeclarationFile& file : sorted) {
+            parsed.push_back(std::make_shared<const ParsedDeclaration>(file));
+        }
+        return parsed;
+    });
+}
+
+Result<MaterialModel> readDeclarations(ParsedDeclarations files) {
+    return caught([&] { return ModelBuilder(std::move(files)).build(); });
+}
+
+Result<MaterialModel> readDeclarations(std::span<const DeclarationFile> files) {
+    GLINT_TRY(auto parsed, parseDeclarations(files));
+    return readDeclarations(std::move(parsed));
 }
 
 }  // namespace glint::materials

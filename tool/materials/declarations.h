@@ -9,6 +9,7 @@
 #include <glint/result.h>
 
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,10 +17,18 @@
 
 namespace glint::materials {
 
+struct ParsedDeclaration;
+// Declarations that several models have.
+using ParsedDeclarations = std::vector<std::shared_ptr<const ParsedDeclaration>>;
+
+// Reads what each file says by itself. Error "declaration": a file is no JSON, or has unknown or missing
+// members; the place is file#/json/pointer.
+Result<ParsedDeclarations> parseDeclarations(std::span<const DeclarationFile> files);
+
 // Makes the model of all files together, as they may refer to each other. The result depends on neither the
-// order of the files nor their folders. Error "declaration": a file is no JSON, has unknown or missing
-// members, uses a name twice, refers to one that does not exist, or has an expression that can't be read; the
-// place is file#/json/pointer.
+// order of the files nor their folders. Error "declaration": that of parseDeclarations(), or a file uses a
+// name twice, refers to one that does not exist, or has an expression that can't be read.
+Result<MaterialModel> readDeclarations(ParsedDeclarations files);
 Result<MaterialModel> readDeclarations(std::span<const DeclarationFile> files);
 
 // Returns a field's part of the names of macros: "CLEARCOAT_ROUGHNESS_FACTOR" of "clearcoatRoughnessFactor".

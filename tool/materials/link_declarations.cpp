@@ -181,8 +181,7 @@ void ModelBuilder::excludeFromModels() {
             if (file.object != replaced) {
                 continue;
             }
-            for (const auto& [json, where] : membersOf(file).list("features")) {
-                const Members further(*json, where, Place::Feature);
+            for (const Members& further : file->features) {
                 excluded |= model_.mask(fullName(file.scope, further.text("name")));
             }
         }
@@ -373,21 +372,19 @@ void ModelBuilder::linkFeature(const Members& members, int index, FeatureMask on
 
 void ModelBuilder::link(const File& file) {
     scope_ = file.scope;
-    const Members members = membersOf(file);
+    const Members& members = *file->members;
     if (file.mainFeature >= 0) {
         linkFeature(members, file.mainFeature, 0);
     }
-    for (const auto& [json, where] : members.list("features")) {
-        const Members further(*json, where, Place::Feature);
+    for (const Members& further : file->features) {
         linkFeature(further, named(&MaterialModel::findFeature, further.text("name")), 0);
     }
-    for (const auto& [json, where] : members.list("textures")) {
-        const Members texture(*json, where, Place::Texture);
+    for (const Members& texture : file->textures) {
         if (!fills(texture, Place::Texture)) {
             linkTexture(file, texture);
         }
     }
-    linkParameters(file, members);
+    linkParameters(file);
     for (const auto& [json, where] : members.list("derived")) {
         linkDerived(file, Members(*json, where, Place::Derived));
     }
@@ -410,9 +407,7 @@ void ModelBuilder::linkTexture(const File& file, const Members& members) {
 
 void ModelBuilder::linkAliases(const File& file) {
     scope_ = file.scope;
-    const Members members = membersOf(file);
-    for (const auto& [json, where] : members.list("textures")) {
-        const Members texture(*json, where, Place::Texture);
+    for (const Members& texture : file->textures) {
         if (!fills(texture, Place::Texture)) {
             continue;
         }
@@ -473,9 +468,8 @@ void ModelBuilder::linkScales(const Members& members, int slot) {
     }
 }
 
-void ModelBuilder::linkParameters(const File& file, const Members& members) {
-    for (const auto& [json, where] : members.list("parameters")) {
-        const Members row(*json, where, Place::Parameter);
+void ModelBuilder::linkParameters(const File& file) {
+    for (const Members& row : file->parameters) {
         Parameter& parameter =
             model_
                 .parameters[static_cast<std::size_t>(named(&MaterialModel::findParameter, row.text("name")))];

@@ -1,15 +1,15 @@
 // Builds a material model from declarations. The parts of the work are in files of their own.
 #pragma once
 
-#include "materials/declaration_files.h"
 #include "materials/declaration_json.h"
+#include "materials/declarations.h"
 #include "materials/material_model.h"
 
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
-#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -23,17 +23,19 @@ inline constexpr double kNoOrder = 1e6;
 // expressions, which may use any of the names.
 class ModelBuilder {
 public:
-    explicit ModelBuilder(std::span<const DeclarationFile> files);
+    explicit ModelBuilder(ParsedDeclarations files);
     MaterialModel build();
 
 private:
     struct File {
-        std::string name;
-        DeclarationJson json;
+        std::shared_ptr<const ParsedDeclaration> parsed;
         int object = 0;
         int mainFeature = -1;  // index into pending_, until bits are assigned
-        bool isOfPack = false;
-        std::string scope{};  // the name of the model of a pack that it declares
+        std::string scope{};   // the name of the model of a pack that it declares
+
+        const ParsedDeclaration* operator->() const {
+            return parsed.get();
+        }
     };
     // A feature before bits are assigned.
     struct Pending {
@@ -49,10 +51,6 @@ private:
 
     // Returns the features whose objects a material may have in place of this one.
     FeatureMask replacing(int object) const;
-    void parse(const DeclarationFile& file);
-    // Declarations of effects have a kind; those of features have none.
-    void readEffects();
-    Members membersOf(const File& file) const;
     int addObject(const std::string& name, bool isExtension);
     // Returns the full name of what the object declares, which must be new: every full name stands for one
     // thing.
@@ -125,7 +123,7 @@ private:
     // In keys of another base model, the texture's reasons are those that this model gives, if it gives any.
     void linkAliases(const File& file);
     void linkScales(const Members& members, int slot);
-    void linkParameters(const File& file, const Members& members);
+    void linkParameters(const File& file);
     void linkDerived(const File& file, const Members& members);
     void linkBase(const File& file, const Members& members);
     void linkBehaviour(const File& file, const Members& members);

@@ -162,6 +162,27 @@ std::string roughTextures(std::span<const Surface> surfaces, double limit) {
     return {};
 }
 
+// Returns the first surface whose model samples directions itself, as an addition to a reason: the effect of
+// surfaces that scatter sends its rays, whatever its lobes are.
+std::string sampledModel(std::span<const Surface> surfaces) {
+    for (const Surface& surface : surfaces) {
+        const materials::MaterialModel& model = surface.material->model();
+        const auto sender =
+            std::ranges::find_if(model.effects, [](const materials::EffectDeclaration& effect) {
+                return effect.kind == package::EffectKind::Rays && !effect.call.byAll &&
+                       effect.call.behaviour == materials::Behaviour::Scatters;
+            });
+        const auto code = std::ranges::find_if(model.code, [&](const materials::FeatureCode& one) {
+            return one.isSampled && SurfaceBehaviour(surface).has(one.feature);
+        });
+        if (sender != model.effects.end() && code != model.code.end()) {
+            return fmt::format(" ({} has the model {}, whose rays are those of {})",
+                               nameOf(*surface.material), code->name, sender->name);
+        }
+    }
+    return {};
+}
+
 Finding find(const materials::EffectDeclaration& effect, std::span<const Surface> surfaces,
              const SceneLights& lights, const EffectRequest& request) {
     const double limit = request.maxReflectionRoughness;
@@ -175,6 +196,9 @@ Finding find(const materials::EffectDeclaration& effect, std::span<const Surface
         });
     if (!finding.usable && !call.byAll && call.behaviour == materials::Behaviour::Reflects) {
         finding.reason += roughTextures(surfaces, limit);
+    }
+    if (!finding.usable && !call.byAll && call.behaviour != materials::Behaviour::Scatters) {
+        finding.reason += sampledModel(surfaces);
     }
     return finding;
 }

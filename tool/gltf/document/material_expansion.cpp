@@ -9,8 +9,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <numbers>
 #include <set>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -70,14 +72,14 @@ public:
         accessors_[static_cast<std::size_t>(accessor)]["min"] = least;
         accessors_[static_cast<std::size_t>(accessor)]["max"] = most;
     }
-    Json accessors() const {
+    const Json& accessors() const {
         return accessors_;
     }
-    Json views() const {
+    const Json& views() const {
         return views_;
     }
-    base::Bytes take() {
-        return std::move(bytes_);
+    const base::Bytes& bytes() const {
+        return bytes_;
     }
 
 private:
@@ -100,14 +102,57 @@ private:
     Json views_ = Json::array();
 };
 
+// The sphere of every material, with all attributes that a material may read.
+struct Sphere {
+    Arrays arrays;
+    std::map<std::string, int> attributes;  // accessors, of those of glTF
+    std::array<int, 4> ofChannels{};        // accessors for attributes of packs, by their channels
+    int indices = 0;
+};
+
+Sphere makeSphere() {
+    using Normal = std::array<double, 3>;
+    Sphere sphere;
+    Arrays& arrays = sphere.arrays;
+    std::map<std::string, int>& of = sphere.attributes;
+    of["POSITION"] = arrays.add("VEC3", [](const Normal& n, double, double) { return n; });
+    arrays.setBounds(of["POSITION"], {-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0});
+    of["NORMAL"] = of["POSITION"];
+    of["TANGENT"] = arrays.add("VEC4", [](const Normal&, double phi, double) {
+        return std::array{-std::sin(phi), 0.0, -std::cos(phi), 1.0};
+    });
+    of["TEXCOORD_0"] = arrays.add("VEC2", [](const Normal&, double phi, double theta) {
+        return std::array{phi / std::numbers::pi, theta / std::numbers::pi};
+    });
+    of["TEXCOORD_1"] = of["TEXCOORD_0"];
+    of["COLOR_0"] = arrays.add("VEC4", [](const Normal& n, double, double) {
+        return std::array{0.5 + 0.5 * n[0], 0.5 + 0.5 * n[1], 0.5 + 0.5 * n[2], 1.0};
+    });
+    const int scalar =
+        arrays.add("SCALAR", [](const Normal& n, double, double) { return std::array{0.5 + 0.5 * n[1]}; });
+    sphere.ofChannels = {scalar, of["TEXCOORD_0"], of["POSITION"], of["COLOR_0"]};
+    sphere.indices = arrays.addIndices();
+    return sphere;
+}
+
+const Sphere& theSphere() {
+    static const Sphere kSphere = makeSphere();
+    return kSphere;
+}
+
 // ---- From names to places ----
 
 class Expander {
 public:
-    Expander(const MaterialModel& model, base::JsonReader& reader) : model_(model), reader_(reader) {}
+    Expander(const MaterialModel& model, base::JsonReader& reader)
+        : model_(model), reader_(reader), accessors_(theSphere().attributes) {
+        for (const materials::VertexAttribute& attribute : model_.attributes) {
+            accessors_[attribute.gltf] =
+                theSphere().ofChannels[static_cast<std::size_t>(attribute.type->channels - 1)];
+        }
+    }
 
     ExpandedMaterials expand(const MaterialSet& list) {
-        addSphere();
         double largest = 0.0;
         for (const MaterialDescription& material : list.materials) {
             largest = std::max(largest, std::sqrt(material.weight));
@@ -138,47 +183,21 @@ private:
         reader_.fail(place, message);
     }
 
-    void addSphere() {
-        using Normal = std::array<double, 3>;
-        sphere_["POSITION"] = arrays_.add("VEC3", [](const Normal& n, double, double) { return n; });
-        arrays_.setBounds(sphere_["POSITION"], {-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0});
-        sphere_["NORMAL"] = sphere_["POSITION"];
-        sphere_["TANGENT"] = arrays_.add("VEC4", [](const Normal&, double phi, double) {
-            return std::array{-std::sin(phi), 0.0, -std::cos(phi), 1.0};
-        });
-        sphere_["TEXCOORD_0"] = arrays_.add("VEC2", [](const Normal&, double phi, double theta) {
-            return std::array{phi / std::numbers::pi, theta / std::numbers::pi};
-        });
-        sphere_["TEXCOORD_1"] = sphere_["TEXCOORD_0"];
-        const auto half = [](const Normal& n, double, double) {
-            return std::array{0.5 + 0.5 * n[0], 0.5 + 0.5 * n[1], 0.5 + 0.5 * n[2], 1.0};
-        };
-        sphere_["COLOR_0"] = arrays_.add("VEC4", half);
-        const std::array<int, 4> ofChannels{
-            arrays_.add("SCALAR",
-                        [](const Normal& n, double, double) { return std::array{0.5 + 0.5 * n[1]}; }),
-            sphere_["TEXCOORD_0"], sphere_["POSITION"], sphere_["COLOR_0"]};
-        for (const materials::VertexAttribute& attribute : model_.attributes) {
-            sphere_[attribute.gltf] = ofChannels[static_cast<std::size_t>(attribute.type->channels - 1)];
-        }
-        indices_ = arrays_.addIndices();
-    }
-
     std::vector<std::string> attributeNames() const {
         std::vector<std::string> names;
-        for (const auto& [name, accessor] : sphere_) {
+        for (const auto& [name, accessor] : accessors_) {
             names.push_back(name);
         }
         return names;
     }
 
     void addMesh(const MaterialDescription& material, std::size_t index) {
-        Json attributes{{"POSITION", sphere_.at("POSITION")}};
+        Json attributes{{"POSITION", accessors_.at("POSITION")}};
         const std::vector<std::string> usual{"NORMAL", "TEXCOORD_0"};
         const std::vector<std::string>& names = material.attributes.empty() ? usual : material.attributes;
         for (std::size_t i = 0; i < names.size(); ++i) {
-            const auto found = sphere_.find(names[i]);
-            if (found == sphere_.end()) {
+            const auto found = accessors_.find(names[i]);
+            if (found == accessors_.end()) {
                 fail(fmt::format("/materials/{}/attributes/{}", index, i),
                      fmt::format("no material reads an attribute \"{}\"{}", names[i],
                                  base::suggestion(names[i], attributeNames())));
@@ -188,7 +207,8 @@ private:
         }
         meshes_.push_back(
             {{"name", material.name},
-             {"primitives", {{{"attributes", attributes}, {"indices", indices_}, {"material", index}}}}});
+             {"primitives",
+              {{{"attributes", attributes}, {"indices", theSphere().indices}, {"material", index}}}}});
     }
 
     // Returns the JSON of an object of a material, which exists from then on.
@@ -473,23 +493,21 @@ private:
                          {"nodes", nodes_},
                          {"meshes", meshes_},
                          {"materials", materials_},
-                         {"accessors", arrays_.accessors()},
-                         {"bufferViews", arrays_.views()}});
+                         {"accessors", theSphere().arrays.accessors()},
+                         {"bufferViews", theSphere().arrays.views()}});
         if (!textures_.empty()) {
             document["textures"] = textures_;
             document["images"] = imageJson_;
         }
-        expanded_.buffer = arrays_.take();
+        expanded_.buffer = theSphere().arrays.bytes();
         document["buffers"] = {{{"byteLength", expanded_.buffer.size()}}};
     }
 
     const MaterialModel& model_;
     base::JsonReader& reader_;
     ExpandedMaterials expanded_;
-    Arrays arrays_;
-    std::map<std::string, int> sphere_;  // accessors by attribute
-    int indices_ = 0;
-    int base_ = -1;  // the object of the material's model, or -1
+    std::map<std::string, int> accessors_;  // of the sphere, by attribute
+    int base_ = -1;                         // the object of the material's model, or -1
     std::string baseName_;
     std::set<std::string> extensions_;
     std::map<std::string, std::size_t> images_;  // by file
