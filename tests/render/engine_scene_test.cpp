@@ -720,330 +720,327 @@ TEST(EngineSceneContent, MaterialsHaveTexturesOfAllDimensionsAndBuffers) {
         const auto added = editor.addMaterial({known.materials.part(0, 1).bytes, {&key, 1}, {&use, 1}});
         EXPECT_EQ(added ? "" : added.error().id, texture == cube ? "" : "texture-dimension");
     }
-    // The room with two lamps of two triangles, which are instances of one mesh, and lights with a size.
-    gltf::Scene roomWithLamps() {
-        gltf::Scene scene = roomScene();
-        materials::Material lamp = paint({0, 0, 0});
-        lamp["emissiveFactor"] = {1.0F, 0.75F, 0.5F};
-        lamp["emissiveStrength"] = 4.0F;
-        addQuad(scene, lamp, {-1, 2, -4}, {1, 0, 0}, {0, 0, 1});
-        const int mesh = static_cast<int>(scene.meshes.size()) - 1;
-        gltf::Matrix4 aside = scaling(1, 1, 1);
-        aside[12] = 2.0;
-        addInstance(scene, mesh, aside);
-        return scene;
-    }
+}
 
-    compiler::CompileSettings lampSteps(std::uint32_t lights) {
-        compiler::CompileSettings settings = roomSteps();
-        settings.strategies = package::kStrategyUber;
-        settings.plan.merge = compiler::MergePolicy::All;
-        settings.maxBounces = 2;
-        settings.lightSamples = lights;
-        settings.emissiveLights = compiler::EmissiveLights::On;
-        settings.sizedLights = compiler::SizedLights::On;
-        return settings;
-    }
+// The room with two lamps of two triangles, which are instances of one mesh, and lights with a size.
+gltf::Scene roomWithLamps() {
+    gltf::Scene scene = roomScene();
+    materials::Material lamp = paint({0, 0, 0});
+    lamp["emissiveFactor"] = {1.0F, 0.75F, 0.5F};
+    lamp["emissiveStrength"] = 4.0F;
+    addQuad(scene, lamp, {-1, 2, -4}, {1, 0, 0}, {0, 0, 1});
+    const int mesh = static_cast<int>(scene.meshes.size()) - 1;
+    gltf::Matrix4 aside = scaling(1, 1, 1);
+    aside[12] = 2.0;
+    addInstance(scene, mesh, aside);
+    return scene;
+}
 
-    void addSizedLights(session::SceneViewData & data) {
-        for (const LightView::Type type : {LightView::Type::Point, LightView::Type::Disk}) {
-            LightView light;
-            light.type = type;
-            light.position = {type == LightView::Type::Point ? -2.0F : 2.0F, 1.0F, -3.0F};
-            light.direction = {0, -1, 0};
-            light.intensity = {1.0F, 2.0F, 3.0F};
-            light.size = 0.3F;
-            data.lights.push_back(light);
+compiler::CompileSettings lampSteps(std::uint32_t lights) {
+    compiler::CompileSettings settings = roomSteps();
+    settings.strategies = package::kStrategyUber;
+    settings.plan.merge = compiler::MergePolicy::All;
+    settings.maxBounces = 2;
+    settings.lightSamples = lights;
+    settings.emissiveLights = compiler::EmissiveLights::On;
+    settings.sizedLights = compiler::SizedLights::On;
+    return settings;
+}
+
+void addSizedLights(session::SceneViewData& data) {
+    for (const LightView::Type type : {LightView::Type::Point, LightView::Type::Disk}) {
+        LightView light;
+        light.type = type;
+        light.position = {type == LightView::Type::Point ? -2.0F : 2.0F, 1.0F, -3.0F};
+        light.direction = {0, -1, 0};
+        light.intensity = {1.0F, 2.0F, 3.0F};
+        light.size = 0.3F;
+        data.lights.push_back(light);
+    }
+}
+
+// Gives the corners of the lamps' triangles, as makeQuad() has them.
+void giveCorners(Content& content, const Package& package, const gltf::Scene& scene,
+                 std::vector<std::array<float, 3>>& corners) {
+    const auto isLamp = [&](const EngineSceneView::Geometry& geometry) {
+        const auto* const entry = package.scene(0).findPrimitive(geometry.mesh, geometry.primitive);
+        return (entry->geometryFlags & gpu::kGeometryEmitter) != 0;
+    };
+    for (EngineSceneView::Geometry& geometry : content.geometries) {
+        if (!isLamp(geometry)) {
+            continue;
         }
-    }
-
-    // Gives the corners of the lamps' triangles, as makeQuad() has them.
-    void giveCorners(Content & content, const Package& package, const gltf::Scene& scene,
-                     std::vector<std::array<float, 3>>& corners) {
-        const auto isLamp = [&](const EngineSceneView::Geometry& geometry) {
-            const auto* const entry = package.scene(0).findPrimitive(geometry.mesh, geometry.primitive);
-            return (entry->geometryFlags & gpu::kGeometryEmitter) != 0;
-        };
-        for (EngineSceneView::Geometry& geometry : content.geometries) {
-            if (!isLamp(geometry)) {
-                continue;
+        const gltf::Primitive& quad = scene.meshes[geometry.mesh].primitives[geometry.primitive];
+        if (corners.empty()) {
+            for (const std::uint32_t index : quad.indices) {
+                corners.push_back(quad.positions[index]);
             }
-            const gltf::Primitive& quad = scene.meshes[geometry.mesh].primitives[geometry.primitive];
-            if (corners.empty()) {
-                for (const std::uint32_t index : quad.indices) {
-                    corners.push_back(quad.positions[index]);
-                }
-            }
-            geometry.lightCorners = corners;
         }
+        geometry.lightCorners = corners;
     }
+}
 
-    double meanOfAnswers(const std::vector<float>& answers) {
-        double sum = 0.0;
-        for (const float value : answers) {
-            sum += static_cast<double>(value);
-        }
-        return sum / static_cast<double>(answers.size());
+double meanOfAnswers(const std::vector<float>& answers) {
+    double sum = 0.0;
+    for (const float value : answers) {
+        sum += static_cast<double>(value);
     }
+    return sum / static_cast<double>(answers.size());
+}
 
-    // The list of triangles and the hierarchy are those of the same scene that Glint has uploaded. They
-    // follow transforms, values of materials and another package.
-    TEST(EngineSceneLights, AreThoseOfGlintsOwnScene) {
-        const gltf::Scene room = roomWithLamps();
-        gltf::Scene bright = room;
-        const std::size_t lamp = room.materials.size() - 1;
-        bright.materials[lamp]["emissiveStrength"] = 12.0F;
-        const auto move = [](session::SceneViewData& data) {
-            addSizedLights(data);
-            data.instances.back().objectToWorld[3] += 0.5F;
-            data.instances.back().objectToWorld[7] -= 0.5F;
-        };
-        for (const std::uint32_t lights : {0U, 2U}) {
-            SCOPED_TRACE(lights);
-            const std::shared_ptr<const Package> package = packageOf(room, lampSteps(lights));
-            const std::shared_ptr<const Package> brighter = packageOf(bright, lampSteps(lights));
-            ASSERT_TRUE(package != nullptr && package->emission() != nullptr);
-            Content content = contentOf(*package, room, addSizedLights);
-            const Content moved = contentOf(*package, room, move);
-            const Content brightened = contentOf(*brighter, bright, move);
-            Engine engine(*content.gpu);
-            constexpr package::Strategy kUber = package::kStrategyUber;
-            const std::vector<float> first = engine.expected(*package, *content.gpu, kUber);
-            const std::vector<float> second = engine.expected(*package, *moved.gpu, kUber);
-            const std::vector<float> third = engine.expected(*brighter, *brightened.gpu, kUber);
-            expectOthers(first, second);
-            expectOthers(second, third);
-
-            std::vector<std::array<float, 3>> corners;
-            EngineSceneView view = content.view();
-            VkCommandBuffer commands = engine.begin();
-            auto scene = must(EngineScene::record(sharedContext(), *package, view, commands, engine.frame()));
-            const auto steps = engine.makeSteps(*package, *scene, kUber);
-            ASSERT_TRUE(engine.ask(*steps, *content.gpu));  // 0: without corners
-            giveCorners(content, *package, room, corners);
-            const EngineSceneView::Material own{static_cast<std::uint32_t>(lamp),
-                                                package->scene(0).materials.part(lamp, 1).bytes};
-            for (EngineSceneView::Geometry& geometry : content.geometries) {
-                geometry.material = geometry.lightCorners.empty() ? geometry.material : 0;
-            }
-            view = content.view();
-            view.materials = std::span(&own, 1);
-            must(scene->update(commands, *package, view, engine.frame()));
-            ASSERT_TRUE(engine.ask(*steps, *content.gpu));  // 1
-            engine.submit();
-            engine.drain();
-            commands = engine.begin();
-            must(scene->update(commands, moved.instances, moved.lights, engine.frame()));
-            ASSERT_TRUE(engine.ask(*steps, *moved.gpu));  // 2
-            must(scene->updateMaterial(commands, 0,
-                                       {own.material, brighter->scene(0).materials.part(lamp, 1).bytes},
-                                       engine.frame()));
-            ASSERT_TRUE(engine.ask(*steps, *moved.gpu));  // 3
-            engine.submit();
-            engine.drain();
-            commands = engine.begin();
-            view.instances = moved.instances;
-            must(scene->update(commands, *package, view, engine.frame()));
-            ASSERT_TRUE(engine.ask(*steps, *moved.gpu));  // 4: built anew
-            ASSERT_TRUE(steps->replacePackage(brighter));
-            ASSERT_TRUE(engine.ask(*steps, *moved.gpu));  // 5: the host's values stay
-            engine.submit();
-            engine.drain();
-            // Without corners, paths find the same light by chance.
-            expectOthers(engine.answers(0), first);
-            EXPECT_NEAR(meanOfAnswers(engine.answers(0)) / meanOfAnswers(first), 1.0, 0.05);
-            EXPECT_EQ(engine.answers(1), first);
-            EXPECT_EQ(engine.answers(4), second);
-            EXPECT_EQ(engine.answers(5), second);
-            if (lights == 0) {
-                EXPECT_EQ(engine.answers(2), second);
-                EXPECT_EQ(engine.answers(3), third);
-            } else {  // the hierarchy keeps its order
-                EXPECT_NEAR(meanOfAnswers(engine.answers(2)) / meanOfAnswers(second), 1.0, 0.1);
-                EXPECT_NEAR(meanOfAnswers(engine.answers(3)) / meanOfAnswers(third), 1.0, 0.1);
-            }
-            corners.pop_back();
-            for (EngineSceneView::Geometry& geometry : content.geometries) {
-                geometry.lightCorners = geometry.lightCorners.empty() ? geometry.lightCorners : corners;
-            }
-            view.geometries = content.geometries;
-            EXPECT_EQ(mustFail(scene->update(VK_NULL_HANDLE, *package, view, engine.frame())).id,
-                      "engine-scene");
-        }
-    }
-
-    // A package that knows no disks gets none, by whatever call, and a call that is refused changes nothing.
-    TEST(EngineSceneLights, DisksNeedAPackageThatKnowsThem) {
-        compiler::CompileSettings settings = roomSteps();
-        settings.strategies = package::kStrategyUber;
-        const gltf::Scene room = roomScene();
-        const std::shared_ptr<const Package> knowing = packageOf(room, settings);
-        settings.diskLights = compiler::DiskLights::Off;
-        const std::shared_ptr<const Package> package = packageOf(room, settings);
-        const Content content = contentOf(*package, room, keepAll);
-        std::vector<LightView> disks = content.lights;
-        disks.emplace_back().type = LightView::Type::Disk;
-        EngineSceneView view = content.view();
+// The list of triangles and the hierarchy are those of the same scene that Glint has uploaded. They
+// follow transforms, values of materials and another package.
+TEST(EngineSceneLights, AreThoseOfGlintsOwnScene) {
+    const gltf::Scene room = roomWithLamps();
+    gltf::Scene bright = room;
+    const std::size_t lamp = room.materials.size() - 1;
+    bright.materials[lamp]["emissiveStrength"] = 12.0F;
+    const auto move = [](session::SceneViewData& data) {
+        addSizedLights(data);
+        data.instances.back().objectToWorld[3] += 0.5F;
+        data.instances.back().objectToWorld[7] -= 0.5F;
+    };
+    for (const std::uint32_t lights : {0U, 2U}) {
+        SCOPED_TRACE(lights);
+        const std::shared_ptr<const Package> package = packageOf(room, lampSteps(lights));
+        const std::shared_ptr<const Package> brighter = packageOf(bright, lampSteps(lights));
+        ASSERT_TRUE(package != nullptr && package->emission() != nullptr);
+        Content content = contentOf(*package, room, addSizedLights);
+        const Content moved = contentOf(*package, room, move);
+        const Content brightened = contentOf(*brighter, bright, move);
         Engine engine(*content.gpu);
-        const std::vector<float> wanted = engine.expected(*package, *content.gpu, package::kStrategyUber);
+        constexpr package::Strategy kUber = package::kStrategyUber;
+        const std::vector<float> first = engine.expected(*package, *content.gpu, kUber);
+        const std::vector<float> second = engine.expected(*package, *moved.gpu, kUber);
+        const std::vector<float> third = engine.expected(*brighter, *brightened.gpu, kUber);
+        expectOthers(first, second);
+        expectOthers(second, third);
+
+        std::vector<std::array<float, 3>> corners;
+        EngineSceneView view = content.view();
         VkCommandBuffer commands = engine.begin();
         auto scene = must(EngineScene::record(sharedContext(), *package, view, commands, engine.frame()));
-        const auto steps = engine.makeSteps(*package, *scene, package::kStrategyUber);
-        view.lights = disks;
-        EXPECT_EQ(mustFail(EngineScene::create(sharedContext(), *package, view)).id, "scene-light");
-        EXPECT_EQ(mustFail(scene->update(commands, *package, view, engine.frame())).id, "scene-light");
-        EXPECT_EQ(mustFail(scene->update(commands, content.instances, disks, engine.frame())).id,
-                  "scene-light");
-        ASSERT_TRUE(engine.ask(*steps, *content.gpu));
-        engine.submit();
-        engine.drain();
-        EXPECT_EQ(engine.answers(0), wanted);
-        // Disks that are there keep such a package out.
-        must(scene->update(engine.begin(), *knowing, view, engine.frame()));
-        must(steps->replacePackage(knowing));
-        ASSERT_TRUE(engine.ask(*steps, *content.gpu));
-        engine.submit();
-        engine.drain();
-        EXPECT_EQ(mustFail(steps->replacePackage(package)).id, "scene-light");
-    }
-
-    TEST(RayStepsReplacement, BatchesUseTheNewPackageAtOnce) {
-        const gltf::Scene room = texturedRoom();
-        const auto [changed, settings] = otherCompilation();
-        const std::shared_ptr<const Package> original = packageOf(room, roomSteps());
-        const std::shared_ptr<const Package> other = packageOf(changed, settings);
-        ASSERT_TRUE(original != nullptr && other != nullptr);
-        ASSERT_NE(original->scene(0).materials.recordBytes, other->scene(0).materials.recordBytes);
-        const Content content = contentOf(*original, room, keepAll);
-        const Content after = contentOf(*other, changed, keepAll);
-        ASSERT_TRUE(content.gpu != nullptr && after.gpu != nullptr);
-        for (const package::Strategy strategy : strategiesOfDevice()) {
-            Engine engine(*content.gpu);
-            const std::array wanted{engine.expected(*original, *content.gpu, strategy),
-                                    engine.expected(*other, *after.gpu, strategy)};
-            expectOthers(wanted[0], wanted[1]);
-            const VkCommandBuffer commands = engine.begin();
-            auto scene = must(
-                EngineScene::record(sharedContext(), *original, content.view(), commands, engine.frame()));
-            const auto steps = engine.makeSteps(*original, *scene, strategy);
-            const auto second = engine.makeSteps(*original, *scene, strategy);
-            ASSERT_TRUE(steps != nullptr && second != nullptr);
-            std::vector<std::size_t> order;
-            FinishedRecordings finished;
-            for (const std::size_t number : {0U, 0U, 1U, 1U, 0U, 1U}) {
-                if (!order.empty()) {
-                    engine.begin();
-                    scene->complete(engine.completed());
-                    finished.completed(*steps, engine.completed());
-                }
-                const bool switches = !order.empty() && order.back() != number;
-                if (switches) {
-                    const auto replaced = must(steps->replacePackage(number == 0 ? original : other));
-                    EXPECT_TRUE(steps->replacementProgress().ready);
-                }
-                // The second one switches with the first.
-                ASSERT_TRUE(engine.ask(*steps, *content.gpu));
-                ASSERT_TRUE(engine.ask(*second, *content.gpu));
-                order.push_back(number);
-                finished.recorded(*steps, engine.frame());
-                order.push_back(number);
-                engine.submit();
-            }
-            EXPECT_EQ(steps->replacementProgress().inUse, 3U);
-            engine.drain();
-            for (std::size_t i = 0; i < order.size(); ++i) {
-                EXPECT_EQ(engine.answers(i), wanted[order[i]]) << "batch " << i;
-            }
-            // Answers of another kind do not fit the engine's buffer.
-            compiler::CompileSettings unlike = settings;
-            unlike.answer = package::HitAnswer::Surface;
-            EXPECT_EQ(mustFail(steps->replacePackage(packageOf(changed, unlike))).id, "ray-steps");
+        const auto steps = engine.makeSteps(*package, *scene, kUber);
+        ASSERT_TRUE(engine.ask(*steps, *content.gpu));  // 0: without corners
+        giveCorners(content, *package, room, corners);
+        const EngineSceneView::Material own{static_cast<std::uint32_t>(lamp),
+                                            package->scene(0).materials.part(lamp, 1).bytes};
+        for (EngineSceneView::Geometry& geometry : content.geometries) {
+            geometry.material = geometry.lightCorners.empty() ? geometry.material : 0;
         }
+        view = content.view();
+        view.materials = std::span(&own, 1);
+        must(scene->update(commands, *package, view, engine.frame()));
+        ASSERT_TRUE(engine.ask(*steps, *content.gpu));  // 1
+        engine.submit();
+        engine.drain();
+        commands = engine.begin();
+        must(scene->update(commands, moved.instances, moved.lights, engine.frame()));
+        ASSERT_TRUE(engine.ask(*steps, *moved.gpu));  // 2
+        must(scene->updateMaterial(
+            commands, 0, {own.material, brighter->scene(0).materials.part(lamp, 1).bytes}, engine.frame()));
+        ASSERT_TRUE(engine.ask(*steps, *moved.gpu));  // 3
+        engine.submit();
+        engine.drain();
+        commands = engine.begin();
+        view.instances = moved.instances;
+        must(scene->update(commands, *package, view, engine.frame()));
+        ASSERT_TRUE(engine.ask(*steps, *moved.gpu));  // 4: built anew
+        ASSERT_TRUE(steps->replacePackage(brighter));
+        ASSERT_TRUE(engine.ask(*steps, *moved.gpu));  // 5: the host's values stay
+        engine.submit();
+        engine.drain();
+        // Without corners, paths find the same light by chance.
+        expectOthers(engine.answers(0), first);
+        EXPECT_NEAR(meanOfAnswers(engine.answers(0)) / meanOfAnswers(first), 1.0, 0.05);
+        EXPECT_EQ(engine.answers(1), first);
+        EXPECT_EQ(engine.answers(4), second);
+        EXPECT_EQ(engine.answers(5), second);
+        if (lights == 0) {
+            EXPECT_EQ(engine.answers(2), second);
+            EXPECT_EQ(engine.answers(3), third);
+        } else {  // the hierarchy keeps its order
+            EXPECT_NEAR(meanOfAnswers(engine.answers(2)) / meanOfAnswers(second), 1.0, 0.1);
+            EXPECT_NEAR(meanOfAnswers(engine.answers(3)) / meanOfAnswers(third), 1.0, 0.1);
+        }
+        corners.pop_back();
+        for (EngineSceneView::Geometry& geometry : content.geometries) {
+            geometry.lightCorners = geometry.lightCorners.empty() ? geometry.lightCorners : corners;
+        }
+        view.geometries = content.geometries;
+        EXPECT_EQ(mustFail(scene->update(VK_NULL_HANDLE, *package, view, engine.frame())).id, "engine-scene");
     }
+}
 
-    // A scene that Glint has uploaded is shared by RaySteps and a Renderer. Whichever gets its package first,
-    // both go on with the packages before, while a frame is in flight, until the other has one of the same
-    // compilation.
-    TEST(RayStepsReplacement, ARendererOfTheSceneSwitchesTogetherWithThem) {
-        const gltf::Scene room = texturedRoom();
-        const auto [changed, settings] = otherCompilation();
-        compiler::CompileSettings frames = roomSteps();
-        frames.passes = package::Passes::Frame;
-        compiler::CompileSettings otherFrames = frames;
-        otherFrames.plan.merge = settings.plan.merge;
-        const std::array ofSteps{packageOf(room, roomSteps()), packageOf(changed, settings)};
-        const std::array ofFrames{packageOf(room, frames), packageOf(changed, otherFrames)};
-        gltf::Scene painted = room;
-        painted.materials[kGlossy]["baseColorFactor"] = {0.1F, 0.8F, 0.9F, 1.0F};
-        const std::shared_ptr<const Package> repainted = packageOf(painted, roomSteps());
-        const Content after = contentOf(*ofSteps[1], changed, keepAll);
-        for (const bool editable : {false, true}) {
-            const auto scene =
-                uploadScene(*ofSteps[0], room, [&](SceneView& view) { view.editable = editable; });
-            ASSERT_TRUE(scene != nullptr && after.gpu != nullptr);
-            Engine engine(*scene);
-            const std::array wanted{
-                engine.expected(*ofSteps[0], *scene, package::kStrategyUber),
-                Engine(*after.gpu).expected(*ofSteps[1], *after.gpu, package::kStrategyUber)};
-            auto shared = EngineScene::share(sharedContext(), *scene);
-            const auto steps = engine.makeSteps(*ofSteps[0], **shared, package::kStrategyUber);
-            RendererOptions options;
-            options.width = options.height = 16;
-            options.strategy = package::kStrategyUber;
-            const auto renderer = makeRenderer(*ofFrames[0], *scene, options);
-            ASSERT_TRUE(steps != nullptr && renderer != nullptr);
-            const FrameOptions frame = defaultSetup(room, 16, 16).frame;
-            const LinearImage before = drawn(*renderer, frame);
-            std::vector<std::size_t> order;
-            FinishedRecordings finishedSteps;
-            FinishedRecordings finishedFrames;
-            // Records a batch and a frame behind the one that is in flight.
-            const auto go = [&](std::size_t package) {
-                const VkCommandBuffer commands = engine.begin();
-                finishedSteps.completed(*steps, engine.completed());
-                finishedFrames.completed(*renderer, engine.completed());
-                const Status asked = engine.ask(*steps, *scene);
-                EXPECT_TRUE(asked) << (asked ? "" : toString(asked.error()));
-                const Status recorded = renderer->record(commands, frame);
-                EXPECT_TRUE(recorded) << (recorded ? "" : toString(recorded.error()));
-                finishedSteps.recorded(*steps, engine.frame());
-                finishedFrames.recorded(*renderer, engine.frame());
-                engine.submit();
-                order.push_back(package);
-            };
-            go(0);
-            ASSERT_TRUE(renderer->replacePackage(ofFrames[1]));
-            EXPECT_TRUE(renderer->replacementProgress().pending && !renderer->replacementProgress().ready);
-            go(0);
-            ASSERT_TRUE(steps->replacePackage(ofSteps[1]));
-            EXPECT_TRUE(renderer->replacementProgress().ready && steps->replacementProgress().ready);
-            go(1);
-            go(1);
-            const LinearImage image = drawn(*renderer, frame);
-            EXPECT_TRUE(differ(image, before));
-            // And back, by the steps first.
-            ASSERT_TRUE(steps->replacePackage(ofSteps[0]));
-            EXPECT_FALSE(steps->replacementProgress().ready);
-            go(1);
-            EXPECT_FALSE(differ(drawn(*renderer, frame), image));
-            ASSERT_TRUE(renderer->replacePackage(ofFrames[0]));
-            EXPECT_FALSE(differ(drawn(*renderer, frame), before));
-            go(0);
-            EXPECT_EQ(renderer->replacementProgress().inUse, 2U);
-            EXPECT_EQ(steps->replacementProgress().inUse, 2U);
-            // Other values of materials alone are those of both at once.
-            ASSERT_TRUE(steps->replacePackage(repainted));
-            EXPECT_TRUE(steps->replacementProgress().ready);
-            engine.begin();
-            ASSERT_TRUE(engine.ask(*steps, *scene));
+// A package that knows no disks gets none, by whatever call, and a call that is refused changes nothing.
+TEST(EngineSceneLights, DisksNeedAPackageThatKnowsThem) {
+    compiler::CompileSettings settings = roomSteps();
+    settings.strategies = package::kStrategyUber;
+    const gltf::Scene room = roomScene();
+    const std::shared_ptr<const Package> knowing = packageOf(room, settings);
+    settings.diskLights = compiler::DiskLights::Off;
+    const std::shared_ptr<const Package> package = packageOf(room, settings);
+    const Content content = contentOf(*package, room, keepAll);
+    std::vector<LightView> disks = content.lights;
+    disks.emplace_back().type = LightView::Type::Disk;
+    EngineSceneView view = content.view();
+    Engine engine(*content.gpu);
+    const std::vector<float> wanted = engine.expected(*package, *content.gpu, package::kStrategyUber);
+    VkCommandBuffer commands = engine.begin();
+    auto scene = must(EngineScene::record(sharedContext(), *package, view, commands, engine.frame()));
+    const auto steps = engine.makeSteps(*package, *scene, package::kStrategyUber);
+    view.lights = disks;
+    EXPECT_EQ(mustFail(EngineScene::create(sharedContext(), *package, view)).id, "scene-light");
+    EXPECT_EQ(mustFail(scene->update(commands, *package, view, engine.frame())).id, "scene-light");
+    EXPECT_EQ(mustFail(scene->update(commands, content.instances, disks, engine.frame())).id, "scene-light");
+    ASSERT_TRUE(engine.ask(*steps, *content.gpu));
+    engine.submit();
+    engine.drain();
+    EXPECT_EQ(engine.answers(0), wanted);
+    // Disks that are there keep such a package out.
+    must(scene->update(engine.begin(), *knowing, view, engine.frame()));
+    must(steps->replacePackage(knowing));
+    ASSERT_TRUE(engine.ask(*steps, *content.gpu));
+    engine.submit();
+    engine.drain();
+    EXPECT_EQ(mustFail(steps->replacePackage(package)).id, "scene-light");
+}
+
+TEST(RayStepsReplacement, BatchesUseTheNewPackageAtOnce) {
+    const gltf::Scene room = texturedRoom();
+    const auto [changed, settings] = otherCompilation();
+    const std::shared_ptr<const Package> original = packageOf(room, roomSteps());
+    const std::shared_ptr<const Package> other = packageOf(changed, settings);
+    ASSERT_TRUE(original != nullptr && other != nullptr);
+    ASSERT_NE(original->scene(0).materials.recordBytes, other->scene(0).materials.recordBytes);
+    const Content content = contentOf(*original, room, keepAll);
+    const Content after = contentOf(*other, changed, keepAll);
+    ASSERT_TRUE(content.gpu != nullptr && after.gpu != nullptr);
+    for (const package::Strategy strategy : strategiesOfDevice()) {
+        Engine engine(*content.gpu);
+        const std::array wanted{engine.expected(*original, *content.gpu, strategy),
+                                engine.expected(*other, *after.gpu, strategy)};
+        expectOthers(wanted[0], wanted[1]);
+        const VkCommandBuffer commands = engine.begin();
+        auto scene =
+            must(EngineScene::record(sharedContext(), *original, content.view(), commands, engine.frame()));
+        const auto steps = engine.makeSteps(*original, *scene, strategy);
+        const auto second = engine.makeSteps(*original, *scene, strategy);
+        ASSERT_TRUE(steps != nullptr && second != nullptr);
+        std::vector<std::size_t> order;
+        FinishedRecordings finished;
+        for (const std::size_t number : {0U, 0U, 1U, 1U, 0U, 1U}) {
+            if (!order.empty()) {
+                engine.begin();
+                scene->complete(engine.completed());
+                finished.completed(*steps, engine.completed());
+            }
+            const bool switches = !order.empty() && order.back() != number;
+            if (switches) {
+                const auto replaced = must(steps->replacePackage(number == 0 ? original : other));
+                EXPECT_TRUE(steps->replacementProgress().ready);
+            }
+            // The second one switches with the first.
+            ASSERT_TRUE(engine.ask(*steps, *content.gpu));
+            ASSERT_TRUE(engine.ask(*second, *content.gpu));
+            order.push_back(number);
+            finished.recorded(*steps, engine.frame());
+            order.push_back(number);
             engine.submit();
-            engine.drain();
-            EXPECT_TRUE(differ(drawn(*renderer, frame), before));
-            EXPECT_NE(engine.answers(order.size()), wanted[0]);
-            for (std::size_t i = 0; i < order.size(); ++i) {
-                EXPECT_EQ(engine.answers(i), wanted[order[i]]) << "batch " << i;
-            }
+        }
+        EXPECT_EQ(steps->replacementProgress().inUse, 3U);
+        engine.drain();
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            EXPECT_EQ(engine.answers(i), wanted[order[i]]) << "batch " << i;
+        }
+        // Answers of another kind do not fit the engine's buffer.
+        compiler::CompileSettings unlike = settings;
+        unlike.answer = package::HitAnswer::Surface;
+        EXPECT_EQ(mustFail(steps->replacePackage(packageOf(changed, unlike))).id, "ray-steps");
+    }
+}
+
+// A scene that Glint has uploaded is shared by RaySteps and a Renderer. Whichever gets its package first,
+// both go on with the packages before, while a frame is in flight, until the other has one of the same
+// compilation.
+TEST(RayStepsReplacement, ARendererOfTheSceneSwitchesTogetherWithThem) {
+    const gltf::Scene room = texturedRoom();
+    const auto [changed, settings] = otherCompilation();
+    compiler::CompileSettings frames = roomSteps();
+    frames.passes = package::Passes::Frame;
+    compiler::CompileSettings otherFrames = frames;
+    otherFrames.plan.merge = settings.plan.merge;
+    const std::array ofSteps{packageOf(room, roomSteps()), packageOf(changed, settings)};
+    const std::array ofFrames{packageOf(room, frames), packageOf(changed, otherFrames)};
+    gltf::Scene painted = room;
+    painted.materials[kGlossy]["baseColorFactor"] = {0.1F, 0.8F, 0.9F, 1.0F};
+    const std::shared_ptr<const Package> repainted = packageOf(painted, roomSteps());
+    const Content after = contentOf(*ofSteps[1], changed, keepAll);
+    for (const bool editable : {false, true}) {
+        const auto scene = uploadScene(*ofSteps[0], room, [&](SceneView& view) { view.editable = editable; });
+        ASSERT_TRUE(scene != nullptr && after.gpu != nullptr);
+        Engine engine(*scene);
+        const std::array wanted{engine.expected(*ofSteps[0], *scene, package::kStrategyUber),
+                                Engine(*after.gpu).expected(*ofSteps[1], *after.gpu, package::kStrategyUber)};
+        auto shared = EngineScene::share(sharedContext(), *scene);
+        const auto steps = engine.makeSteps(*ofSteps[0], **shared, package::kStrategyUber);
+        RendererOptions options;
+        options.width = options.height = 16;
+        options.strategy = package::kStrategyUber;
+        const auto renderer = makeRenderer(*ofFrames[0], *scene, options);
+        ASSERT_TRUE(steps != nullptr && renderer != nullptr);
+        const FrameOptions frame = defaultSetup(room, 16, 16).frame;
+        const LinearImage before = drawn(*renderer, frame);
+        std::vector<std::size_t> order;
+        FinishedRecordings finishedSteps;
+        FinishedRecordings finishedFrames;
+        // Records a batch and a frame behind the one that is in flight.
+        const auto go = [&](std::size_t package) {
+            const VkCommandBuffer commands = engine.begin();
+            finishedSteps.completed(*steps, engine.completed());
+            finishedFrames.completed(*renderer, engine.completed());
+            const Status asked = engine.ask(*steps, *scene);
+            EXPECT_TRUE(asked) << (asked ? "" : toString(asked.error()));
+            const Status recorded = renderer->record(commands, frame);
+            EXPECT_TRUE(recorded) << (recorded ? "" : toString(recorded.error()));
+            finishedSteps.recorded(*steps, engine.frame());
+            finishedFrames.recorded(*renderer, engine.frame());
+            engine.submit();
+            order.push_back(package);
+        };
+        go(0);
+        ASSERT_TRUE(renderer->replacePackage(ofFrames[1]));
+        EXPECT_TRUE(renderer->replacementProgress().pending && !renderer->replacementProgress().ready);
+        go(0);
+        ASSERT_TRUE(steps->replacePackage(ofSteps[1]));
+        EXPECT_TRUE(renderer->replacementProgress().ready && steps->replacementProgress().ready);
+        go(1);
+        go(1);
+        const LinearImage image = drawn(*renderer, frame);
+        EXPECT_TRUE(differ(image, before));
+        // And back, by the steps first.
+        ASSERT_TRUE(steps->replacePackage(ofSteps[0]));
+        EXPECT_FALSE(steps->replacementProgress().ready);
+        go(1);
+        EXPECT_FALSE(differ(drawn(*renderer, frame), image));
+        ASSERT_TRUE(renderer->replacePackage(ofFrames[0]));
+        EXPECT_FALSE(differ(drawn(*renderer, frame), before));
+        go(0);
+        EXPECT_EQ(renderer->replacementProgress().inUse, 2U);
+        EXPECT_EQ(steps->replacementProgress().inUse, 2U);
+        // Other values of materials alone are those of both at once.
+        ASSERT_TRUE(steps->replacePackage(repainted));
+        EXPECT_TRUE(steps->replacementProgress().ready);
+        engine.begin();
+        ASSERT_TRUE(engine.ask(*steps, *scene));
+        engine.submit();
+        engine.drain();
+        EXPECT_TRUE(differ(drawn(*renderer, frame), before));
+        EXPECT_NE(engine.answers(order.size()), wanted[0]);
+        for (std::size_t i = 0; i < order.size(); ++i) {
+            EXPECT_EQ(engine.answers(i), wanted[order[i]]) << "batch " << i;
         }
     }
+}
 
 }  // namespace

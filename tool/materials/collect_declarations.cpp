@@ -40,17 +40,18 @@ bool isOneElement(const Parameter& parameter, const DeclarationJson& json) {
 }  // namespace
 
 void ModelBuilder::findRoles() {
-    constexpr std::pair<std::string_view, Place> kLists[] = {
-        {"parameters", Place::Parameter}, {"textures", Place::Texture}, {"features", Place::Feature}};
     for (const bool isOfPack : {false, true}) {
         for (const File& file : files_) {
-            if (file.isOfPack != isOfPack) {
+            if (file->isOfPack != isOfPack) {
                 continue;
             }
-            const Members members = membersOf(file);
-            for (const auto& [list, place] : kLists) {
-                for (const auto& [json, where] : members.list(list)) {
-                    findRole(Members(*json, where, place), place);
+            const std::pair<const std::vector<Members>&, Place> lists[] = {
+                {file->parameters, Place::Parameter},
+                {file->textures, Place::Texture},
+                {file->features, Place::Feature}};
+            for (const auto& [list, place] : lists) {
+                for (const Members& members : list) {
+                    findRole(members, place);
                 }
             }
         }
