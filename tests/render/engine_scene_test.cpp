@@ -681,9 +681,8 @@ TEST(EngineSceneContent, MaterialsHaveTexturesOfAllDimensionsAndBuffers) {
             const float x = 4.0F * ((static_cast<float>(i % kColumns) + 0.5F) / kColumns - 0.5F);
             const float y = 4.0F * ((static_cast<float>(i / kColumns) + 0.5F) / kRays * kColumns - 0.5F);
             const float distance = std::sqrt(x * x + y * y + 16.0F);
-            // The cone covers π / 4 (0.05 t)² / cos θ of the plane, as a square of that side without π / 4.
-            // It is seen from the cube's middle at the same angle, on a face with 32 texels a unit at
-            // distance 4.
+            // The footprint's axes are the cone's width, and that over the cosine. In the direction of the
+            // plane, at distance 4, a metre has 8 of the face's 64 texels.
             const float width = 0.05F * distance;
             const float texels = width * width * (distance / 4.0F) * (8.0F * 8.0F);
             const float level = std::max(0.5F * std::log2(texels), 0.0F);
