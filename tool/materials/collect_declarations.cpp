@@ -40,18 +40,19 @@ bool isOneElement(const Parameter& parameter, const DeclarationJson& json) {
 }  // namespace
 
 void ModelBuilder::findRoles() {
-    constexpr std::pair<std::string_view, Place> kLists[] = {
-        {"parameters", Place::Parameter}, {"textures", Place::Texture}, {"features", Place::Feature}};
     for (const bool isOfPack : {false, true}) {
         for (const File& file : files_) {
-            if (file.isOfPack != isOfPack) {
+            if (file->isOfPack != isOfPack) {
                 continue;
             }
-            const Members members = membersOf(file);
-            for (const auto& [list, place] : kLists) {
-                for (const auto& [json, where] : members.list(list)) {
-                    findRole(Members(*json, where, place), place);
-                }
+            for (const Members& parameter : file->parameters) {
+                findRole(parameter, Place::Parameter);
+            }
+            for (const Members& texture : file->textures) {
+                findRole(texture, Place::Texture);
+            }
+            for (const Members& feature : file->features) {
+                findRole(feature, Place::Feature);
             }
         }
     }
@@ -84,16 +85,19 @@ package::Role ModelBuilder::roleOf(const Members& members) {
 bool ModelBuilder::fills(const Members& members, Place place) const {
     const package::Role role = roleOf(members);
     const bool byRole = role != package::Role::None && roles_.at({role, place}) != members.where();
+    if (!byRole) {
+        return members.has("is");
+    }
     for (const MemberRule& rule : memberRules()) {
         // What is refused beside "is" is refused beside a role that fills.
         for (const MemberRow& row : memberRows()) {
-            if (byRole && rule.place == place && rule.without == "is" && hasWord(rule.members, row.name) &&
+            if (rule.place == place && rule.without == "is" && hasWord(rule.members, row.name) &&
                 members.has(row.name)) {
                 failAt(members.at(row.name), std::string(rule.message), std::string(rule.hint));
             }
         }
     }
-    return byRole || members.has("is");
+    return true;
 }
 
 int ModelBuilder::addFeature(const Members& members, Feature feature, Light light) {
