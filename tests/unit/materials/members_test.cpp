@@ -26,10 +26,11 @@ public:
     explicit Listing(const MaterialModel& model) {
         add(model.unlit, model.bothSides, model.ownModels, model.lobes);
         for (const FeatureStep& one : model.order) {
-            add(one.feature, one.needs, one.object);
+            add(one.feature, one.needs);
         }
+        add(model.commonSteps);
         for (const MaterialObject& one : model.objects) {
-            add(one.name, one.isExtension, one.replaces);
+            add(one.name, one.isExtension, one.replaces, one.steps);
             for (const MaterialObject::Setting& setting : one.settings) {
                 add(setting.parameter, setting.numbers);
             }
