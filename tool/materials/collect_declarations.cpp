@@ -45,14 +45,14 @@ void ModelBuilder::findRoles() {
             if (file->isOfPack != isOfPack) {
                 continue;
             }
-            const std::pair<const std::vector<Members>&, Place> lists[] = {
-                {file->parameters, Place::Parameter},
-                {file->textures, Place::Texture},
-                {file->features, Place::Feature}};
-            for (const auto& [list, place] : lists) {
-                for (const Members& members : list) {
-                    findRole(members, place);
-                }
+            for (const Members& parameter : file->parameters) {
+                findRole(parameter, Place::Parameter);
+            }
+            for (const Members& texture : file->textures) {
+                findRole(texture, Place::Texture);
+            }
+            for (const Members& feature : file->features) {
+                findRole(feature, Place::Feature);
             }
         }
     }
@@ -85,16 +85,19 @@ package::Role ModelBuilder::roleOf(const Members& members) {
 bool ModelBuilder::fills(const Members& members, Place place) const {
     const package::Role role = roleOf(members);
     const bool byRole = role != package::Role::None && roles_.at({role, place}) != members.where();
+    if (!byRole) {
+        return members.has("is");
+    }
     for (const MemberRule& rule : memberRules()) {
         // What is refused beside "is" is refused beside a role that fills.
         for (const MemberRow& row : memberRows()) {
-            if (byRole && rule.place == place && rule.without == "is" && hasWord(rule.members, row.name) &&
+            if (rule.place == place && rule.without == "is" && hasWord(rule.members, row.name) &&
                 members.has(row.name)) {
                 failAt(members.at(row.name), std::string(rule.message), std::string(rule.hint));
             }
         }
     }
-    return byRole || members.has("is");
+    return true;
 }
 
 int ModelBuilder::addFeature(const Members& members, Feature feature, Light light) {

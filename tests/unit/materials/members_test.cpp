@@ -25,10 +25,10 @@ class Listing {
 public:
     explicit Listing(const MaterialModel& model) {
         add(model.unlit, model.bothSides, model.ownModels, model.lobes);
-        add(model.commonSteps);
         for (const FeatureStep& one : model.order) {
             add(one.feature, one.needs);
         }
+        add(model.commonSteps);
         for (const MaterialObject& one : model.objects) {
             add(one.name, one.isExtension, one.replaces, one.feature, one.base, one.isUnlit, one.steps);
             for (const MaterialObject::Setting& setting : one.settings) {
