@@ -26,7 +26,7 @@ public:
     explicit Listing(const MaterialModel& model) {
         add(model.unlit, model.bothSides, model.ownModels, model.lobes);
         for (const FeatureStep& one : model.order) {
-            add(one.feature, one.needs, one.object);
+            add(one.feature, one.needs);
         }
         for (const MaterialObject& one : model.objects) {
             add(one.name, one.isExtension, one.replaces);
