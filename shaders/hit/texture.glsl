@@ -47,7 +47,7 @@ GLINT_RELAXED vec4 sampleSlot(Hit hit, uint slot, Features features) {
 // As sampleSlotAt(), of a layer of an array.
 GLINT_RELAXED vec4 sampleArrayAt(Hit hit, uint slot, Features features, vec2 uv, vec4 uvEdges, float layer) {
     TextureRecord record = GLINT_TEXTURE(GLINT_MATERIAL(hit), slot);
-    if (hasInput(features, GLINT_TEXTURE_TRANSFORM)) {
+    if (hasInput(features, GLINT_ROLE_TEXTURE_TRANSFORM)) {
         uv = vec2(dot(record.rowU, vec3(uv, 1.0)), dot(record.rowV, vec3(uv, 1.0)));
         uvEdges = transformedEdges(record, uvEdges);
     }
