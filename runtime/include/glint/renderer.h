@@ -144,8 +144,9 @@ public:
     // The options stay those of create(). A package that waits gives way to one that is given later.
     // Renderers that share a GpuScene switch together: this makes what each of them needs, and the first
     // recording of any of them after that switches all. Its commands must come before those of their later
-    // recordings. If RaySteps share it, too, the package waits until they have one of the same compilation.
-    // `package` must not be null; the renderers keep it as long as it is needed.
+    // recordings. If RaySteps share it, too, the package waits until they have one of the same compilation,
+    // or are destroyed; ReplacementProgress::waitsFor names them. `package` must not be null; the renderers
+    // keep it as long as it is needed.
     //
     // In a scene that is edited, the textures, materials, meshes, instances and lights of edits stay; see
     // docs/live.md, "Replacing a package". Edits after the recording that switches give records in the layout
@@ -159,6 +160,9 @@ public:
     // the background, and those of edits after the call.
     Result<Replacement> replacePackage(std::shared_ptr<const Package> package);
     ReplacementProgress replacementProgress() const;
+    // Gives up a package that waits, for all renderers of the scene. Recordings continue with the old
+    // package. Without such a package nothing changes.
+    void withdrawPackage();
 
     // Replaced pipelines and buffers are kept until no frame uses them. recordings() returns how many
     // recordings there were: the number of the last one. finished() says that the device has completed all

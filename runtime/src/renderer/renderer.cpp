@@ -262,6 +262,10 @@ Renderer::ReplacementProgress Renderer::replacementProgress() const {
     return progressOf(*state_);
 }
 
+void Renderer::withdrawPackage() {
+    withdraw(*state_);
+}
+
 std::uint64_t Renderer::recordings() const {
     return state_->recordings;
 }
