@@ -30,9 +30,12 @@ void main() {
     ShadowCounts counts = ShadowCounts(0u, 0u, 0u, 0u, 0u);
     vec3 sum = vec3(0.0);
     for (uint ray = 0u; ray < min(sent - first, kFirstShadowRays); ++ray) {
-        sum += traceShadow(hit, FirstShadowArray(GLINT_FRAME.shadows).data[firstShadowPlace(place, ray)], counts);
+        sum += traceShadow(hit, waitingShadow(firstShadowPlace(place, ray)), counts);
     }
     countRays(kEffectShadow, counts.rays, counts.misses);
+    if (kCountsLight) {
+        addToCounter(counterOf(kEffectShadow, kCountWaited), counts.rays);
+    }
     vec4 light = imageLoad(radianceImage, ivec2(pixel));
     imageStore(radianceImage, ivec2(pixel), storable(vec4(light.rgb + sum, light.a)));
     GLINT_CLOCK_STOP

@@ -254,7 +254,8 @@ GLINT_CONSTANT(kCountScreenHits, 12u);  // found in screen space
 GLINT_CONSTANT(kCountHits, 13u);        // rays that hit
 GLINT_CONSTANT(kCountMisses, 14u);      // rays that left the scene, or hit nothing on their way
 GLINT_CONSTANT(kCountSegments, 15u);    // rays traced before the one that joins the list
-GLINT_CONSTANT(kCountsOfEffect, 16u);
+GLINT_CONSTANT(kCountWaited, 16u);      // shadow rays of first hits that waited in memory
+GLINT_CONSTANT(kCountsOfEffect, 17u);
 
 // FrameConstants::counters, one uint each.
 GLINT_CONSTANT(kCounterRays, 0u);           // rays appended to the list

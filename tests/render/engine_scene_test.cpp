@@ -982,7 +982,7 @@ TEST(RayStepsReplacement, ARendererOfTheSceneSwitchesTogetherWithThem) {
         const std::array wanted{engine.expected(*ofSteps[0], *scene, package::kStrategyUber),
                                 Engine(*after.gpu).expected(*ofSteps[1], *after.gpu, package::kStrategyUber)};
         auto shared = EngineScene::share(sharedContext(), *scene);
-        const auto steps = engine.makeSteps(*ofSteps[0], **shared, package::kStrategyUber);
+        auto steps = engine.makeSteps(*ofSteps[0], **shared, package::kStrategyUber);
         RendererOptions options;
         options.width = options.height = 16;
         options.strategy = package::kStrategyUber;
@@ -1027,6 +1027,14 @@ TEST(RayStepsReplacement, ARendererOfTheSceneSwitchesTogetherWithThem) {
         go(0);
         EXPECT_EQ(renderer->replacementProgress().inUse, 2U);
         EXPECT_EQ(steps->replacementProgress().inUse, 2U);
+        // A package that is withdrawn changes nothing, and one waits no longer for steps that are gone.
+        ASSERT_TRUE(renderer->replacePackage(ofFrames[1]));
+        const std::vector<std::string> reasons = renderer->replacementProgress().waitsFor;
+        ASSERT_EQ(reasons.size(), 1U);
+        EXPECT_TRUE(reasons[0].starts_with("RaySteps 1 of the scene needs a package")) << reasons[0];
+        renderer->withdrawPackage();
+        EXPECT_FALSE(renderer->replacementProgress().pending);
+        EXPECT_FALSE(differ(drawn(*renderer, frame), before));
         // Other values of materials alone are those of both at once.
         ASSERT_TRUE(steps->replacePackage(repainted));
         EXPECT_TRUE(steps->replacementProgress().ready);
@@ -1039,6 +1047,12 @@ TEST(RayStepsReplacement, ARendererOfTheSceneSwitchesTogetherWithThem) {
         for (std::size_t i = 0; i < order.size(); ++i) {
             EXPECT_EQ(engine.answers(i), wanted[order[i]]) << "batch " << i;
         }
+        ASSERT_TRUE(renderer->replacePackage(ofFrames[1]));
+        EXPECT_FALSE(renderer->replacementProgress().ready);
+        steps.reset();
+        EXPECT_TRUE(renderer->replacementProgress().ready);
+        EXPECT_FALSE(differ(drawn(*renderer, frame), image));
+        EXPECT_EQ(renderer->replacementProgress().inUse, 3U);
     }
 }
 

@@ -2,6 +2,7 @@
 #include "render/hit_kernel.h"
 #include "render/light_pictures.h"
 #include "render/pixel_test.h"
+#include "support/effect_bits.h"
 #include "support/must.h"
 
 #include <algorithm>
@@ -97,13 +98,20 @@ TEST(FirstShadows, WaitWithoutAChange) {
     EXPECT_EQ(waiting.package().shape().firstShadowRays, 4U);
     RenderSetup setup = setupOf(scene, 2, 3);
     setup.frame.shadowSamples = 3;
-    const LinearImage expected = traced.render(package::kStrategyUber, setup);
     RendererOptions options;
     options.strategy = package::kStrategyUber;
+    options.countsLight = true;
     options.bands = 2;
+    FrameCounters counted;
+    const LinearImage expected = traced.render(options, setup, &counted);
+    EXPECT_EQ(counted.shadowRounds, 0U);
+    EXPECT_EQ(counted.of(package::kEffectShadow).waited, 0U);
     for (const package::Tracer tracer : package::kTracers) {
         options.tracer = tracer;
-        const LinearImage image = waiting.render(options, setup);
+        FrameCounters counters;
+        const LinearImage image = waiting.render(options, setup, &counters);
+        EXPECT_EQ(counters.shadowRounds, 5U) << "six lights of three points";
+        EXPECT_EQ(counters.of(package::kEffectShadow).waited, counted.of(package::kEffectShadow).rays);
         ASSERT_EQ(image.pixels.size(), expected.pixels.size());
         for (std::size_t i = 0; i < image.pixels.size(); ++i) {
             for (std::size_t channel = 0; channel < 3; ++channel) {
@@ -113,6 +121,30 @@ TEST(FirstShadows, WaitWithoutAChange) {
             }
         }
     }
+}
+
+// The lights of a frame decide the number of rounds, so the timer has room for one stretch for all but the
+// first.
+TEST(FirstShadows, HaveOneTimeForFurtherRounds) {
+    const gltf::Scene scene = hallOfLights(12);
+    compiler::CompileSettings settings;
+    settings.strategies = package::kStrategyUber;
+    settings.plan.merge = compiler::MergePolicy::All;
+    settings.firstShadows = package::ShadowPlacement::Deferred;
+    const LoadedScene loaded(scene, settings);
+    RenderSetup setup = setupOf(scene, 1, 3);
+    setup.frame.timing = Timing::Passes;
+    RendererOptions options;
+    options.strategy = package::kStrategyUber;
+    options.width = setup.width;
+    options.height = setup.height;
+    options.bands = 2;
+    const auto renderer = loaded.makeRenderer(options);
+    ASSERT_TRUE(renderer->renderSamples(setup.frame, 1));
+    EXPECT_EQ(must(renderer->counters()).shadowRounds, 4U);
+    const std::vector<PassTiming> timings = must(renderer->timings());
+    EXPECT_EQ(std::ranges::count(timings, "further shadow rounds", &PassTiming::name), 2);
+    EXPECT_EQ(std::ranges::count(timings, "first shadows", &PassTiming::name), 2);
 }
 
 // With jitter each sample sees other points, so the reference has many samples too.

@@ -45,10 +45,13 @@ TEST_F(ReplacePackageScene, ErrorsKeepThePackageBefore) {
     const RendererOptions options = optionsOf(package::kStrategyUber);
     const std::unique_ptr<Renderer> renderer = makeRenderer(*original, *scene, options);
     const LinearImage old = draw(*renderer);
-    const auto expectError = [&](const std::shared_ptr<const Package>& package, const char* id) {
+    const auto expectError = [&](const std::shared_ptr<const Package>& package, const char* id,
+                                 bool isForEditable = false) {
         const Result<Renderer::Replacement> replaced = renderer->replacePackage(package);
         ASSERT_FALSE(replaced) << id;
         EXPECT_EQ(replaced.error().id, id) << toString(replaced.error());
+        EXPECT_EQ(replaced.error().hint.find("editable") != std::string::npos, isForEditable)
+            << toString(replaced.error());
         EXPECT_FALSE(renderer->replacementProgress().pending) << id;
     };
     expectError(packageOf(before_, roomSettings(package::kStrategyVisibility)), "package-strategy");
@@ -57,7 +60,7 @@ TEST_F(ReplacePackageScene, ErrorsKeepThePackageBefore) {
     expectError(packageOf(fewer, uber), "scene-package");
     gltf::Scene seen = roomScene();
     seen.materials[kGlossy].doubleSided = true;
-    expectError(packageOf(seen, uber), "scene-package");
+    expectError(packageOf(seen, uber), "scene-package", true);
     gltf::Scene textured = roomScene();
     textured.materials[kGlossy].texture("baseColorTexture").texture =
         addTexture(textured, 1, 1, {255, 255, 255, 255});

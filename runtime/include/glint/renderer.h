@@ -44,6 +44,7 @@ struct EffectCounters {
     std::uint32_t misses = 0;      // also rays to a light with nothing in their way
     std::uint32_t segments = 0;    // rays on their way before the one that joins the list
     std::uint32_t screenHits = 0;  // hits found in screen space, without a ray
+    std::uint32_t waited = 0;      // those of `rays` that waited in memory, as shadow rays of first hits do
     // Pixels, or lights of pixels, that sent no ray. Each counter belongs to the gate that stopped them.
     std::uint32_t skippedSky = 0;
     std::uint32_t skippedUnlit = 0;
@@ -60,9 +61,14 @@ struct EffectCounters {
 
 struct FrameCounters {
     std::vector<EffectCounters> effects;  // the package's effects, in the order of their bits
-    bool draft = false;               // the frame is a draft (RendererOptions::draft), which sends no rays
-    std::uint32_t rays = 0;           // rays of all effects
-    std::uint32_t shadowRays = 0;     // deferred shadow rays of hits
+    bool draft = false;            // the frame is a draft (RendererOptions::draft), which sends no rays
+    std::uint32_t rays = 0;        // rays of all effects
+    std::uint32_t shadowRays = 0;  // deferred shadow rays of hits
+    // The rounds in which the shadow rays of first hits were traced; 0 if they do not wait in memory. Each
+    // round after the first shades the pixels again that have more shadow rays than the rounds before held:
+    // PackageShape::firstShadowRays each. A frame with many lights is faster with a package that chooses
+    // among them (--lights K) or whose first hits trace their rays themselves (--first-shadows inline).
+    std::uint32_t shadowRounds = 0;
     std::uint32_t orderErrors = 0;    // with RendererOptions::checkOrder
     std::uint32_t unknownShader = 0;  // hits whose shader ID no case has, without a fallback
     std::uint32_t alphaTests = 0;     // candidates whose alpha was tested, with RendererOptions::countsLight
@@ -138,8 +144,9 @@ public:
     // The options stay those of create(). A package that waits gives way to one that is given later.
     // Renderers that share a GpuScene switch together: this makes what each of them needs, and the first
     // recording of any of them after that switches all. Its commands must come before those of their later
-    // recordings. If RaySteps share it, too, the package waits until they have one of the same compilation.
-    // `package` must not be null; the renderers keep it as long as it is needed.
+    // recordings. If RaySteps share it, too, the package waits until they have one of the same compilation,
+    // or are destroyed; ReplacementProgress::waitsFor names them. `package` must not be null; the renderers
+    // keep it as long as it is needed.
     //
     // In a scene that is edited, the textures, materials, meshes, instances and lights of edits stay; see
     // docs/live.md, "Replacing a package". Edits after the recording that switches give records in the layout
@@ -153,6 +160,9 @@ public:
     // the background, and those of edits after the call.
     Result<Replacement> replacePackage(std::shared_ptr<const Package> package);
     ReplacementProgress replacementProgress() const;
+    // Gives up a package that waits, for all renderers of the scene. Recordings continue with the old
+    // package. Without such a package nothing changes.
+    void withdrawPackage();
 
     // Replaced pipelines and buffers are kept until no frame uses them. recordings() returns how many
     // recordings there were: the number of the last one. finished() says that the device has completed all
@@ -252,6 +262,8 @@ public:
     // to it.
     package::Tracer tracer() const;
     package::Ordering ordering() const;
+    // Returns the number of bands in which frames are lit, also where RendererOptions::bands is 0.
+    std::uint32_t bands() const;
     // The number of pipelines, images and buffers, for tests and reports.
     struct Footprint {
         std::uint32_t pipelines = 0;

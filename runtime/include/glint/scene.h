@@ -118,6 +118,9 @@ struct PackageProgress {
     bool pending = false;       // a package waits; recordings use the old one
     bool ready = false;         // the next recording uses the package that waits
     std::uint32_t missing = 0;  // pipelines that it still waits for
+    // Why a pending package is not ready: a sentence for each Renderer and RaySteps of the scene that all
+    // wait for. They are numbered by kind, in the order in which they were made.
+    std::vector<std::string> waitsFor{};
     // Why the last replacement was given up; recordings continue with the old package. The next
     // replacePackage() clears it.
     std::optional<Diagnostic> error{};

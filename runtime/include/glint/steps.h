@@ -365,6 +365,9 @@ public:
     // or answers), and those of Renderer::replacePackage() for a scene that Glint has uploaded.
     Result<PackageReplacement> replacePackage(std::shared_ptr<const Package> package);
     PackageProgress replacementProgress() const;
+    // Gives up a package that waits, for all RaySteps of the scene. Recordings continue with the old package.
+    // Without such a package nothing changes.
+    void withdrawPackage();
     // Makes all pipelines anew for another layout, such as one for a larger array of images; see
     // RayStepsOptions::layout and pushStages. Batches that begin afterwards use it, and need the host's sets
     // bound by it. The layout before must live until the device has completed the batches before. With an

@@ -40,6 +40,11 @@ struct SharedMemory {
 
     // Takes memory for a buffer. Returns false if the rest is too small or has an unsuitable type.
     bool take(const VkMemoryRequirements& requirements, Allocation& taken);
+
+    // Returns whether that many bytes may still fit.
+    bool holds(VkDeviceSize bytes) const {
+        return begin + bytes <= end;
+    }
 };
 
 // Device memory of HostServices or of Vulkan.

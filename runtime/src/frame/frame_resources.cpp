@@ -156,8 +156,8 @@ struct WantedBuffer {
     VkDeviceSize bytes;  // 0: the frame needs none
     VkBufferUsageFlags usage;
     MemoryUse use = MemoryUse::Device;
-    // Nothing writes or reads the buffer until the shadow rays of first hits are traced, which need theirs no
-    // longer.
+    // Nothing reads what the buffer holds while shadow rays of first hits wait, so it may lie in their
+    // memory.
     bool followsShadows = false;
 
     // Returns true if nothing writes or reads the buffer until surfaces are known. It may then share the
@@ -202,18 +202,24 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
     const VkDeviceSize lists = rays > 0 ? 1 : 0;
     const VkDeviceSize orderings = ordered > 0 ? size.bucketCount + 1 : 0;
     const VkDeviceSize shadowLists = shadows > 0 ? 1 : 0;
+    // Rays are listed and traced after those, and first hits are in order before they are shaded. Shadow rays
+    // of hits need the memory beside hits.
+    const bool follows = firstShadows > 0 && !size.deferredShadows;
+    constexpr MemoryUse kOnDevice = MemoryUse::Device;
     using Frame = FrameResources;
     return {{
         {"constants", &Frame::constants, sizeof(gpu::FrameConstants), kCleared},
+        {"shadow rays", &Frame::shadows, shadowBytes, kStorage},
         {"starts of samples", &Frame::sampleStarts, samples * sizeof(gpu::SampleStart), kRead},
         {"directions of samples", &Frame::sampleAims,
          samples * (size.packedSamples ? sizeof(gpu::uvec2) : sizeof(gpu::SampleAim)), kRead},
         {"weights of samples", &Frame::sampleWeights,
          size.packedSamples ? 0 : samples * sizeof(gpu::SampleWeight), kRead},
-        {"rays", &Frame::listed, ownRays * sizeof(std::uint32_t), kRead},
+        {"rays", &Frame::listed, ownRays * sizeof(std::uint32_t), kRead, kOnDevice, follows},
         {"radiance of paths", &Frame::radiance,
-         size.paths && !size.hostRays ? samples * sizeof(gpu::vec4) : 0, kRead},
-        {"next rays", &Frame::nextListed, size.paths ? ownRays * sizeof(std::uint32_t) : 0, kStorage},
+         size.paths && !size.hostRays ? samples * sizeof(gpu::vec4) : 0, kRead, kOnDevice, follows},
+        {"next rays", &Frame::nextListed, size.paths ? ownRays * sizeof(std::uint32_t) : 0, kStorage,
+         kOnDevice, follows},
         {"paths", &Frame::paths, size.paths ? samples * sizeof(gpu::PathState) : 0, kStorage},
         {"rays of lobes", &Frame::lobeRays, lobeRays * sizeof(gpu::LobeRay), kStorage},
         {"shares of the sky", &Frame::skyShares, size.skyLight ? samples * sizeof(float) : 0, kStorage},
@@ -222,14 +228,12 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
          kStorage},
         {"light of walks", &Frame::walkedLight, size.layerWalks ? samples * sizeof(gpu::BounceLight) : 0,
          kCleared},
-        {"shadow rays", &Frame::shadows, shadowBytes, kStorage},
         {"shadow dispatch", &Frame::shadowDispatch, shadowLists * sizeof(gpu::DispatchArguments), kIndirect},
         {"first shadow counts", &Frame::firstShadowCounts, firstShadows * sizeof(std::uint32_t), kCleared},
-        {"hits", &Frame::hits, hits * size.hitBytes, kRead, MemoryUse::Device,
-         firstShadows > 0 && !size.deferredShadows},
+        {"hits", &Frame::hits, hits * size.hitBytes, kRead, kOnDevice, follows},
         {"ordered hits", &Frame::orderedHits, slots * sizeof(std::uint32_t), kStorage},
         {"visited hits", &Frame::visitedHits, visitedWords * sizeof(std::uint32_t), kCleared},
-        {"bucket keys", &Frame::bucketKeys, keys * size.keyBytes, kStorage},
+        {"bucket keys", &Frame::bucketKeys, keys * size.keyBytes, kStorage, kOnDevice, follows},
         {"bucket counts", &Frame::bucketCounts, buckets, kCleared},
         {"bucket begins", &Frame::bucketBegins, buckets, kStorage},
         {"bucket cursors", &Frame::bucketCursors, buckets, kCleared},
@@ -241,23 +245,28 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
     }};
 }
 
+// Returns the memory of a resource, for others.
+template <typename Resource>
+SharedMemory memoryOf(const Resource& resource) {
+    const Allocation& memory = resource.memory;
+    return {memory, memory.offset, memory.offset + resource.bytes};
+}
+
 Status createBuffers(Context::State& context, const FrameSize& size, FrameResources& frame) {
-    SharedMemory ofDepth{frame.depth.memory, frame.depth.memory.offset,
-                         frame.depth.memory.offset + frame.depth.bytes};
+    SharedMemory ofDepth = memoryOf(frame.depth);
+    SharedMemory ofShadows;
     for (const WantedBuffer& entry : wantedBuffers(size)) {
         if (entry.bytes == 0) {
             continue;
         }
-        SharedMemory ofShadows;
-        if (entry.followsShadows) {
-            const Allocation& memory = frame.shadows.memory;
-            ofShadows = {memory, memory.offset, memory.offset + frame.shadows.bytes};
-        }
-        SharedMemory* const shared = entry.followsShadows   ? &ofShadows
-                                     : entry.followsDepth() ? &ofDepth
-                                                            : nullptr;
+        SharedMemory* const shared = entry.followsShadows && ofShadows.holds(entry.bytes) ? &ofShadows
+                                     : entry.followsDepth()                               ? &ofDepth
+                                                                                          : nullptr;
         GLINT_TRY(frame.*entry.member,
                   createBuffer(context, frame.pool, entry.bytes, entry.usage, entry.use, shared));
+        if (entry.member == &FrameResources::shadows) {
+            ofShadows = memoryOf(frame.shadows);
+        }
     }
     return okStatus();
 }
@@ -346,20 +355,7 @@ void prepareImages(Context::State& context, VkCommandBuffer commands, FrameResou
                       VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, kAnyAccess});
 }
 
-VkDeviceSize frameBytes(const FrameSize& size) {
-    VkDeviceSize bytes = 0;
-    const VkDeviceSize depth = size.hostRays ? 0 : VkDeviceSize{size.width} * size.height * sizeof(float);
-    VkDeviceSize shared = 0;  // by the depth and buffers that follow it
-    VkDeviceSize shadows = 0;
-    for (const WantedBuffer& buffer : wantedBuffers(size)) {
-        if (buffer.followsShadows && buffer.bytes <= shadows) {
-            continue;
-        }
-        shadows = buffer.member == &FrameResources::shadows ? buffer.bytes : shadows;
-        bytes += buffer.bytes;
-        shared += buffer.followsDepth() && shared + buffer.bytes <= depth ? buffer.bytes : 0;
-    }
-    bytes += depth - shared;
+VkDeviceSize imageBytes(const FrameSize& size) {
     VkDeviceSize ofPixel = 0;
     for (std::uint32_t binding = 0; !size.hostRays && binding < gpu::kFrameImageCount; ++binding) {
         if (hasImage(size, binding)) {
@@ -367,7 +363,27 @@ VkDeviceSize frameBytes(const FrameSize& size) {
         }
     }
     ofPixel += package::bytesOf(size.layers);
-    return bytes + ofPixel * size.width * size.height;
+    return ofPixel * size.width * size.height;
+}
+
+VkDeviceSize frameBytes(const FrameSize& size) {
+    VkDeviceSize bytes = imageBytes(size);
+    // Memory that buffers may still share.
+    VkDeviceSize depth = size.hostRays ? 0 : VkDeviceSize{size.width} * size.height * sizeof(float);
+    VkDeviceSize shadows = 0;
+    bytes += depth;
+    for (const WantedBuffer& buffer : wantedBuffers(size)) {
+        VkDeviceSize* const shared = buffer.followsShadows && buffer.bytes <= shadows ? &shadows
+                                     : buffer.followsDepth() && buffer.bytes <= depth ? &depth
+                                                                                      : nullptr;
+        if (shared != nullptr) {
+            *shared -= buffer.bytes;
+        } else {
+            bytes += buffer.bytes;
+        }
+        shadows = buffer.member == &FrameResources::shadows ? buffer.bytes : shadows;
+    }
+    return bytes;
 }
 
 bool haveSameImages(const FrameSize& first, const FrameSize& second) {
@@ -391,18 +407,25 @@ Result<NextBuffers> createNextBuffers(Context::State& context, const FrameSize& 
     const auto before = wantedBuffers(now);
     const auto after = wantedBuffers(next);
     bool shadowsMove = false;
+    SharedMemory ofShadows;
     for (std::size_t place = 0; place < after.size(); ++place) {
         const WantedBuffer& wanted = after[place];
-        const bool sharesMoved = shadowsMove && (wanted.followsShadows || before[place].followsShadows);
-        if (wanted.bytes == before[place].bytes && !sharesMoved) {
+        const bool leavesMemory =
+            wanted.followsShadows != before[place].followsShadows || (shadowsMove && wanted.followsShadows);
+        if (wanted.bytes == before[place].bytes && !leavesMemory) {
             buffers.kept += wanted.bytes > 0 ? 1 : 0;
             continue;
         }
         shadowsMove = shadowsMove || wanted.member == &FrameResources::shadows;
         Buffer made;
         if (wanted.bytes > 0) {
-            GLINT_TRY(made, createBuffer(context, *buffers.pool, wanted.bytes, wanted.usage, wanted.use));
+            SharedMemory* const shared = wanted.followsShadows ? &ofShadows : nullptr;
+            GLINT_TRY(made,
+                      createBuffer(context, *buffers.pool, wanted.bytes, wanted.usage, wanted.use, shared));
             ++buffers.made;
+            if (wanted.member == &FrameResources::shadows) {
+                ofShadows = memoryOf(made);
+            }
         }
         buffers.exchanges.push_back({place, wanted.member, std::move(made)});
     }

@@ -93,8 +93,8 @@ struct FrameSize {
     bool deferredShadows = false;
     std::uint32_t lightSamples = 0;     // lights that a surface chooses by the hierarchy; 0: all
     std::uint32_t firstShadowRays = 0;  // of a round
-    std::uint32_t firstShadowBytes =
-        0;  // of a shadow ray of a first hit that waits; 0: they are traced inline
+    // Of a shadow ray of a first hit that waits; 0: they are traced inline.
+    std::uint32_t firstShadowBytes = 0;
     bool environmentMap = false;
     std::uint32_t textureLevels = 0;  // textures whose finest level is noted
     bool hostRays = false;            // the host owns the list of rays and their results
@@ -208,6 +208,9 @@ struct NextBuffers {
     std::uint32_t kept = 0;  // buffers that stay
     std::uint32_t made = 0;
 };
+
+// Returns the bytes of the images that keep what they hold: all but the depth. Pure.
+VkDeviceSize imageBytes(const FrameSize& size);
 
 // Returns the bytes of the images and buffers of a frame of that size, without the padding that a device adds
 // to images. Pure.

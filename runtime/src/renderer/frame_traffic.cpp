@@ -90,6 +90,18 @@ void addSamples(const TrafficShape& shape, std::vector<TrafficRow>& rows) {
     rows.push_back({"effect rays", Unit::Ray, 0, kWord});
 }
 
+// The counts do not tell which surfaces are lit and send a shadow ray, so all of them count as such. Those
+// that further rounds shade again are not counted.
+void addFirstShadows(const TrafficShape& shape, std::uint32_t picture, std::vector<TrafficRow>& rows) {
+    rows.push_back({"first hits", Unit::Surface, 0, kWord});
+    rows.push_back({"first hits", Unit::FirstShadowRay, 0, shape.firstShadowBytes});
+    rows.push_back({"first hits", Unit::ShadowRound, kWord + kWord, 0});
+    rows.push_back({"first shadows", Unit::Pixel, kWord, 0});
+    rows.push_back({"first shadows", Unit::Surface, kIdentity + picture, picture});
+    rows.push_back({"first shadows", Unit::FirstShadowRay, shape.firstShadowBytes, 0});
+    rows.push_back({"first shadows", Unit::ShadowRound, kWord, 0});
+}
+
 // The bytes that a pass reads and writes of its layers. Light is divided by an albedo, which is read.
 TrafficRow layersOf(const TrafficShape& shape, package::LayerPass pass, std::string_view name) {
     TrafficRow row{name, Unit::Pixel, 0, 0};
@@ -181,6 +193,7 @@ TrafficShape trafficShape(const Package& package, const RendererOptions& options
     shape.skyLight = package.skyLight();
     shape.deferredShadows =
         effects.lights != 0 && package.shape().shadows == package::ShadowPlacement::Deferred;
+    shape.firstShadowBytes = firstShadowBytes(package);
     shape.accumulates = options.accumulate;
     shape.halfPicture = hasHalfPicture(package, options);
     shape.marchesScreen = options.screenMarch && effects.screenStarts != 0;
@@ -203,6 +216,9 @@ std::vector<TrafficRow> trafficRows(const TrafficShape& shape) {
     rows.push_back(
         {"first hits", Unit::Pixel, kWord + kIdentity, picture + (shape.marchesScreen ? kPixel : 0)});
     rows.push_back(layersOf(shape, package::LayerPass::FirstHits, "first hits"));
+    if (shape.firstShadowBytes > 0) {
+        addFirstShadows(shape, picture, rows);
+    }
     if (shape.effects > 0) {
         addSamples(shape, rows);
         addShading(shape, rows);
@@ -234,12 +250,17 @@ TrafficCounts trafficCounts(const FrameCounters& counters, const TrafficShape& s
     at(Unit::Pixel) = pixels;
     at(Unit::Sample) = pixels * shape.effects;
     for (const EffectCounters& effect : counters.effects) {
+        at(Unit::FirstShadowRay) += effect.waited;
         if (effect.kind == package::EffectKind::Rays) {
             at(Unit::Sent) += static_cast<double>(effect.rays) + effect.screenHits;
         }
     }
     at(Unit::Ray) = counters.rays;
     at(Unit::ShadowRay) = counters.shadowRays;
+    if (!counters.pixelCounts.empty()) {
+        at(Unit::Surface) = pixels - counters.pixelCounts.front();
+    }
+    at(Unit::ShadowRound) = pixels * (std::max(counters.shadowRounds, 1U) - 1U);
     for (std::size_t i = 1; i < counters.raysOfBounces.size(); ++i) {
         at(Unit::FurtherRay) += counters.raysOfBounces[i];
     }

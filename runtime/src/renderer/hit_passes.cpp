@@ -96,6 +96,16 @@ void PassRecorder::endStretch(std::uint32_t stretch) {
     }
 }
 
+void PassRecorder::beginTogether(const PassLabel& label) {
+    beginPass(label);
+    timesTogether_ = std::exchange(timesPasses_, false);
+}
+
+void PassRecorder::endTogether() {
+    timesPasses_ = timesTogether_;
+    endPass();
+}
+
 void PassRecorder::bindSets(VkPipelineBindPoint point, std::span<const VkDescriptorSet> sets) {
     vk_.CmdBindDescriptorSets(commands_, point, state_.pipelines.layout, gpu::kSetScene,
                               static_cast<std::uint32_t>(sets.size()), sets.data(), 0, nullptr);
@@ -299,6 +309,10 @@ void HitPasses::orderFirst() {
 
 void HitPasses::shadeFirst(std::uint32_t shadowRounds) {
     for (std::uint32_t round = 0; round < std::max(shadowRounds, 1U); ++round) {
+        if (round == 1) {
+            // The lights of a frame decide their number, and the timer was made before.
+            passes_.beginTogether({"further shadow rounds", Pass::FirstShade});
+        }
         passes_.setShadowRound(round);
         std::ranges::for_each(package::firstRoles(), [&](const package::RoleInfo& info) { dispatch(info); });
         passes_.barrier(dependencies().passToPass);
@@ -306,6 +320,9 @@ void HitPasses::shadeFirst(std::uint32_t shadowRounds) {
             passes_.dispatchPixels({"first shadows", Pass::FirstShade}, pass(ModuleRole::FirstShadows));
             passes_.barrier(dependencies().passToPass);
         }
+    }
+    if (shadowRounds > 1) {
+        passes_.endTogether();
     }
 }
 

@@ -19,7 +19,7 @@
 namespace glint {
 
 // The largest number of passes of first hits and of a round, beside one for each case.
-inline constexpr std::uint32_t kMaxFirstPasses = 6;
+inline constexpr std::uint32_t kMaxFirstPasses = 7;
 inline constexpr std::uint32_t kMaxFixedPasses = 27;
 
 // The label of a timer's stretch.
@@ -100,6 +100,10 @@ public:
     std::uint32_t beginStretch(const PassLabel& label);
     void endStretch(std::uint32_t stretch);
 
+    // Where passes are timed, times those until endTogether() as one.
+    void beginTogether(const PassLabel& label);
+    void endTogether();
+
     void barrier(const MemoryDependency& dependency);
     // Fills the bytes of a buffer from an offset on; one that the frame lacks is left out.
     void fill(const Buffer& buffer, std::uint32_t value, VkDeviceSize bytes = VK_WHOLE_SIZE,
@@ -154,6 +158,7 @@ private:
     PassDependencies dependencies_;
     gpu::PushConstants pushed_{};
     bool timesPasses_;
+    bool timesTogether_ = false;
     std::uint32_t rows_;
 };
 

@@ -51,11 +51,12 @@ public:
         bounces_ = bouncesToRecord(frame);
         state_.rounds.clear();
         state_.orderedBands = 0;
+        state_.shadowRounds = state_.pipelines.draft ? 0 : shadowRounds(state_.size, constants);
         for (std::uint32_t band = 0; band < state_.size.bandCount(); ++band) {
             if (band > 0) {
                 startBand(band);
             }
-            recordBand(band, frame, constants);
+            recordBand(band, frame);
         }
         passes_.endStretch(whole);
         // Layers of motion describe a picture's first sample, so only that sample needs the state of the
@@ -104,27 +105,27 @@ private:
     }
 
     // Shades the rows of a band.
-    void recordBand(std::uint32_t band, const FrameOptions& frame, const gpu::FrameConstants& constants) {
+    void recordBand(std::uint32_t band, const FrameOptions& frame) {
         passes_.setRows(band_.endRow - band_.firstRow);
         if (state_.pipelines.draft) {
             passes_.dispatchPixels({"first draft", Pass::FirstShade}, pass(ModuleRole::FirstDraft));
             passes_.barrier(dependencies().passToPass);
         } else {
-            recordFirst(band, constants);
+            recordFirst(band);
             recordEffects(frame.effects & state_.size.effects.rays);
         }
         passes_.dispatchPixels({"compose", Pass::Compose}, pass(ModuleRole::Compose));
     }
 
     // Shades what the camera sees, by the same cases as hits of rays.
-    void recordFirst(std::uint32_t band, const gpu::FrameConstants& constants) {
+    void recordFirst(std::uint32_t band) {
         HitPasses hits(state_, passes_);
         hits.orderFirst();
         passes_.barrier(dependencies().passesToCopy);
         passes_.readBack(state_.frame.bucketCounts, bucketBytes(state_.size),
                          readbackFirst(state_.size, band));
         state_.orderedBands = band + 1;
-        hits.shadeFirst(shadowRounds(state_.size, constants));
+        hits.shadeFirst(state_.shadowRounds);
     }
 
     // Leads the passes to the rows of another band. The band before used the same memory.

@@ -19,6 +19,12 @@
 
 namespace glint {
 
+// What decides the number of bands.
+struct BandChoice {
+    std::uint32_t wanted = 0;      // RendererOptions::bands
+    std::uint64_t mostPixels = 0;  // of a band, if no number is wanted; 0: any number
+};
+
 // The choice among a package's modules that a renderer runs. Each field is one value, not a set.
 struct PipelineChoice {
     package::Strategy strategy = package::kDefaultStrategy;
@@ -27,7 +33,7 @@ struct PipelineChoice {
     bool checksOrder = false;
     bool batchEffects = false;
     std::uint32_t bounces = 1;  // the most of a path
-    std::uint32_t bands = 0;    // the argument of chooseBandRows()
+    BandChoice bands;
     // Pipelines with shaders of cases are made later, by threads; until then a fallback replaces them.
     bool background = false;
     // Frames begin with a draft. Requires `background`.

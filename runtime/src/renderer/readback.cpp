@@ -282,6 +282,7 @@ EffectCounters countersOf(const std::vector<std::uint32_t>& values, const packag
     counters.misses = count(gpu::kCountMisses);
     counters.segments = count(gpu::kCountSegments);
     counters.screenHits = count(gpu::kCountScreenHits);
+    counters.waited = count(gpu::kCountWaited);
     counters.skippedSky = count(gpu::kRayNoSurface);
     counters.skippedUnlit = count(gpu::kRayUnlit);
     counters.skippedRough = count(gpu::kRayRough);
@@ -361,6 +362,7 @@ Result<FrameCounters> Renderer::counters() try {
     std::memcpy(values.data(), bytes, values.size() * sizeof(values[0]));
     FrameCounters counters;
     counters.draft = state_->drafted;
+    counters.shadowRounds = state_->shadowRounds;
     for (const EffectName& effect : state_->effects) {
         counters.effects.push_back(countersOf(values, state_->size.effects, effect));
     }

@@ -262,6 +262,10 @@ Renderer::ReplacementProgress Renderer::replacementProgress() const {
     return progressOf(*state_);
 }
 
+void Renderer::withdrawPackage() {
+    withdraw(*state_);
+}
+
 std::uint64_t Renderer::recordings() const {
     return state_->recordings;
 }
@@ -360,6 +364,10 @@ package::Ordering Renderer::ordering() const {
     return state_->choice.ordering;
 }
 
+std::uint32_t Renderer::bands() const {
+    return state_->size.bandCount();
+}
+
 Renderer::State& Renderer::state() {
     return *state_;
 }
@@ -381,20 +389,28 @@ std::vector<MemoryItem> Renderer::memory() const {
     for (std::size_t i = 0; i < frame.layers.size(); ++i) {
         addTo(items, "layer " + state_->size.layers[i].name, frame.layers[i]);
     }
-    // Memory that buffers share with the depth image counts as the buffers' memory.
+    // Memory that buffers share with the depth image counts as the buffers' memory, and memory that they
+    // share with the shadow rays of first hits as that of these.
+    const auto liesIn = [](const Buffer& buffer, const auto& other) {
+        const Allocation& place = buffer.memory;
+        const VkDeviceSize begin = other.memory.offset;
+        return buffer.handle.get() != VK_NULL_HANDLE && &buffer.memory != &other.memory &&
+               place.memory == other.memory.memory && place.offset >= begin &&
+               place.offset < begin + other.bytes;
+    };
     VkDeviceSize shared = 0;
     for (const auto& [name, buffer] : buffersOf(frame, state_->size)) {
-        const Allocation& place = buffer->memory;
-        const Allocation& depth = frame.depth.memory;
-        const bool shares = buffer->handle.get() != VK_NULL_HANDLE && place.memory == depth.memory &&
-                            place.offset >= depth.offset && place.offset < depth.offset + frame.depth.bytes;
-        shared += shares ? buffer->bytes : 0;
+        shared += liesIn(*buffer, frame.depth) && !liesIn(*buffer, frame.shadows) ? buffer->bytes : 0;
     }
     if (frame.depth.handle.get() != VK_NULL_HANDLE) {
         addTo(items, {"depth", MemoryUse::Device, true, 1, frame.depth.bytes - shared});
     }
     for (const auto& [name, buffer] : buffersOf(frame, state_->size)) {
-        addTo(items, name, *buffer);
+        if (liesIn(*buffer, frame.shadows)) {
+            addTo(items, {name, buffer->use, false, 1, 0});
+        } else {
+            addTo(items, name, *buffer);
+        }
     }
     if (state_->history != nullptr) {
         state_->history->addMemory(items);

@@ -57,6 +57,7 @@ struct Renderer::State final : PackageUser {
         std::uint32_t bounce = 1;
     };
     std::vector<Round> rounds;
+    std::uint32_t shadowRounds = 0;  // as FrameCounters has it, of the last recording
     std::uint32_t orderedBands = 0;  // bands of the last recording whose first hits were ordered
     BounceLevels bounceLevels;
     std::unique_ptr<MotionHistory> history;  // null unless layers need it

@@ -148,9 +148,9 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
     choice.batchEffects = options.batchEffects;
     choice.halfPicture = hasHalfPicture(package, options);
     choice.countsLight = options.countsLight;
-    // Bands cost a GPU with memory of its own a fifth of its time and more (docs/memory.md).
+    // A GPU with memory of its own has no more bands than its frames need: they cost time (docs/memory.md).
     const bool isDiscrete = context.limits.deviceType == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
-    choice.bands = options.bands == 0 && isDiscrete ? 1 : options.bands;
+    choice.bands = {options.bands, isDiscrete ? 0 : kPixelsOfBand};
     GLINT_TRY_DO(checkOrdering(context.limits, choice.ordering, package.bucketCount()));
     return choice;
 }
@@ -159,23 +159,51 @@ namespace {
 
 // The most dispatches of cases that bands may bring to first hits.
 constexpr std::uint32_t kCasesOfBands = 256;
+// The fewest pixels of a band, unless a number of bands is wanted: small bands leave a GPU idle.
+constexpr std::uint64_t kLeastPixelsOfBand = std::uint64_t{1} << 18;
+// The bytes for each pixel of the frame within which buffers of bands stay, and those of each effect with
+// rays beyond the first: with the images of a frame that does not accumulate, 64 and 16 bytes.
+constexpr std::uint64_t kBufferBytes = 40;
+constexpr std::uint64_t kBufferBytesOfEffect = 16;
 
-}  // namespace
-
-std::uint32_t chooseBandRows(const FrameSize& size, std::uint32_t wanted) {
-    const bool isEmpty = size.width == 0 || size.height == 0;  // an error that checkFrameSize() reports
-    if (isEmpty || size.hostRays || size.sampleCount == 0 || size.marchesScreen) {
-        return 0;
-    }
-    std::uint64_t bands = wanted;
-    if (wanted == 0) {
-        bands = (std::uint64_t{size.width} * size.height + kPixelsOfBand - 1) / kPixelsOfBand;
-        bands = std::min<std::uint64_t>(bands, std::max(kCasesOfBands / size.bucketCount, 1U));
-    }
+std::uint32_t rowsOf(const FrameSize& size, std::uint64_t bands) {
     constexpr std::uint32_t kTile = gpu::kPixelGroupSize;
     const std::uint64_t rows = (size.height + bands - 1) / bands;
     const auto whole = static_cast<std::uint32_t>((rows + kTile - 1) / kTile * kTile);
     return whole < size.height ? whole : 0;
+}
+
+// Returns the fewest bands whose buffers are small enough.
+std::uint64_t chooseBands(FrameSize size, std::uint64_t mostPixels) {
+    const std::uint64_t pixels = std::uint64_t{size.width} * size.height;
+    const std::uint64_t effects = std::max(size.sampleCount, 1U) - 1;
+    const VkDeviceSize most = imageBytes(size) + (kBufferBytes + kBufferBytesOfEffect * effects) * pixels;
+    const std::uint64_t ofCases = std::max(kCasesOfBands / size.bucketCount, 1U);
+    const std::uint64_t last = std::min(pixels / kLeastPixelsOfBand, ofCases);
+    std::uint64_t bands = mostPixels > 0 ? std::min((pixels + mostPixels - 1) / mostPixels, ofCases) : 1;
+    for (size.bandRows = rowsOf(size, bands); bands < last && frameBytes(size) > most;) {
+        ++bands;
+        size.bandRows = rowsOf(size, bands);
+    }
+    return bands;
+}
+
+}  // namespace
+
+std::uint32_t chooseBandRows(const FrameSize& size, const BandChoice& choice) {
+    const bool isEmpty = size.width == 0 || size.height == 0;  // an error that checkFrameSize() reports
+    const bool hasNothing = size.sampleCount == 0 && size.firstShadowBytes == 0;
+    if (isEmpty || size.hostRays || hasNothing || size.marchesScreen) {
+        return 0;
+    }
+    return rowsOf(size, choice.wanted > 0 ? choice.wanted : chooseBands(size, choice.mostPixels));
+}
+
+std::uint32_t firstShadowBytes(const Package& package) {
+    // shaders/effects/shadow/shadow.glsl: WaitingShadow, with the light past glass where both are known.
+    const bool splitsGlass =
+        package.emission() != nullptr && package.shadowThrough() == package::ShadowThrough::Glass;
+    return !package.shape().defersFirstShadows() ? 0 : splitsGlass ? 40 : 28;
 }
 
 bool hasHalfPicture(const Package& package, const RendererOptions& options) {
@@ -218,11 +246,9 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.textureLevels = package.textureLevels() ? textures : 0;
     size.deferredShadows =
         size.effects.lights != 0 && package.shape().shadows == package::ShadowPlacement::Deferred;
-    // shaders/effects/shadow/shadow.glsl: SurfaceShadow, with the light past glass where both are known.
-    const bool splitsGlass = size.emissiveLights && package.shadowThrough() == package::ShadowThrough::Glass;
     size.lightSamples = package.lightSamples();
     size.firstShadowRays = package.shape().firstShadowRays;
-    size.firstShadowBytes = !package.shape().defersFirstShadows() ? 0 : splitsGlass ? 44 : 32;
+    size.firstShadowBytes = firstShadowBytes(package);
     size.rayPipeline = choice.tracer == package::kTracerRayPipeline;
     size.layers.assign(package.layers().begin(), package.layers().end());
     size.layerRays = (package::demandsOf(size.layers) & package::kLayerRays) != 0;

@@ -17,9 +17,11 @@ namespace glint {
 Result<PipelineChoice> choosePipelines(const Context::State& context, const Package& package,
                                        const RendererOptions& options);
 
-// Returns the rows of a band, or 0 for a frame that is lit as a whole. `wanted` is RendererOptions::bands.
-// Pure.
-std::uint32_t chooseBandRows(const FrameSize& size, std::uint32_t wanted);
+// Returns the rows of a band, or 0 for a frame that is lit as a whole. Pure.
+std::uint32_t chooseBandRows(const FrameSize& size, const BandChoice& choice);
+
+// Returns the bytes of a shadow ray of a first hit that waits in memory; 0 if they are traced inline.
+std::uint32_t firstShadowBytes(const Package& package);
 
 // Returns whether frames have a picture of 16-bit floats: the options request it, and nothing needs 32 bits.
 // The march in screen space reads depths from it, and shaders have one format for the picture and for layers

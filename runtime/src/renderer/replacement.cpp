@@ -10,6 +10,7 @@
 #include <iterator>
 #include <limits>
 #include <map>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -242,17 +243,44 @@ void addLeftovers(PackageUser& state) {
     state.leftovers.back()->pipelines = std::make_unique<Pipelines>(state.context);
 }
 
-bool isReplacementReady(const PackageUser& state) {
-    return std::ranges::all_of(usersWith(state), [&](const PackageUser* user) {
-        const std::shared_ptr<const Package> wanted = packageFor(*user, state);
-        if (!wanted) {
-            return user->records == state.next->fit.records;
+// Returns why a package can't replace another before the user does its part. Empty: nothing is left to do.
+std::string reasonToWait(const PackageUser& user, const PackageUser& state) {
+    const std::shared_ptr<const Package> wanted = packageFor(user, state);
+    if (!wanted) {
+        return user.records == state.next->fit.records
+                   ? ""
+                   : "needs a package of the same compilation: give it to replacePackage(), destroy it, or "
+                     "withdrawPackage() gives up the one that waits";
+    }
+    if (!waitsFor(user, wanted) || user.next->fit.records != state.next->fit.records) {
+        return user.passes() == state.passes() ? "joins with the next recording"
+                                               : "waits for a package of another compilation";
+    }
+    const auto* const background = user.next->pipelines.background.get();
+    if (background == nullptr) {
+        return "";
+    }
+    if (background->missing() > 0) {
+        return "lacks " + std::to_string(background->missing()) + " pipelines, which are being made";
+    }
+    if (background->progress().error) {
+        return "could not make a pipeline";
+    }
+    return user.pipelines.adoptedAtOnce > 0 ? "" : "takes no pipelines in its recordings";
+}
+
+std::vector<std::string> reasonsToWait(const PackageUser& state) {
+    std::vector<std::string> reasons;
+    std::map<package::Passes, std::uint32_t> numbers;
+    for (const PackageUser* const user : usersWith(state)) {
+        const std::uint32_t number = ++numbers[user->passes()];
+        if (const std::string reason = reasonToWait(*user, state); !reason.empty()) {
+            const bool isRenderer = user->passes() == package::Passes::Frame;
+            reasons.push_back((isRenderer ? "Renderer " : "RaySteps ") + std::to_string(number) +
+                              " of the scene " + reason);
         }
-        const auto* const background = user->next ? user->next->pipelines.background.get() : nullptr;
-        return waitsFor(*user, wanted) && user->next->fit.records == state.next->fit.records &&
-               (background == nullptr || (user->pipelines.adoptedAtOnce > 0 && background->missing() == 0 &&
-                                          !background->progress().error));
-    });
+    }
+    return reasons;
 }
 
 }  // namespace
@@ -348,9 +376,19 @@ PackageProgress progressOf(const PackageUser& state) {
         const auto& background = state.next->pipelines.background;
         progress.pending = true;
         progress.missing = background ? background->missing() : 0;
-        progress.ready = isReplacementReady(state);
+        progress.waitsFor = reasonsToWait(state);
+        progress.ready = progress.waitsFor.empty();
     }
     return progress;
+}
+
+void withdraw(PackageUser& state) {
+    for (PackageUser* const user : usersWith(state)) {
+        if (user->next && user->passes() == state.passes()) {
+            giveUp(*user);
+            pauseBackground(*user, false);
+        }
+    }
 }
 
 bool joinReplacement(PackageUser& state) {
@@ -375,7 +413,7 @@ bool joinReplacement(PackageUser& state) {
             }
         }
     }
-    return isReplacementReady(state);
+    return reasonsToWait(state).empty();
 }
 
 void switchPackage(PackageUser& state, VkCommandBuffer commands) {

@@ -122,6 +122,8 @@ void leave(PackageUser& user);
 // need a package of the same compilation, for which this one waits.
 Result<PackageReplacement> beginReplacement(PackageUser& user, const std::shared_ptr<const Package>& package);
 PackageProgress progressOf(const PackageUser& user);
+// Gives up the package that waits, of all users whose packages have the same passes.
+void withdraw(PackageUser& user);
 // Lets the package wait for users that were made after replacePackage(), too, and returns whether it is
 // ready. If a pipeline could not be made, gives the package up.
 bool joinReplacement(PackageUser& user);

@@ -22,6 +22,15 @@ Diagnostic otherScene(std::string where, std::string what) {
         "same attributes and textures");
 }
 
+// The structures of a scene that is not edited have the alpha and the sides of materials, and its lists of
+// emitters their light. To make these anew would take vertices, which such a scene does not keep.
+Diagnostic needsEditable(std::string where, std::string what) {
+    return makeError(
+        "scene-package", std::move(where), std::move(what),
+        "upload the scene with SceneView::editable, so that it keeps what such a change needs, or "
+        "upload it anew with this package");
+}
+
 std::string placeOfEntry(const package::PrimitiveEntry& entry) {
     return "mesh " + std::to_string(entry.mesh) + ", primitive " + std::to_string(entry.primitive);
 }
@@ -121,13 +130,13 @@ Status checkPrimitives(const GpuScene::State& scene, const Package& package, con
             continue;
         }
         if (before.geometryFlags != after.geometryFlags) {
-            return otherScene(placeOfEntry(before),
-                              "the primitive's material is now tested for alpha, double-sided, a light or "
-                              "passed by light where it was not, or the other way round");
+            return needsEditable(placeOfEntry(before),
+                                 "the primitive's material is now tested for alpha, double-sided, a light or "
+                                 "passed by light where it was not, or the other way round");
         }
         if (now.emission && before.materialIndex != after.materialIndex) {
-            return otherScene(placeOfEntry(before),
-                              "the primitive has another material, and triangles are lights");
+            return needsEditable(placeOfEntry(before),
+                                 "the primitive has another material, and triangles are lights");
         }
     }
     Status status = okStatus();
@@ -154,14 +163,14 @@ Status checkEmission(const GpuScene::State& scene, const Package& package, const
         return okStatus();
     }
     if (now.emission.has_value() != (emission != nullptr)) {
-        return otherScene(now.scene, "one of the packages takes emissive triangles as lights");
+        return needsEditable(now.scene, "one of the packages takes emissive triangles as lights");
     }
     if (emission != nullptr &&
         (!isReadAlike(*now.emission, *emission) || now.emissions != emissionsOf(package, known))) {
-        return otherScene(now.scene, "a material's emission changed, and emissive triangles are lights");
+        return needsEditable(now.scene, "a material's emission changed, and emissive triangles are lights");
     }
     if (package.lightSamples() > 0 && !now.lightTree && !scene.store->keeps()) {
-        return otherScene(now.scene, "the package chooses lights by a hierarchy, which was not built");
+        return needsEditable(now.scene, "the package chooses lights by a hierarchy, which was not built");
     }
     return okStatus();
 }

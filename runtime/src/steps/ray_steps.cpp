@@ -362,6 +362,10 @@ PackageProgress RaySteps::replacementProgress() const {
     return progressOf(*state_);
 }
 
+void RaySteps::withdrawPackage() {
+    withdraw(*state_);
+}
+
 Status RaySteps::setLayout(VkPipelineLayout layout, VkShaderStageFlags pushStages) try {
     GLINT_TRY_DO(checkLayout(layout));
     return replaceLayout(*state_, {{}, layout, pushStages});

@@ -96,12 +96,42 @@ vec3 traceShadow(Hit hit, SurfaceShadow ray, inout ShadowCounts counts) {
 
 const uint kFirstShadowRays = GLINT_FIRST_SHADOW_RAYS;
 
+// A shadow ray of a first hit in memory. It sees what stops a ray to a light, or what stops one of a lobe.
+struct WaitingShadow {
+    vec3 direction;
+    uint distance31_sees1;  // a distance has no sign: kShadowOfLight or kShadowOfShared stands there
+    vec3 light;
+#if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
+    vec3 pastGlass;
+#endif
+};
+
 // The rays of a round: first those of all pixels of a band with the lowest numbers, then those with the next ones.
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer FirstShadowArray { SurfaceShadow data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer FirstShadowArray { WaitingShadow data[]; };
 
 // Returns the place of a ray of the round.
 uint firstShadowPlace(uint pixelOfBand, uint ray) {
     return ray * GLINT_FRAME.width * (GLINT_FRAME.endRow - GLINT_FRAME.firstRow) + pixelOfBand;
+}
+
+void storeWaiting(uint place, SurfaceShadow ray) {
+    uint distance = floatBitsToUint(ray.distance) | ray.sees << 31u;
+#if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
+    WaitingShadow waiting = WaitingShadow(ray.direction, distance, ray.light, ray.pastGlass);
+#else
+    WaitingShadow waiting = WaitingShadow(ray.direction, distance, ray.light);
+#endif
+    FirstShadowArray(GLINT_FRAME.shadows).data[place] = waiting;
+}
+
+SurfaceShadow waitingShadow(uint place) {
+    WaitingShadow waiting = FirstShadowArray(GLINT_FRAME.shadows).data[place];
+    SurfaceShadow ray = surfaceShadow(waiting.direction, uintBitsToFloat(waiting.distance31_sees1 & 0x7FFFFFFFu),
+                                      waiting.light, waiting.distance31_sees1 >> 31u);
+#if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
+    ray.pastGlass = waiting.pastGlass;
+#endif
+    return ray;
 }
 
 // All rays wait for a pass of their own (first/first_shadows.comp), so that the code of a material and that of a
@@ -114,8 +144,7 @@ vec3 traceWaiting(Hit hit, ShadowCounts counts) {
 vec3 sendShadow(Hit hit, SurfaceShadow ray, inout ShadowCounts counts) {
     uint place = counts.rays - kFirstShadowRays * pushed.shadowRound;
     if (place < kFirstShadowRays) {
-        FirstShadowArray(GLINT_FRAME.shadows)
-            .data[firstShadowPlace(hit.target - GLINT_FRAME.bandFirst, place)] = ray;
+        storeWaiting(firstShadowPlace(hit.target - GLINT_FRAME.bandFirst, place), ray);
     }
     counts.rays += 1u;
     return vec3(0.0);

@@ -168,7 +168,7 @@ private:
             GLINT_TRY(report_.pipelines.statistics, renderer_->pipelineStatistics());
         }
         report_.memory = {renderer_->memory(), device_.gpu->memory(), report_.footprint.allocatedBytes,
-                          device_.gpu->allocatedBytes()};
+                          device_.gpu->allocatedBytes(), renderer_->bands()};
         report_.hasDetails = !setup_.arguments.stats.empty();
         report_.countsLight = options_.countsLight;
         report_.traffic.shape = trafficShape(package, options_);

@@ -219,6 +219,7 @@ static base::Fields fieldsOf(const EffectCounters*) {
             output<&T::misses>("misses", "Rays that met nothing."),
             output<&T::segments>("segments", "Rays from one interface to the next, for refraction."),
             output<&T::screenHits>("screenHits", "Hits that were found in screen space instead of by a ray."),
+            output<&T::waited>("waited", "Those of the rays that waited in memory (--first-shadows)."),
             output<cli::skippedOf>(
                 "skipped",
                 "Rays that were not sent, by pixel, or by light and pixel: no surface (sky), unlit, "
@@ -315,6 +316,8 @@ base::Fields fieldsOf(const MemoryReport*) {
         output<&T::frame>("frame", "Every image and buffer of the footprint."),
         output("frameBytes", "Sum of these sizes.", [](const T& memory) { return bytesOf(memory.frame); }),
         output<&T::frameAllocatedBytes>("frameAllocatedBytes", "Size of the allocations that hold them."),
+        output<&T::bands>("bands",
+                          "Bands of rows that are lit one after the other in this memory (--bands)."),
         output<&T::scene>("scene", "Images and buffers of the scene."),
         output("sceneBytes", "Sum of these sizes.", [](const T& memory) { return bytesOf(memory.scene); }),
         output<&T::sceneAllocatedBytes>("sceneAllocatedBytes", "Size of the allocations that hold them."),
@@ -416,16 +419,19 @@ std::vector<base::Field> sceneStatistics() {
 std::vector<base::Field> counters() {
     using C = FrameCounters;
     constexpr auto kAt = &RenderReport::counters;
-    return {output<kAt, &C::rays>("rays", "Number of rays of all effects whose hits are shaded."),
-            output<kAt, &C::raysOfBounces>("raysOfBounces", "Rays by bounce, those of the effects first."),
-            output<kAt, &C::shadowRays>("shadowRays", "Number of deferred shadow rays of hits."),
-            output<kAt, &C::orderErrors>("orderErrors", "Hits lost, doubled or misplaced."),
-            output<kAt, &C::unknownShader>("unknownShader", "Number of hits whose shader no case has."),
-            output<kAt, &C::alphaTests>("alphaTests", "Candidates of rays whose alpha was tested."),
-            output<kAt, &C::nonFinite>("nonFinite", "Samples that were NaN or infinite."),
-            output<kAt, &C::pixelCounts>(
-                "pixels", "Pixels without a surface, then pixels by the shader ID of what they see."),
-            output<kAt, &C::bucketCounts>("buckets", "Misses, then hits by shader ID.")};
+    return {
+        output<kAt, &C::rays>("rays", "Number of rays of all effects whose hits are shaded."),
+        output<kAt, &C::raysOfBounces>("raysOfBounces", "Rays by bounce, those of the effects first."),
+        output<kAt, &C::shadowRays>("shadowRays", "Number of deferred shadow rays of hits."),
+        output<kAt, &C::shadowRounds>(
+            "shadowRounds", "Rounds in which the shadow rays of first hits were traced; 0 if none waits."),
+        output<kAt, &C::orderErrors>("orderErrors", "Hits lost, doubled or misplaced."),
+        output<kAt, &C::unknownShader>("unknownShader", "Number of hits whose shader no case has."),
+        output<kAt, &C::alphaTests>("alphaTests", "Candidates of rays whose alpha was tested."),
+        output<kAt, &C::nonFinite>("nonFinite", "Samples that were NaN or infinite."),
+        output<kAt, &C::pixelCounts>(
+            "pixels", "Pixels without a surface, then pixels by the shader ID of what they see."),
+        output<kAt, &C::bucketCounts>("buckets", "Misses, then hits by shader ID.")};
 }
 
 }  // namespace
@@ -504,6 +510,8 @@ TextureReport textureReport(std::span<const ImageView> images) {
 std::string toText(const RenderReport& report, Detail detail) {
     const GpuScene::Statistics& scene = report.sceneStatistics;
     const FrameCounters& counters = report.counters;
+    const double bytesOfPixel = static_cast<double>(report.footprint.bytes) /
+                                std::max(static_cast<double>(report.width) * report.height, 1.0);
     Rows rows{
         {"image",
          fmt::format("{}, {} x {}, {} spp", filesOf(report), report.width, report.height, report.samples)},
@@ -544,9 +552,18 @@ std::string toText(const RenderReport& report, Detail detail) {
     if (counters.raysOfBounces.size() > 1) {
         rows.push_back({"rays by bounce", fmt::format("{}", fmt::join(counters.raysOfBounces, ", "))});
     }
+    if (counters.shadowRounds > 1) {
+        rows.push_back(
+            {"shadow rounds",
+             fmt::format("{}, and each after the first shades pixels again: --lights K chooses among "
+                         "the lights, and --first-shadows inline needs no rounds",
+                         counters.shadowRounds)});
+    }
     rows.push_back(
-        {"memory", fmt::format("{} in {} images and {} buffers", formatBytes(report.footprint.bytes),
-                               report.footprint.images, report.footprint.buffers)});
+        {"memory",
+         fmt::format("{} in {} images and {} buffers, {:.1f} bytes a pixel, in {} band{}",
+                     formatBytes(report.footprint.bytes), report.footprint.images, report.footprint.buffers,
+                     bytesOfPixel, report.memory.bands, report.memory.bands == 1 ? "" : "s")});
     rows.push_back({"bytes moved", summaryOf(report.traffic)});
     if (report.textures.images > 0) {
         rows.push_back({"textures", toText(report.textures)});

@@ -62,6 +62,7 @@ struct MemoryReport {
     std::vector<MemoryItem> scene;
     std::uint64_t frameAllocatedBytes = 0;
     std::uint64_t sceneAllocatedBytes = 0;
+    std::uint32_t bands = 1;  // that share the memory of a frame
 };
 
 base::Fields fieldsOf(const MemoryReport*);

@@ -24,13 +24,16 @@ struct RendererOptions;
 // The unit for which a pass moves bytes.
 enum class TrafficUnit : std::uint32_t {
     Pixel,
-    Sample,      // a pixel and an effect that sends rays
-    Sent,        // a sample that sends a ray, or whose light is found without the list
-    Ray,         // a ray of a list
-    Hit,         // a ray of a list that hits, where hits are ordered
-    Miss,        // one that leaves the scene
-    FurtherRay,  // a ray of a path's second bounce or a later one
-    ShadowRay,   // a deferred one
+    Sample,          // a pixel and an effect that sends rays
+    Sent,            // a sample that sends a ray, or whose light is found without the list
+    Ray,             // a ray of a list
+    Hit,             // a ray of a list that hits, where hits are ordered
+    Miss,            // one that leaves the scene
+    FurtherRay,      // a ray of a path's second bounce or a later one
+    ShadowRay,       // a deferred one
+    Surface,         // a pixel that sees a surface
+    FirstShadowRay,  // a shadow ray of a first hit that waits in memory
+    ShadowRound,     // a pixel and a round of such rays after the first
 };
 inline constexpr Named<TrafficUnit> kTrafficUnitNames[] = {
     {TrafficUnit::Pixel, "pixel", ""},
@@ -41,6 +44,9 @@ inline constexpr Named<TrafficUnit> kTrafficUnitNames[] = {
     {TrafficUnit::Miss, "miss", "a ray of a list that leaves the scene"},
     {TrafficUnit::FurtherRay, "further-ray", "a ray of a path's second bounce or a later one"},
     {TrafficUnit::ShadowRay, "shadow-ray", "a deferred shadow ray"},
+    {TrafficUnit::Surface, "surface", "a pixel that sees a surface"},
+    {TrafficUnit::FirstShadowRay, "first-shadow-ray", "a shadow ray of a first hit that waits in memory"},
+    {TrafficUnit::ShadowRound, "shadow-round", "a pixel and a round of such rays after the first"},
 };
 constexpr std::span<const Named<TrafficUnit>> namesOf(TrafficUnit /*type*/) {
     return kTrafficUnitNames;
@@ -59,7 +65,8 @@ struct TrafficShape {
     bool emissiveLights = false;
     bool skyLight = false;
     bool deferredShadows = false;
-    bool accumulates = false;  // the frame adds its sample to a mean
+    std::uint32_t firstShadowBytes = 0;  // of a shadow ray of a first hit; 0: none waits
+    bool accumulates = false;            // the frame adds its sample to a mean
     bool halfPicture = false;
     bool marchesScreen = false;
     bool binsRays = false;
@@ -91,6 +98,7 @@ struct TrafficCounts {
         return of[static_cast<std::size_t>(unit)];
     }
 };
+// Shadow rays of first hits are counted with RendererOptions::countsLight.
 TrafficCounts trafficCounts(const FrameCounters& counters, const TrafficShape& shape, double pixels);
 
 // The sum of the rows.
