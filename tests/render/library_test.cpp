@@ -361,6 +361,7 @@ TEST(LibraryFiles, CompileInAShaderOfAUser) {
 // Sums the lights of a wall as a host does: all of them, and all but the first.
 constexpr const char* kLightLoop = R"(#version 460
 const uint kTestMaterials = 1u;
+#define GLINT_TEST_WITHOUT_TEXTURES
 #include "library.glsl"
 #include "library_host.glsl"
 

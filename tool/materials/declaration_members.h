@@ -84,29 +84,29 @@ constexpr std::uint32_t placeBit(Place place) {
     return 1U << static_cast<unsigned>(place);
 }
 
-// The roles, and what may have them. Glint's own code asks for roles, and so knows no name of a declaration.
+// What may have a role. Glint's own code asks for roles, and so knows no name of a declaration.
 struct NamedRole {
-    std::string_view name;
     package::Role role;
     std::uint32_t places;
     std::string_view type = "";  // of the parameter
+    std::string_view name = nameOf(role);
 };
 inline constexpr NamedRole kRoles[] = {
-    {"baseColor", package::Role::BaseColor, placeBit(Place::Parameter) | placeBit(Place::Texture), "vec4"},
-    {"alphaCutoff", package::Role::AlphaCutoff, placeBit(Place::Parameter), "float"},
-    {"emission", package::Role::Emission, placeBit(Place::Parameter) | placeBit(Place::Texture), "color"},
-    {"emissionStrength", package::Role::EmissionStrength, placeBit(Place::Parameter), "float"},
-    {"tangentFrame", package::Role::TangentFrame, placeBit(Place::Texture)},
-    {"alphaTest", package::Role::AlphaTest, placeBit(Place::Feature)},
-    {"emits", package::Role::Emits, placeBit(Place::Feature)},
-    {"normals", package::Role::Normals, placeBit(Place::Feature)},
-    {"tangents", package::Role::Tangents, placeBit(Place::Feature)},
-    {"texCoord0", package::Role::TexCoord0, placeBit(Place::Feature)},
-    {"texCoord1", package::Role::TexCoord1, placeBit(Place::Feature)},
-    {"textureTransform", package::Role::TextureTransform, placeBit(Place::Feature)},
-    {"turnedFrames", package::Role::TurnedFrames, placeBit(Place::Feature)},
-    {"vertexColor", package::Role::VertexColor, placeBit(Place::Feature)},
-    {"doubleSided", package::Role::DoubleSided, placeBit(Place::Feature)},
+    {package::Role::BaseColor, placeBit(Place::Parameter) | placeBit(Place::Texture), "vec4"},
+    {package::Role::AlphaCutoff, placeBit(Place::Parameter), "float"},
+    {package::Role::Emission, placeBit(Place::Parameter) | placeBit(Place::Texture), "color"},
+    {package::Role::EmissionStrength, placeBit(Place::Parameter), "float"},
+    {package::Role::TangentFrame, placeBit(Place::Texture)},
+    {package::Role::AlphaTest, placeBit(Place::Feature)},
+    {package::Role::Emits, placeBit(Place::Feature)},
+    {package::Role::Normals, placeBit(Place::Feature)},
+    {package::Role::Tangents, placeBit(Place::Feature)},
+    {package::Role::TexCoord0, placeBit(Place::Feature)},
+    {package::Role::TexCoord1, placeBit(Place::Feature)},
+    {package::Role::TextureTransform, placeBit(Place::Feature)},
+    {package::Role::TurnedFrames, placeBit(Place::Feature)},
+    {package::Role::VertexColor, placeBit(Place::Feature)},
+    {package::Role::DoubleSided, placeBit(Place::Feature)},
 };
 static_assert(std::size(kRoles) + 1 == static_cast<std::size_t>(package::Role::Count));
 

@@ -369,19 +369,6 @@ int ModelBuilder::featureNamed(const std::string& name, const std::string& where
     return found;
 }
 
-std::string fieldMacro(std::string_view name) {
-    std::string text;
-    for (const char c : name) {
-        text += std::isupper(static_cast<unsigned char>(c)) != 0 ? "_" : "";
-        text += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    }
-    return text;
-}
-
-std::string roleMacro(package::Role role) {
-    return "GLINT_ROLE_" + fieldMacro(std::ranges::find(kRoles, role, &NamedRole::role)->name);
-}
-
 namespace {
 
 // Returns what `make` does, or the fault that it throws.

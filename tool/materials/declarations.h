@@ -31,11 +31,6 @@ Result<ParsedDeclarations> parseDeclarations(std::span<const DeclarationFile> fi
 Result<MaterialModel> readDeclarations(ParsedDeclarations files);
 Result<MaterialModel> readDeclarations(std::span<const DeclarationFile> files);
 
-// Returns a field's part of the names of macros: "CLEARCOAT_ROUGHNESS_FACTOR" of "clearcoatRoughnessFactor".
-std::string fieldMacro(std::string_view name);
-// Returns the beginning of the macros of a role: "GLINT_ROLE_BASE_COLOR".
-std::string roleMacro(package::Role role);
-
 // --- Packs: material features of a user's own, beside those that Glint has ---
 
 // Returns the files of the packs in `folders`: each folder's own declarations (.json) and GLSL (.glsl), and

@@ -1,7 +1,5 @@
 #include "materials/material_model.h"
 
-#include "materials/declarations.h"
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -476,6 +474,19 @@ int MaterialModel::symbolOfAttribute(int attribute) const {
 
 int MaterialModel::symbolOfPair(int pair) const {
     return symbolOfAttribute(static_cast<int>(attributes.size())) + pair;
+}
+
+std::string fieldMacro(std::string_view name) {
+    std::string text;
+    for (const char c : name) {
+        text += std::isupper(static_cast<unsigned char>(c)) != 0 ? "_" : "";
+        text += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    }
+    return text;
+}
+
+std::string roleMacro(package::Role role) {
+    return "GLINT_ROLE_" + fieldMacro(nameOf(role));
 }
 
 }  // namespace glint::materials

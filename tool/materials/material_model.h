@@ -587,6 +587,32 @@ private:
 std::string fullName(std::string_view scope, std::string_view name);
 // Returns "ToonEdge" of "toonEdge".
 std::string capitalized(std::string_view name);
+// Returns a field's part of the names of macros: "CLEARCOAT_ROUGHNESS_FACTOR" of "clearcoatRoughnessFactor".
+std::string fieldMacro(std::string_view name);
+
+// The names of roles in declarations, by package::Role.
+inline constexpr std::array<std::string_view, static_cast<std::size_t>(package::Role::Count)> kRoleNames{
+    "",
+    "baseColor",
+    "alphaCutoff",
+    "emission",
+    "emissionStrength",
+    "tangentFrame",
+    "alphaTest",
+    "emits",
+    "normals",
+    "tangents",
+    "texCoord0",
+    "texCoord1",
+    "textureTransform",
+    "turnedFrames",
+    "vertexColor",
+    "doubleSided"};
+constexpr std::string_view nameOf(package::Role role) {
+    return kRoleNames[static_cast<std::size_t>(role)];
+}
+// Returns the beginning of the macros of a role: "GLINT_ROLE_BASE_COLOR".
+std::string roleMacro(package::Role role);
 
 // The model of glTF's core and of the extensions that Glint shades. It is read once, from the declarations
 // that are embedded in the library, and lives as long as the program.

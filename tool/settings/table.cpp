@@ -502,8 +502,8 @@ std::span<const Descriptor> settingsTable() {
             {.bench = kNoPicture, .document = "memory.md#the-picture"}),
         row("bands", kOfRender, Renderer, kEffectOptions,
             "light the picture in N bands of rows, one after the other: less memory, more dispatches; 0: "
-            "as many as keep a frame of 1920 x 1080 within 64 bytes a pixel, and 16 more for each effect "
-            "with rays beyond the first; off discrete GPUs, bands of at most 2^19 pixels",
+            "one on a discrete GPU, elsewhere bands of at most 2^19 pixels, and as many as keep a frame of "
+            "1920 x 1080 within 64 bytes a pixel, and 16 more for each effect with rays beyond the first",
             number<&Settings::renderer, &RendererOptions::bands>(0, 1024),
             {.bench = changesTime(withoutRays, "1 4"), .document = "memory.md#bands"}),
         row("compress-textures", kOfRender, Scene, kPicture,

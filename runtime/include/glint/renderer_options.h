@@ -54,10 +54,10 @@ struct RendererOptions {
     bool screenMarch = false;
     // Lights the frame in that many bands of rows, one after the other. Samples, rays and hits then take
     // memory for one band only. The picture is the same; each band takes passes of its own. 0 chooses the
-    // number: the fewest bands with which their buffers take at most 40 bytes for each pixel of the frame,
-    // and 16 more for each effect with rays beyond the first. Bands then have at least 2^18 pixels, and their
-    // number keeps the passes of a frame few. Devices other than discrete GPUs have bands of at most
-    // kPixelsOfBand pixels. Renderer::bands() says how many there are.
+    // number: one band on discrete GPUs, where bands cost time; elsewhere bands of at most kPixelsOfBand
+    // pixels, and so many that their buffers take at most 40 bytes for each pixel of the frame, and 16 more
+    // for each effect with rays beyond the first, as long as bands have 2^18 pixels and a frame's passes stay
+    // few. Renderer::bands() says how many there are.
     std::uint32_t bands = 0;
     // The most bounces of a path in this renderer's frames, from 1 to the number that the package was
     // compiled for (PackageShape::maxBounces). With 1, the hits of the effects' rays send no further rays.

@@ -19,12 +19,6 @@
 
 namespace glint {
 
-// What decides the number of bands.
-struct BandChoice {
-    std::uint32_t wanted = 0;      // RendererOptions::bands
-    std::uint64_t mostPixels = 0;  // of a band, if no number is wanted; 0: any number
-};
-
 // The choice among a package's modules that a renderer runs. Each field is one value, not a set.
 struct PipelineChoice {
     package::Strategy strategy = package::kDefaultStrategy;
@@ -33,7 +27,7 @@ struct PipelineChoice {
     bool checksOrder = false;
     bool batchEffects = false;
     std::uint32_t bounces = 1;  // the most of a path
-    BandChoice bands;
+    std::uint32_t bands = 1;    // 0: chosen for the frame
     // Pipelines with shaders of cases are made later, by threads; until then a fallback replaces them.
     bool background = false;
     // Frames begin with a draft. Requires `background`.

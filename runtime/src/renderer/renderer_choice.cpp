@@ -148,9 +148,9 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
     choice.batchEffects = options.batchEffects;
     choice.halfPicture = hasHalfPicture(package, options);
     choice.countsLight = options.countsLight;
-    // A GPU with memory of its own has no more bands than its frames need: they cost time (docs/memory.md).
+    // Bands cost a GPU with memory of its own a fifth to a half of its time (docs/memory.md).
     const bool isDiscrete = context.limits.deviceType == VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
-    choice.bands = {options.bands, isDiscrete ? 0 : kPixelsOfBand};
+    choice.bands = options.bands == 0 && isDiscrete ? 1 : options.bands;
     GLINT_TRY_DO(checkOrdering(context.limits, choice.ordering, package.bucketCount()));
     return choice;
 }
@@ -174,13 +174,13 @@ std::uint32_t rowsOf(const FrameSize& size, std::uint64_t bands) {
 }
 
 // Returns the fewest bands whose buffers are small enough.
-std::uint64_t chooseBands(FrameSize size, std::uint64_t mostPixels) {
+std::uint64_t chooseBands(FrameSize size) {
     const std::uint64_t pixels = std::uint64_t{size.width} * size.height;
     const std::uint64_t effects = std::max(size.sampleCount, 1U) - 1;
     const VkDeviceSize most = imageBytes(size) + (kBufferBytes + kBufferBytesOfEffect * effects) * pixels;
     const std::uint64_t ofCases = std::max(kCasesOfBands / size.bucketCount, 1U);
     const std::uint64_t last = std::min(pixels / kLeastPixelsOfBand, ofCases);
-    std::uint64_t bands = mostPixels > 0 ? std::min((pixels + mostPixels - 1) / mostPixels, ofCases) : 1;
+    std::uint64_t bands = std::min((pixels + kPixelsOfBand - 1) / kPixelsOfBand, ofCases);
     for (size.bandRows = rowsOf(size, bands); bands < last && frameBytes(size) > most;) {
         ++bands;
         size.bandRows = rowsOf(size, bands);
@@ -190,13 +190,13 @@ std::uint64_t chooseBands(FrameSize size, std::uint64_t mostPixels) {
 
 }  // namespace
 
-std::uint32_t chooseBandRows(const FrameSize& size, const BandChoice& choice) {
+std::uint32_t chooseBandRows(const FrameSize& size, std::uint32_t bands) {
     const bool isEmpty = size.width == 0 || size.height == 0;  // an error that checkFrameSize() reports
     const bool hasNothing = size.sampleCount == 0 && size.firstShadowBytes == 0;
     if (isEmpty || size.hostRays || hasNothing || size.marchesScreen) {
         return 0;
     }
-    return rowsOf(size, choice.wanted > 0 ? choice.wanted : chooseBands(size, choice.mostPixels));
+    return rowsOf(size, bands > 0 ? bands : chooseBands(size));
 }
 
 std::uint32_t firstShadowBytes(const Package& package) {

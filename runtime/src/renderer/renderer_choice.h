@@ -18,7 +18,7 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
                                        const RendererOptions& options);
 
 // Returns the rows of a band, or 0 for a frame that is lit as a whole. Pure.
-std::uint32_t chooseBandRows(const FrameSize& size, const BandChoice& choice);
+std::uint32_t chooseBandRows(const FrameSize& size, std::uint32_t bands);
 
 // Returns the bytes of a shadow ray of a first hit that waits in memory; 0 if they are traced inline.
 std::uint32_t firstShadowBytes(const Package& package);

@@ -60,6 +60,7 @@ vec4 glintHostTexture(const uint textureIndex, const uint samplerIndex, const ve
 }
 
 vec3 glintHostTextureFilter(const uint textureIndex, const uint samplerIndex) {
+#ifndef GLINT_TEST_WITHOUT_TEXTURES
     for (uint m = 0u; m < kTestMaterials; ++m) {
         for (uint i = 0u; i < GLINT_FRAME.materials.data[m].textures.length(); ++i) {
             TextureRecord record = GLINT_FRAME.materials.data[m].textures[i];
@@ -68,6 +69,7 @@ vec3 glintHostTextureFilter(const uint textureIndex, const uint samplerIndex) {
             }
         }
     }
+#endif
     return vec3(0.0);
 }
 
