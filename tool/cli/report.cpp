@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cstddef>
+#include <iterator>
 
 namespace glint {
 
@@ -180,18 +182,26 @@ std::vector<StrategyTraffic> trafficOf(const Package& package) {
 }
 
 std::string trafficTable(const Package& package) {
-    std::vector<std::string> header{"bytes moved for each"};
+    // By column, which those of units that no strategy has are not.
+    std::vector<std::vector<std::string>> columns{{"bytes moved for each"}};
+    std::array<bool, std::size(kTrafficUnitNames)> isMoved{};
     for (const Named<TrafficUnit>& unit : kTrafficUnitNames) {
-        header.emplace_back(unit.name);
+        columns.push_back({std::string(unit.name)});
     }
-    Rows rows{std::move(header)};
     forEachStrategy(package, [&](const package::StrategyInfo& info) {
-        std::vector<std::string>& row = rows.emplace_back();
-        row.emplace_back(info.name);
-        for (const std::uint32_t bytes : bytesByUnit(trafficRows(shapeOf(package, info.strategy)))) {
-            row.push_back(bytes > 0 ? fmt::format("{}", bytes) : "-");
+        columns.front().emplace_back(info.name);
+        const auto bytes = bytesByUnit(trafficRows(shapeOf(package, info.strategy)));
+        for (std::size_t i = 0; i < isMoved.size(); ++i) {
+            columns[i + 1].push_back(bytes[i] > 0 ? fmt::format("{}", bytes[i]) : "-");
+            isMoved[i] = isMoved[i] || bytes[i] > 0;
         }
     });
+    Rows rows(columns.front().size());
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        for (std::size_t row = 0; row < rows.size() && (i == 0 || isMoved[i - 1]); ++row) {
+            rows[row].push_back(columns[i][row]);
+        }
+    }
     return formatTable(rows);
 }
 
