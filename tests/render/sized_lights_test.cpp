@@ -417,7 +417,7 @@ TEST(FoundLights, AutoDecidesByBouncesEffectsAndSizes) {
     const auto finds = [&] {
         const auto plan = compiler::planPackage({&scene, 1}, settings);
         return plan && std::ranges::any_of(plan->modules, [](const compiler::PlannedModule& module) {
-                   return module.text.find("lightsOnRay(") != std::string::npos;
+                   return module.text.find("lobesFind(") != std::string::npos;
                });
     };
     EXPECT_FALSE(finds()) << "without a size";

@@ -3,8 +3,10 @@
 
 #include "base/builtin_file.h"
 
+#include <memory>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace glint::materials {
 
@@ -13,6 +15,10 @@ struct DeclarationFile {
     std::string_view text;
     bool isOfPack = false;  // of a user's own; its features and effects have bits after those of Glint's own
 };
+
+struct ParsedDeclaration;
+// Declarations that several models have.
+using ParsedDeclarations = std::vector<std::shared_ptr<const ParsedDeclaration>>;
 
 // Returns the declarations of shaders/materials and shaders/effects ("materials/sheen/sheen.json"). They have
 // static storage.

@@ -17,10 +17,6 @@
 
 namespace glint::materials {
 
-struct ParsedDeclaration;
-// Declarations that several models have.
-using ParsedDeclarations = std::vector<std::shared_ptr<const ParsedDeclaration>>;
-
 // Reads what each file says by itself. Error "declaration": a file is no JSON, or has unknown or missing
 // members; the place is file#/json/pointer.
 Result<ParsedDeclarations> parseDeclarations(std::span<const DeclarationFile> files);

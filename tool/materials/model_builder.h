@@ -2,7 +2,6 @@
 #pragma once
 
 #include "materials/declaration_json.h"
-#include "materials/declarations.h"
 #include "materials/material_model.h"
 
 #include <cstddef>
