@@ -111,6 +111,20 @@ TEST(DecidedGlsl, ChangedMacrosDecideNothing) {
     EXPECT_EQ(cutDecided(doubtful), doubtful);
 }
 
+// A branch that is in doubt begins what stays of a conditional.
+TEST(DecidedGlsl, ConditionalsKeepWhatIsInDoubt) {
+    EXPECT_EQ(cutDecided(
+                  "#define A 2\n#if A == 1\na\n#elif defined(OTHER)\nb\n#elif A == 2\nc\n#else\nd\n#endif\n"),
+              "#define A 2\n#if defined(OTHER)\nb\n#elif A == 2\nc\n#else\nd\n#endif\n");
+    EXPECT_EQ(cutDecided("#define A 2\n#if A == 1\na\n#elif A == 2\nb\n#elif defined(OTHER)\nc\n#endif\n"),
+              "#define A 2\nb\n");
+    const std::string doubtful = "#ifdef OTHER\n#define GLINT_B\n#endif\n#ifdef GLINT_B\nb\n#endif\n";
+    EXPECT_EQ(cutDecided(doubtful), doubtful);
+    EXPECT_EQ(cutDecided("#ifdef GLINT_B\na\n#else\nb\n#endif\n"), "b\n");
+    EXPECT_EQ(cutDecided("#define A 0\n#if A\n#if OTHER\na\n#elif A\nb\n#endif\n#endif\nc\n"),
+              "#define A 0\nc\n");
+}
+
 TEST(DecidedGlsl, LinesKeepTheirPlaces) {
     const GlslUnit unit = compiler::cutDecided(testing::makeUnit(
         "#define A 1\n#if A == 1\nvoid f() {\n    if (A != 1)\n        g();\n    h();\n}\n#endif\n",

@@ -22,13 +22,8 @@ namespace {
 constexpr std::string_view kOwnPrefix = "GLINT_";
 constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
-// Evaluates the condition of a directive. Returns nothing if the text alone does not decide it.
-std::optional<bool> evaluate(const Macros& macros, std::string_view word, std::string_view condition) {
-    if (word == "ifdef" || word == "ifndef") {
-        const std::string_view name = nameIn(condition);
-        return name.starts_with(kOwnPrefix) ? std::optional(macros.has(name) == (word == "ifdef"))
-                                            : std::nullopt;
-    }
+// Returns whether a condition holds. Returns nothing if the text alone does not decide it.
+std::optional<bool> evaluate(const Macros& macros, std::string_view condition) {
     const std::optional<std::uint32_t> value = macros.evaluate(condition);
     return value ? std::optional(*value != 0) : std::nullopt;
 }
@@ -45,12 +40,14 @@ class Conditionals {
 public:
     explicit Conditionals(Macros& macros) : macros_(macros) {}
 
-    // Takes a line, with those that continue it. Returns false if it is to be dropped.
-    bool keep(std::string_view line) {
+    enum class Fate { Goes, Stays, BeginsWithIf };  // BeginsWithIf: an #elif, before which nothing stays
+
+    // Takes a line, with those that continue it.
+    Fate take(std::string_view line) {
         const Directive directive = parseDirective(line);
         const std::string_view word = directive.word;
         if (word == "if" || word == "ifdef" || word == "ifndef") {
-            return begin(directive);
+            return begin(directive) ? Fate::Stays : Fate::Goes;
         }
         if (!open_.empty() && (word == "else" || word == "elif")) {
             return next(directive);
@@ -58,15 +55,15 @@ public:
         if (!open_.empty() && word == "endif") {
             const bool decided = open_.back().decided;
             open_.pop_back();
-            return !decided && isActive();
+            return !decided && isActive() ? Fate::Stays : Fate::Goes;
         }
         if (!isActive()) {
-            return false;
+            return Fate::Goes;
         }
         if (word == "define" || word == "undef") {
             takeMacro(directive);
         }
-        return true;
+        return Fate::Stays;
     }
     // Takes a line that declares a constant of the whole text.
     void takeConstant(std::string_view line) {
@@ -97,48 +94,64 @@ public:
 
 private:
     void takeMacro(const Directive& directive) {
-        const std::string_view name = nameIn(directive.argument);
-        const bool isCertain =
-            directive.word == "define" && std::ranges::all_of(open_, &Conditional::decided);
+        const std::string name(nameIn(directive.argument));
+        const bool isCertain = std::ranges::all_of(open_, &Conditional::decided);
         if (macros_.has(name) || !isCertain) {
-            changed_.emplace(name);
+            changed_.insert(name);
         }
         if (isCertain) {
+            doubtful_.erase(name);
+        } else {
+            doubtful_.insert(name);
+        }
+        if (isCertain && directive.word == "define") {
             macros_.define(directive.argument);
         } else {
             macros_.undefine(name);
         }
+    }
+    std::optional<bool> isDefined(std::string_view name) const {
+        const bool isKnown = name.starts_with(kOwnPrefix) && !doubtful_.contains(name);
+        return isKnown ? std::optional(macros_.has(name)) : std::nullopt;
+    }
+    std::optional<bool> holds(const Directive& directive) const {
+        if (directive.word == "if" || directive.word == "elif") {
+            return evaluate(macros_, directive.argument);
+        }
+        const std::optional<bool> defined = isDefined(nameIn(directive.argument));
+        return defined ? std::optional(*defined == (directive.word == "ifdef")) : std::nullopt;
     }
     bool isActive() const {
         return std::ranges::all_of(open_, &Conditional::taken);
     }
     bool begin(const Directive& directive) {
         const bool active = isActive();
-        const std::optional<bool> value =
-            active ? evaluate(macros_, directive.word, directive.argument) : std::optional(false);
+        const std::optional<bool> value = active ? holds(directive) : std::optional(false);
         open_.push_back({value.has_value(), value.value_or(true), value.value_or(false)});
         return active && !value;
     }
-    bool next(const Directive& directive) {
+    Fate next(const Directive& directive) {
         Conditional& current = open_.back();
         if (!current.decided) {
-            return isActive();
+            return isActive() ? Fate::Stays : Fate::Goes;
         }
-        if (current.done) {
-            current.taken = false;
-        } else if (directive.word == "else") {
-            current.taken = true;
-        } else {
-            // After flatten(), an #elif whose #if was decided always has a condition that can be decided too.
-            current.taken = evaluate(macros_, "if", directive.argument).value_or(false);
+        current.taken = true;
+        const std::optional<bool> value = current.done || !isActive() ? std::optional(false)
+                                          : directive.word == "else"  ? std::optional(true)
+                                                                      : holds(directive);
+        if (!value) {
+            current.decided = false;
+            return Fate::BeginsWithIf;
         }
+        current.taken = *value;
         current.done = current.done || current.taken;
-        return false;
+        return Fate::Goes;
     }
 
     Macros& macros_;
     std::vector<Conditional> open_;
     std::set<std::string, std::less<>> changed_;
+    std::set<std::string, std::less<>> doubtful_;  // perhaps defined, perhaps not
 };
 
 // --- Statements ---
@@ -280,7 +293,7 @@ private:
     std::optional<bool> decide(std::string_view condition) {
         const auto [known, isNew] = decided_.emplace(condition, std::nullopt);
         if (isNew) {
-            known->second = evaluate(macros_, "if", condition);
+            known->second = evaluate(macros_, condition);
         }
         return known->second;
     }
@@ -400,10 +413,16 @@ KeptLines keepLines(const GlslUnit& unit, Macros& macros) {
             line = next.ends_with('\\') ? next : std::string_view();
         }
         line = joined.empty() ? unit.line(first) : joined;
-        if (conditionals.keep(line)) {
+        const Conditionals::Fate fate = conditionals.take(line);
+        if (fate != Conditionals::Fate::Goes) {
             conditionals.takeConstant(line);
             for (std::size_t i = first; i < end; ++i) {
-                kept.text += unit.line(i);
+                std::string_view whole = unit.line(i);
+                if (i == first && fate == Conditionals::Fate::BeginsWithIf) {
+                    kept.text += "#";
+                    whole.remove_prefix(whole.find("elif") + 2);
+                }
+                kept.text += whole;
                 kept.text += '\n';
                 kept.places.push_back(i);
             }
