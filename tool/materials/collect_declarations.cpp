@@ -89,7 +89,7 @@ bool ModelBuilder::fills(const Members& members, Place place) const {
         return members.has("is");
     }
     for (const MemberRule& rule : memberRules()) {
-        // What is refused beside "is" is refused beside a role that fills.
+        // A role that fills refuses the members that "is" refuses.
         for (const MemberRow& row : memberRows()) {
             if (rule.place == place && rule.without == "is" && hasWord(rule.members, row.name) &&
                 members.has(row.name)) {

@@ -71,7 +71,7 @@ struct EngineScene::State final : DrawnScene {
     std::array<Records, Count> arrays;
     Retired retired;
     std::uint64_t lastFrame = 0;
-    // Of the last recording.
+    // These are of the last recording.
     struct Counts {
         std::uint32_t lights = 0;
         std::uint32_t emitters = 0;

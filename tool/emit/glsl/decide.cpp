@@ -463,7 +463,7 @@ GlslUnit cutDecided(const GlslUnit& unit) {
             }
         }
         line.append(at, end);
-        // What stays of a line behind a cut stands where the cut began.
+        // The rest of a line behind a cut stands where the cut began.
         if (!isCut || !trim(line).empty()) {
             result.add(line, unit.file(place), unit.number(place));
             line.clear();

@@ -127,7 +127,7 @@ private:
         if (name == "&" && (left == Value(0) || right == Value(0))) {
             return 0;
         }
-        // What compares or divides depends on the sign.
+        // Comparisons and divisions depend on the sign.
         constexpr std::uint32_t kSign = 0x80000000U;
         if (!left || !right) {
             return std::nullopt;
@@ -268,13 +268,7 @@ void Macros::setConstant(std::string_view name, std::uint32_t value) {
 void Macros::expandInto(std::string_view text, std::vector<std::string_view>& active,
                         std::string& result) const {
     while (!text.empty()) {
-        std::size_t length = commentLength(text);
-        while (length == 0 ||
-               (length < text.size() && continuesWord(text[0]) && continuesWord(text[length]))) {
-            ++length;
-        }
-        const std::string_view piece = text.substr(0, length);
-        text.remove_prefix(length);
+        const std::string_view piece = takePiece(text);
         const auto found = startsWord(piece.front()) ? macros_.find(piece) : macros_.end();
         const bool isReplaced = found != macros_.end() &&
                                 std::ranges::find(active, found->first) == active.end() &&

@@ -35,17 +35,23 @@ constexpr bool continuesWord(char c) {
 // Returns the length in bytes of a comment at the start of `text`, or 0 if there is none.
 std::size_t commentLength(std::string_view text);
 
-// Calls `visit` with each piece of `text` in order: a comment, a word or number, or one other character.
+// Removes the first piece of `text`, which is not empty, and returns it: a comment, a word or number, or one
+// other character.
+inline std::string_view takePiece(std::string_view& text) {
+    std::size_t length = commentLength(text);
+    while (length == 0 || (length < text.size() && continuesWord(text[0]) && continuesWord(text[length]))) {
+        ++length;
+    }
+    const std::string_view piece = text.substr(0, length);
+    text.remove_prefix(length);
+    return piece;
+}
+
+// Calls `visit` with each piece of `text` in order.
 template <typename Visit>
 void forEachPiece(std::string_view text, const Visit& visit) {
     while (!text.empty()) {
-        std::size_t length = commentLength(text);
-        while (length == 0 ||
-               (length < text.size() && continuesWord(text[0]) && continuesWord(text[length]))) {
-            ++length;
-        }
-        visit(text.substr(0, length));
-        text.remove_prefix(length);
+        visit(takePiece(text));
     }
 }
 
