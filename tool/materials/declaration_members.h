@@ -84,7 +84,8 @@ constexpr std::uint32_t placeBit(Place place) {
     return 1U << static_cast<unsigned>(place);
 }
 
-// What may have a role. Glint's own code asks for roles, and so knows no name of a declaration.
+// The roles, and the places that may have them. Glint's own code asks for roles, and so knows no name of a
+// declaration.
 struct NamedRole {
     package::Role role;
     std::uint32_t places;

@@ -274,7 +274,7 @@ struct PrimitiveEntry {
     std::uint32_t alphaMode;      // 0 opaque, 1 mask, 2 blend, as in the file
 };
 
-// What a lookup of a texture takes, and so the type of its image view.
+// The coordinates that a lookup of a texture takes, and so the type of its image view.
 enum class TextureDimension : std::uint16_t {
     Flat,    // UVs: a 2D view
     Array,   // UVs and the number of a layer: a 2D array view

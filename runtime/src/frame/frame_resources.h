@@ -93,7 +93,7 @@ struct FrameSize {
     bool deferredShadows = false;
     std::uint32_t lightSamples = 0;     // lights that a surface chooses by the hierarchy; 0: all
     std::uint32_t firstShadowRays = 0;  // of a round
-    // Of a shadow ray of a first hit that waits; 0: they are traced inline.
+    // Bytes of a shadow ray of a first hit that waits in memory; 0: such rays are traced inline.
     std::uint32_t firstShadowBytes = 0;
     bool environmentMap = false;
     std::uint32_t textureLevels = 0;  // textures whose finest level is noted

@@ -256,8 +256,8 @@ struct OpacityEntry {
     KeyWords code;
 };
 
-// What Glint itself has to know a parameter, a texture or a feature of materials for. Declarations say it by
-// the words of kRoles in tool/materials.
+// The uses that Glint itself has for a parameter, a texture or a feature of materials. Declarations name them
+// by the words of kRoleNames in tool/materials.
 enum class Role : std::uint32_t {
     None,
     // Parameters and textures.
