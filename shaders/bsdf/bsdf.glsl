@@ -45,7 +45,7 @@ struct Bsdf {
 
 // Returns a quantity of both bases together, given that of each.
 GLINT_RELAXED vec3 withMetal(Bsdf b, Features features, GLINT_RELAXED vec3 dielectric, GLINT_RELAXED vec3 metal) {
-    return hasInput(features, GLINT_PARTIAL_METAL) ? mix(dielectric, metal, b.metallic) : dielectric;
+    return hasBothBases(features) ? mix(dielectric, metal, b.metallic) : dielectric;
 }
 
 // The mean of Schlick's Fresnel over the hemisphere: 2 ∫ F(μ) μ dμ.
@@ -113,7 +113,7 @@ GLINT_RELAXED float passedOnce(Bsdf b) {
 
 // The loss 1 - E and the bias of the microfacets in a direction of the upper hemisphere.
 vec2 lobeAlbedo(Bsdf b, Features features, vec3 direction) {
-    if (hasLobe(features, GLINT_ANISOTROPY)) {
+    if (isAnisotropic(features)) {
         return anisotropicGgxAlbedo(direction, b.alpha);
     }
     return ggxAlbedo(direction.z, b.alpha.x);
@@ -138,7 +138,7 @@ void prepareBsdf(inout Bsdf b, Features features, vec3 view) {
     vec2 lossBias = lobeAlbedo(b, features, b.view);
     b.viewLoss = lossBias.x;
     b.viewBias = lossBias.y;
-    vec2 mean = hasLobe(features, GLINT_ANISOTROPY) ? anisotropicGgxMeanAlbedo(b.alpha) : ggxMeanAlbedo(b.alpha.x);
+    vec2 mean = isAnisotropic(features) ? anisotropicGgxMeanAlbedo(b.alpha) : ggxMeanAlbedo(b.alpha.x);
     b.meanLoss = mean.x;
     b.meanBias = mean.y;
     prepareLayers(b.layers, features, b.view);
@@ -148,17 +148,17 @@ void prepareBsdf(inout Bsdf b, Features features, vec3 view) {
 
 // Whether light passes without bending. The facets that reflect and those that let light through then differ, and the
 // view alone decides between the two.
-#define passesStraight(features, eta) (hasLobe(features, GLINT_VOLUME) && !refracts(eta))
+#define passesStraight(features, eta) (boundsMedium(features) && !refracts(eta))
 
 // Whether the viewer is on the denser side of a volume's surface.
 #define seenFromWithin(b, features)                                                                             \
-    (hasLobe(features, GLINT_VOLUME) && (b).eta.y < 1.0 && refracts((b).eta.y))
+    (boundsMedium(features) && (b).eta.y < 1.0 && refracts((b).eta.y))
 
 // Whether light that the facets of a volume block still leaves along their own directions, as in the walk of refracted
 // rays: mirrored at the plane if these point to its other side. Then an interface loses nothing. The albedo of a lobe
 // that bends, by which its light could be divided instead, is not known in closed form.
 #define keepsBlocked(features, eta)                                                                             \
-    (GLINT_ENERGY_COMPENSATION != 0 && hasLobe(features, GLINT_VOLUME) && !passesStraight(features, eta))
+    (GLINT_ENERGY_COMPENSATION != 0 && boundsMedium(features) && !passesStraight(features, eta))
 
 // The share of a diffuse lobe that the microfacets above it let in and out. With compensation it is reciprocal, and the
 // whole gains no energy: Kelemen and Szirmay-Kalos, "A Microfacet Based Coupled Specular-Matte BRDF Model" (2001).
@@ -209,7 +209,7 @@ Facet facetBetween(Bsdf b, Features features, vec3 l) {
 
 // Whether a thin wall lets light that its facets block through in a lobe of its own.
 #define scattersPassage(features)                                                                               \
-    (GLINT_ENERGY_COMPENSATION != 0 && hasLobe(features, GLINT_TRANSMISSION) && !hasLobe(features, GLINT_VOLUME))
+    (GLINT_ENERGY_COMPENSATION != 0 && passesFacets(features) && !boundsMedium(features))
 
 // The density with which visible facets send the view to l, or with l.z < 0 to below the plane: mirroredPdf(). It is 0
 // where rounding leaves no half vector.
@@ -245,7 +245,7 @@ vec3 baseReflection(Bsdf b, Features features, vec3 l) {
                                  (kInversePi * diffuseShare(b, features, l, fresnel));
     if (seenFromWithin(b, features) && keepsBlocked(features, b.eta.y)) {
         vec3 within = facetReflection(b, l) + facetReflection(b, vec3(l.xy, -l.z));
-        if (hasInput(features, GLINT_PARTIAL_METAL)) {
+        if (hasBothBases(features)) {
             within = mix(within, metalReflection(b, features, l), b.metallic);
         }
         return diffuse * l.z + within;
@@ -272,7 +272,7 @@ float specularTransmission(Bsdf b, Features features, vec3 l, float eta) {
         // Nothing bends, whatever the facets are: the lobe is as narrow as lobes get, with the Fresnel of the view.
         lobe = thinTransmission(b.view, l, vec2(kMinAlpha), cosine);
         passed = schlickPassed(b.f0, b.f90, b.view.z);
-    } else if (hasLobe(features, GLINT_VOLUME)) {
+    } else if (boundsMedium(features)) {
         lobe = refractedTransmission(b.view, l, b.alpha, eta, cosine);
         passed = schlickPassed(b.f0, b.f90, cosine);
     } else {
@@ -322,8 +322,8 @@ float wholeTransmission(Bsdf b, Features features, vec3 l, float eta) {
 // Light that the base passes, times |n·l|; l.z < 0.
 vec3 baseTransmission(Bsdf b, Features features, vec3 l) {
     vec3 result = vec3(0.0);
-    if (hasLobe(features, GLINT_TRANSMISSION)) {
-        bool spreads = hasLobe(features, GLINT_DISPERSION);
+    if (passesFacets(features)) {
+        bool spreads = dispersesLight(features);
         vec3 lobe = vec3(0.0);
         for (int channel = spreads ? 0 : 1; channel < (spreads ? 3 : 2); ++channel) {
             lobe = withChannel(lobe, channel, wholeTransmission(b, features, l, channelOf(b.eta, channel)));
@@ -336,7 +336,7 @@ vec3 baseTransmission(Bsdf b, Features features, vec3 l) {
                                        (b.viewLoss * lightLoss * kInversePi / max(b.meanLoss, 1e-12)));
         }
     }
-    if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
+    if (passesDiffusely(features)) {
         // Light leaves on the other side, where the half vector has no meaning, so the Fresnel of the view counts.
         GLINT_RELAXED float fresnel = largest(fresnelSchlick(b.f0, b.f90, b.view.z));
         result += b.diffuseTransmitted * (kInversePi * diffuseShare(b, features, vec3(l.xy, -l.z), fresnel) * -l.z);
@@ -361,7 +361,7 @@ vec3 evaluateDiffuse(Bsdf b, Features features, vec3 l) {
     if (l.z > 0.0) {
         GLINT_RELAXED float fresnel = largest(facetBetween(b, features, l).dielectricFresnel);
         base = diffuseLobe(b.layers, features, b.diffuse, b.view, l) * diffuseShare(b, features, l, fresnel);
-    } else if (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)) {
+    } else if (passesDiffusely(features)) {
         GLINT_RELAXED float fresnel = largest(fresnelSchlick(b.f0, b.f90, b.view.z));
         base = b.diffuseTransmitted * diffuseShare(b, features, vec3(l.xy, -l.z), fresnel);
     }

@@ -156,17 +156,10 @@ bool isOwnOfKey(Features features, uint model, uint always, uint sometimes, uint
 // Whether such a model samples directions itself.
 #define samplesModel(features) GLINT_MODEL_HAS(features, kModelSampled)
 
-// Whether the base sends light to the far side.
-#define transmits(features)                                                                                     \
-    (hasLobe(features, GLINT_BOTH_SIDES_LOBES) || GLINT_MODEL_HAS(features, kModelBothSides))
-
-// Whether it scatters light there: Bsdf::diffuseTransmitted.
-#define scattersBehind(features)                                                                                \
-    (hasLobe(features, GLINT_DIFFUSE_TRANSMISSION) ||                                                           \
-     GLINT_MODEL_HAS(features, kModelOwnCode | kModelBothSides))
-
 // The features of any key of the scene, with all lobes: for primary surfaces.
 #define GLINT_PRIMARY_FEATURES(geometry) Features(GLINT_ALL, GLINT_KEY(geometry))
 
 // Returns the features of a hit of a ray, with the lobes that hits keep: for code before the switch.
 #define GLINT_HIT_FEATURES(geometry) Features(GLINT_HIT_ALL, GLINT_KEY(geometry))
+
+#include "bsdf/queries.glsl"

@@ -26,7 +26,7 @@ LobeChances lobeChances(Bsdf b, Features features) {
     chances.microfacets = luminance(single);
     chances.diffuse = luminance(b.diffuse) * below + luminance(all - single);
     chances.passed = 0.0;
-    if (hasLobe(features, GLINT_TRANSMISSION)) {
+    if (passesFacets(features)) {
         float later = scattersPassage(features) ? smallest(passedAgain(b)) * b.viewLoss : 0.0;
         chances.microfacets += luminance(b.transmitted) * max(below - later, 0.0);
         chances.passed = luminance(b.transmitted) * later;
@@ -53,10 +53,10 @@ LobeChances lobeChances(Bsdf b, Features features) {
 // The probabilities that a facet reflects (x) and that it lets light through (y), from the squared cosine under which
 // it is seen, with the error of the square.
 vec2 facetChances(Bsdf b, Features features, vec2 cosine2, float eta) {
-    if (!hasLobe(features, GLINT_TRANSMISSION)) {
+    if (!passesFacets(features)) {
         return vec2(1.0, 0.0);
     }
-    bool inside = hasLobe(features, GLINT_VOLUME) && eta < 1.0 && refracts(eta);
+    bool inside = boundsMedium(features) && eta < 1.0 && refracts(eta);
     float apparent = inside ? eta : 1.0;
     float reflected = luminance(withMetal(b, features, fresnelInterface(b.f0, b.f90, cosine2, apparent),
                                           fresnelSchlick(b.metalF0, 1.0, sqrt(cosine2.x))));
@@ -73,7 +73,7 @@ vec2 decidingCosine2(Bsdf b, Features features, vec2 facet2, float eta) {
 
 // The index of one of three colours. They differ only with dispersion.
 float sampledIndex(Bsdf b, Features features, float u) {
-    if (hasLobe(features, GLINT_DISPERSION)) {
+    if (dispersesLight(features)) {
         return u < 1.0 / 3.0 ? b.eta.x : u < 2.0 / 3.0 ? b.eta.y : b.eta.z;
     }
     return b.eta.y;
@@ -91,7 +91,7 @@ float bendingPdf(Bsdf b, Features features, vec3 l, float eta) {
 
 // The density of a direction beyond the microfacets, for the index of one colour.
 float passedPdf(Bsdf b, Features features, vec3 l, float eta) {
-    if (!hasLobe(features, GLINT_VOLUME) || passesStraight(features, eta)) {
+    if (!boundsMedium(features) || passesStraight(features, eta)) {
         vec3 mirrored = vec3(l.x, l.y, -l.z);
         vec3 h = normalize(b.view + mirrored);
         vec2 alpha = passesStraight(features, eta) ? vec2(kMinAlpha) : b.alpha;
@@ -115,7 +115,7 @@ float densityAbove(Bsdf b, vec3 l) {
 float reflectedPdf(Bsdf b, Features features, vec3 l, float facets) {
     vec2 facet2 = halfCosine2(b.view, l);
     float chance = facetChances(b, features, decidingCosine2(b, features, facet2, b.eta.y), b.eta.y).x;
-    if (hasLobe(features, GLINT_DISPERSION)) {
+    if (dispersesLight(features)) {
         chance = (facetChances(b, features, decidingCosine2(b, features, facet2, b.eta.x), b.eta.x).x + chance +
                   facetChances(b, features, decidingCosine2(b, features, facet2, b.eta.z), b.eta.z).x) / 3.0;
     }
@@ -129,11 +129,11 @@ float microfacetPdf(Bsdf b, Features features, vec3 l) {
         vec3 below = vec3(l.xy, -l.z);
         return mirrors ? pdf + reflectedPdf(b, features, below, facetDensity(b, below)) : pdf;
     }
-    if (!hasLobe(features, GLINT_TRANSMISSION)) {
+    if (!passesFacets(features)) {
         return 0.0;
     }
     float pdf = passedPdf(b, features, l, b.eta.y);
-    if (hasLobe(features, GLINT_DISPERSION)) {
+    if (dispersesLight(features)) {
         pdf = (passedPdf(b, features, l, b.eta.x) + pdf + passedPdf(b, features, l, b.eta.z)) / 3.0;
     }
     return pdf;
@@ -159,7 +159,7 @@ float bsdfPdf(Bsdf b, Features features, vec3 l) {
 vec3 sampleMicrofacet(Bsdf b, Features features, vec3 u) {
     vec3 h = sampleVisibleNormal(b.view, b.alpha, u.xy);
     float eta = sampledIndex(b, features, u.z);
-    float chooser = hasLobe(features, GLINT_DISPERSION) ? fract(3.0 * u.z) : u.z;
+    float chooser = dispersesLight(features) ? fract(3.0 * u.z) : u.z;
     vec3 reflected = reflectAbout(b.view, h);
     vec2 facet2 = exactSquare(exactDot(b.view, h));
     if (chooser < facetChances(b, features, decidingCosine2(b, features, facet2, eta), eta).x) {
@@ -170,7 +170,7 @@ vec3 sampleMicrofacet(Bsdf b, Features features, vec3 u) {
         h = sampleVisibleNormal(b.view, vec2(kMinAlpha), u.xy);
         reflected = reflectAbout(b.view, h);
     }
-    if (!hasLobe(features, GLINT_VOLUME) || passesStraight(features, eta)) {
+    if (!boundsMedium(features) || passesStraight(features, eta)) {
         return reflected.z > 0.0 ? vec3(reflected.x, reflected.y, -reflected.z) : vec3(0.0);
     }
     vec3 refracted;

@@ -73,7 +73,7 @@ vec3 ambientReflection(Surface surface, Features features, vec3 view, GLINT_RELA
     // Samples of the sky bring the light that bounces between microfacets.
     all = first;
 #endif
-    if (hasLobe(features, GLINT_ANISOTROPY)) {
+    if (isAnisotropic(features)) {
         // Later bounces have nearly forgotten the view.
         vec3 again = (all - first) * hostSkyIrradianceOverPi(surface.normal);
         return mirrored > 0.0 ? again + first * mirrored * skyAroundLobe(surface) : again;
@@ -85,7 +85,7 @@ vec3 ambientReflection(Surface surface, Features features, vec3 view, GLINT_RELA
 // enters.
 vec3 skyBehind(Surface surface, Features features, float eta) {
     vec3 direction = -surface.bsdf.view;
-    if (hasLobe(features, GLINT_VOLUME) && refracts(eta) &&
+    if (boundsMedium(features) && refracts(eta) &&
         !refractDirection(surface.bsdf.view, vec3(0.0, 0.0, 1.0), eta, direction)) {
         return vec3(0.0);
     }
@@ -94,7 +94,7 @@ vec3 skyBehind(Surface surface, Features features, float eta) {
 
 vec3 ambientTransmission(Surface surface, Features features) {
     Bsdf bsdf = surface.bsdf;
-    bool spreads = hasLobe(features, GLINT_DISPERSION);
+    bool spreads = dispersesLight(features);
     vec3 behind = vec3(0.0);
     for (int channel = spreads ? 0 : 1; channel < (spreads ? 3 : 2); ++channel) {
         vec3 sky = skyBehind(surface, features, channelOf(bsdf.eta, channel));
@@ -115,7 +115,7 @@ vec3 ambientLight(Surface surface, Features features, vec3 view, SkyShares sky) 
     vec3 front = surface.bsdf.diffuse * (below * sky.diffuse) * hostSkyIrradianceOverPi(surface.normal) +
                  ambientReflection(surface, features, view, sky.mirrored);
     vec3 back = vec3(0.0);
-    if (hasLobe(features, GLINT_TRANSMISSION) && sky.transmitted > 0.0) {
+    if (passesFacets(features) && sky.transmitted > 0.0) {
         back += ambientTransmission(surface, features) * sky.transmitted;
     }
     if (scattersBehind(features)) {

@@ -169,7 +169,7 @@ Hit fetchHitAt(HostGeometry geometry, uint primitive, vec2 barycentrics, vec3 ra
     coneAxes(coneWidth, rayDirection, hit.geometricNormal, across, along);
     hit.footprint = vec4(inEdges(across, hit.edges[0], hit.edges[1]), inEdges(along, hit.edges[0], hit.edges[1]));
     hit.scale = 1.0;
-    if (hasLobe(features, GLINT_ATTENUATION)) {
+    if (boundsAbsorber(features)) {
         // The scale is the root mean square over the axes.
         vec3 x = instance.objectToWorld[0].xyz;
         vec3 y = instance.objectToWorld[1].xyz;

@@ -18,7 +18,7 @@ SurfaceValues surfaceValues(Hit hit, Features features) {
 // set.
 Bsdf makeBase(SurfaceValues values, Features features) {
     Bsdf bsdf;
-    bool both = hasInput(features, GLINT_PARTIAL_METAL);
+    bool both = hasBothBases(features);
     bsdf.diffuse = values.color.rgb * values.dielectric;
     bsdf.metalF0 = values.color.rgb;
     bsdf.metallic = values.metallic;

@@ -8,8 +8,7 @@
 #include "host/material.glsl"
 #include "host/random.glsl"
 #include "host/sky.glsl"
-#include "materials/volume/attenuation.glsl"
-#include "materials/volume/media.glsl"
+#include "materials/base/medium.glsl"
 
 // The pairs of dimensions of the sequence: a direction; a lobe, and whether the path survives.
 const uint kPairPathDirection = 6u;
@@ -21,26 +20,21 @@ const float kMostPathSpread = 0.125;
 // The share of the light at a hit that arrives at the primary surface. The walk of a refracted ray counts the
 // absorption of its own last part.
 vec3 arrivingShare(PathArrival arrival, vec3 position) {
-    vec3 share = arrival.throughput;
-#ifdef GLINT_RECORD_ABSORPTION
-    if (isWithin(arrival.media) && GLINT_FRAME.bounce > 1u) {
-        vec3 absorption = GLINT_RECORD_ABSORPTION(hostMaterials().data[innermostMaterial(arrival.media)]);
-        share *= volumeTransmittance(absorption, distance(position, arrival.start));
-    }
-#endif
-    return share;
+    bool absorbs = isWithin(arrival.media) && GLINT_FRAME.bounce > 1u;
+    return absorbs ? arrival.throughput * mediumTransmittance(arrival.media, distance(position, arrival.start))
+                   : arrival.throughput;
 }
 
 // The volumes of a ray from the hit.
 Media mediaOfStep(Hit hit, Features features, bool passes) {
-    return passes && hasLobe(features, GLINT_VOLUME) ? mediaBeyond(hit, hit.arrival.media) : hit.arrival.media;
+    return passes && boundsMedium(features) ? mediaBeyond(hit, hit.arrival.media) : hit.arrival.media;
 }
 
 #if GLINT_SHADOW_GLASS
 // Returns whether the surface that sent the ray has sampled the light that arrives through the hit. Then the ray keeps
 // its share.
 bool seesSkyFromBefore(Hit hit, Features features, bool passes) {
-    return isWithinGlass(hit, features) || (passes && hasLobe(features, GLINT_TRANSMISSION));
+    return isWithinGlass(hit, features) || (passes && passesFacets(features));
 }
 #endif
 

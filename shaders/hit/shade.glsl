@@ -106,7 +106,7 @@ vec3 countedEmission(Hit hit, Surface surface) {
 // count twice.
 vec3 irradianceOf(Hit hit, Features features, DrawnLight light, inout Surface lit) {
 #if GLINT_SHADOW_GLASS
-    if (hasLobe(features, GLINT_TRANSMISSION)) {
+    if (passesFacets(features)) {
         lit.bsdf.transmitted = vec3(0.0);
         if (isWithinGlass(hit, features)) {
             return vec3(0.0);
@@ -122,7 +122,7 @@ vec3 irradianceOf(Hit hit, Features features, DrawnLight light, inout Surface li
 // through glass that the surface which sent the ray has sampled (irradianceOf()).
 bool isSampledAlone(Hit hit, Features features, bool passes) {
 #if GLINT_SHADOW_GLASS
-    return hasLobe(features, GLINT_TRANSMISSION) && (passes || isWithinGlass(hit, features));
+    return passesFacets(features) && (passes || isWithinGlass(hit, features));
 #else
     return false;
 #endif

@@ -23,7 +23,7 @@ ShadeResult shade(Hit hit, Features features) {
     answer.albedo = b.diffuse;
     answer.occlusion = surface.occlusion;
     answer.f0 = withMetal(b, features, b.f0, b.metalF0);
-    answer.f90 = hasInput(features, GLINT_PARTIAL_METAL) ? mix(b.f90, 1.0, b.metallic) : b.f90;
+    answer.f90 = hasBothBases(features) ? mix(b.f90, 1.0, b.metallic) : b.f90;
     answer.emission = surface.emission;
     answer.transmission = luminance(b.transmitted) + luminance(b.diffuseTransmitted);
     return ShadeResult(answer);

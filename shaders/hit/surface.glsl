@@ -18,7 +18,7 @@ struct Surface {
 // Returns the surface for light number `light`. A compiler does not see that the frame is the same for all lights, so
 // it computes the frame from the normal instead of keeping it: the highest bit of the number is 0.
 Surface surfaceAgain(Surface surface, Features features, uint light) {
-    if (!hasLobe(features, GLINT_ANISOTROPY)) {
+    if (!isAnisotropic(features)) {
         vec3 normal = vec3(surface.normal.xy, uintBitsToFloat(floatBitsToUint(surface.normal.z) | light >> 31));
         buildBasis(normal, surface.tangent, surface.bitangent);
     }

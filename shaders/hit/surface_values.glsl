@@ -16,7 +16,7 @@ struct SurfaceValues {
 // Returns whether a hit may show the back of the surface: rays within a volume meet its surface from there.
 bool showsBack(Features features) {
 #if GLINT_PATHS
-    return hasInput(features, GLINT_ROLE_DOUBLE_SIDED) || hasLobe(features, GLINT_VOLUME);
+    return hasInput(features, GLINT_ROLE_DOUBLE_SIDED) || boundsMedium(features);
 #else
     return hasInput(features, GLINT_ROLE_DOUBLE_SIDED);
 #endif
@@ -25,7 +25,7 @@ bool showsBack(Features features) {
 // Returns whether the hit is on the inside of glass. Where shadow rays pass glass, those of the surface that sent the
 // ray have passed this glass on the straight line, with all that happens within the glass.
 bool isWithinGlass(Hit hit, Features features) {
-    return hasLobe(features, GLINT_TRANSMISSION) && hasLobe(features, GLINT_VOLUME) && showsBack(features) &&
+    return passesFacets(features) && boundsMedium(features) && showsBack(features) &&
            !hit.frontFace;
 }
 

@@ -64,7 +64,7 @@ vec3 specularAlbedoWithLayers(PrimaryPoint at) {
 }
 
 vec3 transmissionAlbedo(PrimaryPoint at) {
-    return hasLobe(at.features, GLINT_TRANSMISSION) ? at.surface.bsdf.transmitted * passedToDiffuse(at) : vec3(0.0);
+    return passesFacets(at.features) ? at.surface.bsdf.transmitted * passedToDiffuse(at) : vec3(0.0);
 }
 
 vec4 primaryAlbedo(PrimaryPoint at) {

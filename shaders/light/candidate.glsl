@@ -1,7 +1,6 @@
 // The part of a light's rays that remains where their straight way meets a surface (--shadow-through). The light
 // neither bends nor spreads, for any index and roughness of the glass: caustics are left out.
 #include "bsdf/features.glsl"
-#include "bsdf/fresnel.glsl"
 #include "hit/alpha.glsl"
 #include "bsdf/constants.glsl"
 #include "light/passage.glsl"
@@ -19,6 +18,8 @@ struct PassageCandidate {
 };
 
 #if GLINT_SHADOW_GLASS
+
+#include "materials/base/passage.glsl"
 
 #if GLINT_EMISSIVE_LIGHTS
 bool passedGlass(LightPassage passage) {
@@ -69,40 +70,6 @@ float coverageOf(HostGeometry geometry, SurfacePoint point, Features features, f
     return 1.0;
 }
 
-// The share that the interface lets straight through, computed as for visible surfaces (hit/material.glsl), but with
-// the mesh's own normal, and without coats and films. `cosine` is that between the normal and the ray.
-vec3 sharePastInterface(SurfacePoint point, Features features, vec3 color, float cosine) {
-    float transmission = GLINT_MATERIAL_TRANSMISSION_FACTOR(point);
-    if (inputOfKey(features, GLINT_TRANSMISSION_TEXTURE)) {
-        transmission *= samplePoint(point, kTransmissionTexture, features).r;
-    }
-    bool glossy = lobeOfKey(features, GLINT_SPECULAR_GLOSSINESS);
-    float metallic = glossy ? 0.0 : GLINT_MATERIAL_METALLIC_FACTOR(point);
-    vec3 f0 = glossy ? GLINT_MATERIAL_GLOSSY_SPECULAR_FACTOR(point) : vec3(0.04);
-    float f90 = 1.0;
-    if (inputOfKey(features, GLINT_METALLIC_ROUGHNESS_TEXTURE)) {
-        vec4 texel = samplePoint(point, kMetallicRoughnessTexture, features);
-        metallic *= texel.b;
-        f0 *= glossy ? texel.rgb : vec3(1.0);
-    }
-    if (lobeOfKey(features, GLINT_IOR)) {
-        f0 = vec3(dielectricF0(GLINT_MATERIAL_IOR(point)));
-    }
-    if (lobeOfKey(features, GLINT_SPECULAR)) {
-        float specular = GLINT_MATERIAL_SPECULAR_FACTOR(point);
-        vec3 specularColor = GLINT_MATERIAL_SPECULAR_COLOR_FACTOR(point);
-        if (inputOfKey(features, GLINT_SPECULAR_TEXTURE)) {
-            specular *= samplePoint(point, kSpecularTexture, features).a;
-        }
-        if (inputOfKey(features, GLINT_SPECULAR_COLOR_TEXTURE)) {
-            specularColor *= samplePoint(point, kSpecularColorTexture, features).rgb;
-        }
-        f0 = min(f0 * specularColor, vec3(1.0)) * specular;
-        f90 = specular;
-    }
-    return color * ((1.0 - metallic) * transmission * schlickPassed(f0, f90, cosine));
-}
-
 // Returns whether the light ends at the candidate. If it goes on, `passage` loses the part that the candidate absorbs.
 bool endsLight(PassageCandidate candidate, inout LightPassage passage) {
     HostGeometry geometry = hostGeometry(candidate.geometry);
@@ -113,7 +80,7 @@ bool endsLight(PassageCandidate candidate, inout LightPassage passage) {
     float coverage = coverageOf(geometry, point, features, color.a);
     vec3 share = vec3(1.0 - coverage);
     bool passes = coverage > 0.0 && (geometry.flags & kGeometryPassesLight) != 0u &&
-                  lobeOfKey(features, GLINT_TRANSMISSION);
+                  passesFacetsOfKey(features);
     if (passes) {
         vec3 corners[3];
         hostPositions(geometry, hostTriangle(geometry, candidate.primitive), corners);
@@ -123,9 +90,8 @@ bool endsLight(PassageCandidate candidate, inout LightPassage passage) {
                                  -candidate.direction);
         float cosine = dot(front, candidate.direction);
         share += coverage * sharePastInterface(point, features, color.rgb, abs(cosine));
-        if (lobeOfKey(features, GLINT_ATTENUATION)) {
-            vec3 absorption = GLINT_MATERIAL_ABSORPTION(point);
-            vec3 entered = cosine < 0.0 ? absorption : -absorption;
+        if (boundsAbsorberOfKey(features)) {
+            vec3 entered = cosine < 0.0 ? absorptionAt(point) : -absorptionAt(point);
             passage.depth -= entered * candidate.distance;
             passage.open += entered;
         }

@@ -9,7 +9,7 @@
 #include "bsdf/transmission.glsl"
 #include "materials/clearcoat/clearcoat.glsl"
 #include "materials/dispersion/dispersion.glsl"
-#include "materials/volume/attenuation.glsl"
+#include "bsdf/attenuation.glsl"
 #include "bsdf/bsdf.glsl"
 #include "bsdf/sample.glsl"
 #include "numerics/probe_vectors.glsl"

@@ -5,7 +5,7 @@
 #include "hit/surface.glsl"
 
 EffectSample sampleRefraction(Hit hit, Surface surface, Features features, inout SkyShares sky) {
-    if (!hasLobe(features, GLINT_TRANSMISSION)) {
+    if (!passesFacets(features)) {
         return noSample(kRayAbsent);
     }
     float share = baseShare(surface, features);

@@ -4,7 +4,7 @@
 #include "hit/hit.glsl"
 
 void hitRefraction(Hit hit, Features features, inout SkyShares sky) {
-    if (hasLobe(features, GLINT_TRANSMISSION)) {
+    if (passesFacets(features)) {
         // The walk of the refracted ray has chosen the light that does not pass.
         sky.transmitted = 0.0;
     }

@@ -7,7 +7,7 @@
 // that it leaves, and each surface lies between its medium and the surrounding one.
 #define GLINT_MODULE_ALWAYS_LOBES 0u
 #define GLINT_MODULE_ALWAYS_INPUTS (GLINT_ALWAYS_INPUTS)
-#define GLINT_MODULE_ANY_LOBES ((GLINT_ALWAYS_LOBES | GLINT_SOMETIMES_LOBES) & kWalkedLobes)
+#define GLINT_MODULE_ANY_LOBES ((GLINT_ALWAYS_LOBES | GLINT_SOMETIMES_LOBES) & GLINT_INTERFACE_LOBES)
 #define GLINT_MODULE_ANY_INPUTS (GLINT_ALWAYS_INPUTS | GLINT_SOMETIMES_INPUTS | GLINT_ROLE_DOUBLE_SIDED)
 #define GLINT_MODULE_MODEL 0u
 #include "effects/refraction/refraction_walk.glsl"

@@ -1,12 +1,4 @@
 // The walk of a refracted ray from interface to interface.
-#include "generated/features.glsl"
-
-// The lobes of a material that an interface reads. Coats and sheen of inner surfaces are left out, and absorption
-// counts over real distances. Inputs that have bits of the lobes' word stay.
-const uint kWalkedLobes = GLINT_UNLIT_LOBES | GLINT_SPECULAR_GLOSSINESS | GLINT_IOR | GLINT_SPECULAR |
-                          GLINT_ANISOTROPY | GLINT_IRIDESCENCE | GLINT_TRANSMISSION | GLINT_DIFFUSE_TRANSMISSION |
-                          GLINT_VOLUME | GLINT_DISPERSION | ~GLINT_LOBES;
-
 #include "bsdf/sample.glsl"
 #include "effects/ambient.glsl"
 #include "effects/sample.glsl"
@@ -17,8 +9,7 @@ const uint kWalkedLobes = GLINT_UNLIT_LOBES | GLINT_SPECULAR_GLOSSINESS | GLINT_
 #include "host/random.glsl"
 #include "hit/trace.glsl"
 #include "light/sized.glsl"
-#include "materials/volume/nesting.glsl"
-#include "materials/volume/volume.glsl"
+#include "materials/base/medium.glsl"
 #if GLINT_LAYER_RAYS
 #include "layers/ray_hits.glsl"
 #endif
@@ -39,7 +30,7 @@ struct Walker {
 // The features of a surface that is met from either side.
 Features walkFeatures(HostGeometry geometry) {
     return GLINT_FEATURES_OF_GLTF(
-        GLINT_ALWAYS_LOBES & kWalkedLobes, GLINT_ALWAYS_INPUTS, GLINT_SOMETIMES_LOBES & kWalkedLobes,
+        GLINT_ALWAYS_LOBES & GLINT_INTERFACE_LOBES, GLINT_ALWAYS_INPUTS, GLINT_SOMETIMES_LOBES & GLINT_INTERFACE_LOBES,
         (GLINT_SOMETIMES_INPUTS | GLINT_ROLE_DOUBLE_SIDED) & ~GLINT_ALWAYS_INPUTS, geometry.featureLobes,
         geometry.featureInputs | GLINT_ROLE_DOUBLE_SIDED);
 }
@@ -84,7 +75,7 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
         }
         walker.weight /= chance;
     }
-    bool dispersed = hasLobe(features, GLINT_DISPERSION) && b.eta.x != b.eta.z;
+    bool dispersed = dispersesLight(features) && b.eta.x != b.eta.z;
     if (dispersed && walker.channel == 3u) {
         walker.channel = min(uint(3.0 * choice.y), 2u);
         vec3 only = vec3(walker.channel == 0u ? 1.0 : 0.0, walker.channel == 1u ? 1.0 : 0.0,
@@ -95,8 +86,8 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
     b.eta = vec3(eta);
     vec3 h = sampleVisibleNormal(b.view, b.alpha, u);
     vec2 deciding = decidingCosine2(b, features, exactSquare(exactDot(b.view, h)), eta);
-    float apparent = hasLobe(features, GLINT_VOLUME) && refracts(eta) ? eta : 1.0;
-    bool thin = !hasLobe(features, GLINT_VOLUME);
+    float apparent = boundsMedium(features) && refracts(eta) ? eta : 1.0;
+    bool thin = !boundsMedium(features);
     bool straight = thin || passesStraight(features, eta);
     if (!first && pure) {
         float reflected = facetChances(b, features, deciding, eta).x;
@@ -159,8 +150,7 @@ vec3 lightsOnWay(Walker walker, float end) {
         if (lobesFind(light) && point.irradiance != vec3(0.0) && point.distance < end) {
             vec3 arriving = walker.weight * point.irradiance;
             if (isWithin(walker.media)) {
-                vec3 absorption = GLINT_RECORD_ABSORPTION(hostMaterials().data[innermostMaterial(walker.media)]);
-                arriving *= volumeTransmittance(absorption, point.distance);
+                arriving *= mediumTransmittance(walker.media, point.distance);
             }
             sum += arriving;
         }
@@ -202,7 +192,7 @@ uint walk(uvec2 pixel, uint target) {
     for (uint depth = 0u;; ++depth) {
         if (meets) {
             Surface surface = evaluateSurface(hit, features);
-            bool volume = hasLobe(features, GLINT_VOLUME);
+            bool volume = boundsMedium(features);
             if (volume) {
                 nestMedia(hit, features, walker.media, surface.bsdf);
             }
@@ -264,13 +254,12 @@ uint walk(uvec2 pixel, uint target) {
         way += travelled;
 #endif
         if (within) {
-            vec3 absorption = GLINT_RECORD_ABSORPTION(hostMaterials().data[innermostMaterial(walker.media)]);
-            walker.weight *= volumeTransmittance(absorption, travelled);
+            walker.weight *= mediumTransmittance(walker.media, travelled);
         }
         // The back of a single-sided surface is ignored, unless it is the end of a volume.
         bool back = !hit.frontFace && (geometry.flags & kGeometryDoubleSided) == 0u;
-        bool clear = hasLobe(features, GLINT_TRANSMISSION);
-        meets = !back || (clear && hasLobe(features, GLINT_VOLUME));
+        bool clear = passesFacets(features);
+        meets = !back || (clear && boundsMedium(features));
         if (meets && !clear) {
             break;
         }

@@ -1,5 +1,5 @@
 // The indices on both sides of the surface of a volume, which may lie within another one.
-#include "materials/volume/media.glsl"
+#include "hit/media.glsl"
 #include "host/material.glsl"
 #include "materials/dispersion/dispersion.glsl"
 #include "materials/ior/ior.glsl"
