@@ -20,9 +20,11 @@ const float kMostPathSpread = 0.125;
 // The share of the light at a hit that arrives at the primary surface. The walk of a refracted ray counts the
 // absorption of its own last part.
 vec3 arrivingShare(PathArrival arrival, vec3 position) {
-    bool absorbs = isWithin(arrival.media) && GLINT_FRAME.bounce > 1u;
-    return absorbs ? arrival.throughput * mediumTransmittance(arrival.media, distance(position, arrival.start))
-                   : arrival.throughput;
+    vec3 share = arrival.throughput;
+    if (isWithin(arrival.media) && GLINT_FRAME.bounce > 1u) {
+        share *= mediumTransmittance(arrival.media, distance(position, arrival.start));
+    }
+    return share;
 }
 
 // The volumes of a ray from the hit.

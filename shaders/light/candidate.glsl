@@ -4,6 +4,7 @@
 #include "hit/alpha.glsl"
 #include "bsdf/constants.glsl"
 #include "light/passage.glsl"
+#include "materials/base/passage.glsl"
 #include "host/geometry.glsl"
 #include "host/material.glsl"
 
@@ -18,8 +19,6 @@ struct PassageCandidate {
 };
 
 #if GLINT_SHADOW_GLASS
-
-#include "materials/base/passage.glsl"
 
 #if GLINT_EMISSIVE_LIGHTS
 bool passedGlass(LightPassage passage) {
@@ -91,7 +90,8 @@ bool endsLight(PassageCandidate candidate, inout LightPassage passage) {
         float cosine = dot(front, candidate.direction);
         share += coverage * sharePastInterface(point, features, color.rgb, abs(cosine));
         if (boundsAbsorberOfKey(features)) {
-            vec3 entered = cosine < 0.0 ? absorptionAt(point) : -absorptionAt(point);
+            vec3 absorption = absorptionAt(point);
+            vec3 entered = cosine < 0.0 ? absorption : -absorption;
             passage.depth -= entered * candidate.distance;
             passage.open += entered;
         }

@@ -4,6 +4,8 @@
 #include "hit/surface_point.glsl"
 #include "host/material.glsl"
 
+#if GLINT_SHADOW_GLASS
+
 // The share that the interface lets straight through, computed as for visible surfaces (hit/material.glsl), but with
 // the mesh's own normal, and without coats and films. `cosine` is that between the normal and the ray.
 vec3 sharePastInterface(SurfacePoint point, Features features, vec3 color, float cosine) {
@@ -42,3 +44,5 @@ vec3 sharePastInterface(SurfacePoint point, Features features, vec3 color, float
 vec3 absorptionAt(SurfacePoint point) {
     return GLINT_MATERIAL_ABSORPTION(point);
 }
+
+#endif
