@@ -85,7 +85,7 @@ Status Window::takeBuilds() {
             error_.reset();
             continue;
         }
-        if (!sides_[0]->picture.isReady() && !script_) {
+        if (!sides_[0]->picture.isReady() && !driver_) {
             // Nothing is shown yet, and nobody can correct it here.
             return installed;
         }

@@ -10,7 +10,6 @@
 #include "view/look.h"
 #include "view/picture.h"
 #include "view/presenter.h"
-#include "view/script.h"
 
 #include <glint/package.h>
 
@@ -173,7 +172,7 @@ private:
     std::unique_ptr<Display> display_;
     std::array<std::unique_ptr<Side>, kPictures> sides_;
     std::unique_ptr<Builder> builder_;
-    std::function<Result<bool>()> script_;  // readScript(); empty: none
+    WindowDriver driver_;  // empty: none
 
     std::string scene_;
     // The scene and settings that are shown while another scene is being opened.
