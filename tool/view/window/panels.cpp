@@ -309,7 +309,7 @@ void Window::drawCompare() {
     }
     ImGui::SameLine(0.0F, 24.0F);
     if (controls_.mark("Measure", ImGui::Button("Measure"))) {
-        measureDifference();
+        reportErrorOf(measureDifference());
     }
     tip("how far B is from A: as seen (FLIP), and in linear light");
     ImGui::AlignTextToFramePadding();

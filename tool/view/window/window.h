@@ -73,6 +73,12 @@ private:
     void report(const Diagnostic& message);
     void say(const std::string& text);
     void fail(const Diagnostic& error);
+    // Reports the error, if there is one.
+    void reportErrorOf(const Status& status) {
+        if (!status) {
+            report(status.error());
+        }
+    }
     Side& side() {
         return *sides_[edited_];
     }
@@ -131,10 +137,10 @@ private:
     void chooseLook(const Look& look);
 
     // --- results.cpp: measurements and files ---
-    void measureExposure();
+    Status measureExposure();
     Status writeShot(const std::string& file, const Look& shown, const LinearImage& image);
-    void saveScreenshot();
-    void measureDifference();
+    Status saveScreenshot();
+    Status measureDifference();
     Status writeReport(const std::string& file);
 
     // --- outliner.cpp: the tree of nodes, and edits ---
