@@ -3,7 +3,6 @@
 #include "base/files.h"
 #include "base/text.h"
 #include "image/compare.h"
-#include "image/flip.h"
 #include "image/image_file.h"
 #include "image/tone.h"
 #include "settings/descriptor.h"
