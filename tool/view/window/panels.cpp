@@ -8,8 +8,6 @@
 
 #include <GLFW/glfw3.h>
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <imgui.h>
 #include <numeric>
 #include <utility>
