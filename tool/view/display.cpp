@@ -33,48 +33,52 @@ Status Display::createPipeline() {
     for (std::uint32_t i = 0; i < bindings.size(); ++i) {
         bindings[i] = {i, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
     }
-    const VkDescriptorSetLayoutCreateInfo setInfo{
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-        .bindingCount = static_cast<std::uint32_t>(bindings.size()),
-        .pBindings = bindings.data()};
+    VkDescriptorSetLayoutCreateInfo setInfo{};
+    setInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO;
+    setInfo.bindingCount = static_cast<std::uint32_t>(bindings.size());
+    setInfo.pBindings = bindings.data();
     GLINT_TRY_DO(checkCall("vkCreateDescriptorSetLayout",
                            vkCreateDescriptorSetLayout(device, &setInfo, nullptr, &setLayout_)));
     const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
                                     kSets * static_cast<std::uint32_t>(bindings.size())};
-    const VkDescriptorPoolCreateInfo poolInfo{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                              .maxSets = kSets,
-                                              .poolSizeCount = 1,
-                                              .pPoolSizes = &size};
+    VkDescriptorPoolCreateInfo poolInfo{};
+    poolInfo.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    poolInfo.maxSets = kSets;
+    poolInfo.poolSizeCount = 1;
+    poolInfo.pPoolSizes = &size;
     GLINT_TRY_DO(
         checkCall("vkCreateDescriptorPool", vkCreateDescriptorPool(device, &poolInfo, nullptr, &pool_)));
     std::array<VkDescriptorSetLayout, kSets> layouts{};
     layouts.fill(setLayout_);
-    const VkDescriptorSetAllocateInfo sets{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                                           .descriptorPool = pool_,
-                                           .descriptorSetCount = kSets,
-                                           .pSetLayouts = layouts.data()};
+    VkDescriptorSetAllocateInfo sets{};
+    sets.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO;
+    sets.descriptorPool = pool_;
+    sets.descriptorSetCount = kSets;
+    sets.pSetLayouts = layouts.data();
     GLINT_TRY_DO(checkCall("vkAllocateDescriptorSets", vkAllocateDescriptorSets(device, &sets, sets_)));
     const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(DisplayOptions)};
-    const VkPipelineLayoutCreateInfo layoutInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                                                .setLayoutCount = 1,
-                                                .pSetLayouts = &setLayout_,
-                                                .pushConstantRangeCount = 1,
-                                                .pPushConstantRanges = &range};
+    VkPipelineLayoutCreateInfo layoutInfo{};
+    layoutInfo.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO;
+    layoutInfo.setLayoutCount = 1;
+    layoutInfo.pSetLayouts = &setLayout_;
+    layoutInfo.pushConstantRangeCount = 1;
+    layoutInfo.pPushConstantRanges = &range;
     GLINT_TRY_DO(
         checkCall("vkCreatePipelineLayout", vkCreatePipelineLayout(device, &layoutInfo, nullptr, &layout_)));
-    const VkShaderModuleCreateInfo moduleInfo{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                              .codeSize = sizeof(kDisplayShader),
-                                              .pCode = kDisplayShader};
+    VkShaderModuleCreateInfo moduleInfo{};
+    moduleInfo.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO;
+    moduleInfo.codeSize = sizeof(kDisplayShader);
+    moduleInfo.pCode = kDisplayShader;
     VkShaderModule module = VK_NULL_HANDLE;
     GLINT_TRY_DO(
         checkCall("vkCreateShaderModule", vkCreateShaderModule(device, &moduleInfo, nullptr, &module)));
-    const VkComputePipelineCreateInfo info{
-        .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-        .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                  .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                  .module = module,
-                  .pName = "main"},
-        .layout = layout_};
+    VkComputePipelineCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO;
+    info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+    info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
+    info.stage.module = module;
+    info.stage.pName = "main";
+    info.layout = layout_;
     const VkResult result = vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &info, nullptr, &pipeline_);
     vkDestroyShaderModule(device, module, nullptr);
     return checkCall("vkCreateComputePipelines", result);
@@ -119,8 +123,9 @@ bool Display::recordCopy(VkCommandBuffer commands) {
         return false;
     }
     prepare(commands);
-    const VkBufferImageCopy copy{.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                 .imageExtent = {keptWidth_, keptHeight_, 1}};
+    VkBufferImageCopy copy{};
+    copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    copy.imageExtent = {keptWidth_, keptHeight_, 1};
     vkCmdCopyBufferToImage(commands, kept_.handle, image_.image, VK_IMAGE_LAYOUT_GENERAL, 1, &copy);
     recordBarrier(commands);
     return true;
@@ -135,12 +140,12 @@ void Display::record(VkCommandBuffer commands, VkImageView first, VkImageView se
     std::array<VkWriteDescriptorSet, 3> writes{};
     for (std::uint32_t i = 0; i < writes.size(); ++i) {
         images[i] = {VK_NULL_HANDLE, views[i], VK_IMAGE_LAYOUT_GENERAL};
-        writes[i] = {.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                     .dstSet = set,
-                     .dstBinding = i,
-                     .descriptorCount = 1,
-                     .descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-                     .pImageInfo = &images[i]};
+        writes[i].sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
+        writes[i].dstSet = set;
+        writes[i].dstBinding = i;
+        writes[i].descriptorCount = 1;
+        writes[i].descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+        writes[i].pImageInfo = &images[i];
     }
     vkUpdateDescriptorSets(context_.handles().device, static_cast<std::uint32_t>(writes.size()),
                            writes.data(), 0, nullptr);

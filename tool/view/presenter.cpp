@@ -33,11 +33,6 @@ std::optional<VkSurfaceFormatKHR> chooseFormat(VkPhysicalDevice device, VkSurfac
     return std::nullopt;
 }
 
-Status createSemaphore(VkDevice device, VkSemaphore& semaphore) {
-    const VkSemaphoreCreateInfo info{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
-    return checkCall("vkCreateSemaphore", vkCreateSemaphore(device, &info, nullptr, &semaphore));
-}
-
 }  // namespace
 
 Result<std::unique_ptr<Presenter>> Presenter::create(Context& context, GLFWwindow* window) {
@@ -74,23 +69,26 @@ Presenter::~Presenter() {
 }
 
 Status Presenter::createRenderPass() {
-    const VkAttachmentDescription target{.format = format_.format,
-                                         .samples = VK_SAMPLE_COUNT_1_BIT,
-                                         .loadOp = VK_ATTACHMENT_LOAD_OP_LOAD,
-                                         .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
-                                         .stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE,
-                                         .stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE,
-                                         .initialLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                                         .finalLayout = VK_IMAGE_LAYOUT_PRESENT_SRC_KHR};
+    VkAttachmentDescription target{};
+    target.format = format_.format;
+    target.samples = VK_SAMPLE_COUNT_1_BIT;
+    target.loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
+    target.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    target.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
+    target.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
+    target.initialLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    target.finalLayout = VK_IMAGE_LAYOUT_PRESENT_SRC_KHR;
     const VkAttachmentReference reference{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
-    const VkSubpassDescription subpass{.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS,
-                                       .colorAttachmentCount = 1,
-                                       .pColorAttachments = &reference};
-    const VkRenderPassCreateInfo info{.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO,
-                                      .attachmentCount = 1,
-                                      .pAttachments = &target,
-                                      .subpassCount = 1,
-                                      .pSubpasses = &subpass};
+    VkSubpassDescription subpass{};
+    subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
+    subpass.colorAttachmentCount = 1;
+    subpass.pColorAttachments = &reference;
+    VkRenderPassCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO;
+    info.attachmentCount = 1;
+    info.pAttachments = &target;
+    info.subpassCount = 1;
+    info.pSubpasses = &subpass;
     return checkCall("vkCreateRenderPass",
                      vkCreateRenderPass(context_.handles().device, &info, nullptr, &renderPass_));
 }
@@ -99,9 +97,13 @@ Status Presenter::createFrames() {
     VkDevice device = context_.handles().device;
     for (InFlight& frame : inFlight_) {
         GLINT_TRY_DO(createCommands(context_, frame.pool, frame.commands));
-        const VkFenceCreateInfo fence{.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
+        VkFenceCreateInfo fence{};
+        fence.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO;
+        VkSemaphoreCreateInfo semaphore{};
+        semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
         GLINT_TRY_DO(checkCall("vkCreateFence", vkCreateFence(device, &fence, nullptr, &frame.done)));
-        GLINT_TRY_DO(createSemaphore(device, frame.acquired));
+        GLINT_TRY_DO(
+            checkCall("vkCreateSemaphore", vkCreateSemaphore(device, &semaphore, nullptr, &frame.acquired)));
     }
     return okStatus();
 }
@@ -125,22 +127,27 @@ Status Presenter::addImages() {
     for (VkImage handle : images) {
         Image& image = images_.emplace_back();
         image.handle = handle;
-        const VkImageViewCreateInfo view{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                         .image = handle,
-                                         .viewType = VK_IMAGE_VIEW_TYPE_2D,
-                                         .format = format_.format,
-                                         .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+        VkImageViewCreateInfo view{};
+        view.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO;
+        view.image = handle;
+        view.viewType = VK_IMAGE_VIEW_TYPE_2D;
+        view.format = format_.format;
+        view.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
         GLINT_TRY_DO(checkCall("vkCreateImageView", vkCreateImageView(device, &view, nullptr, &image.view)));
-        const VkFramebufferCreateInfo target{.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO,
-                                             .renderPass = renderPass_,
-                                             .attachmentCount = 1,
-                                             .pAttachments = &image.view,
-                                             .width = extent_.width,
-                                             .height = extent_.height,
-                                             .layers = 1};
+        VkFramebufferCreateInfo target{};
+        target.sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO;
+        target.renderPass = renderPass_;
+        target.attachmentCount = 1;
+        target.pAttachments = &image.view;
+        target.width = extent_.width;
+        target.height = extent_.height;
+        target.layers = 1;
         GLINT_TRY_DO(checkCall("vkCreateFramebuffer",
                                vkCreateFramebuffer(device, &target, nullptr, &image.framebuffer)));
-        GLINT_TRY_DO(createSemaphore(device, image.drawn));
+        VkSemaphoreCreateInfo semaphore{};
+        semaphore.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO;
+        GLINT_TRY_DO(
+            checkCall("vkCreateSemaphore", vkCreateSemaphore(device, &semaphore, nullptr, &image.drawn)));
     }
     return okStatus();
 }
@@ -166,24 +173,25 @@ Status Presenter::createSwapchain() {
     }
     vkDeviceWaitIdle(device);
     destroySwapchain();
-    const std::uint32_t fewest = std::max(can.minImageCount, kFramesInFlight);
-    const bool canBeOpaque = (can.supportedCompositeAlpha & VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR) != 0;
-    const VkSwapchainCreateInfoKHR info{
-        .sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR,
-        .surface = surface_,
-        .minImageCount = can.maxImageCount > 0 ? std::min(fewest, can.maxImageCount) : fewest,
-        .imageFormat = format_.format,
-        .imageColorSpace = format_.colorSpace,
-        .imageExtent = extent_,
-        .imageArrayLayers = 1,
-        .imageUsage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-        .imageSharingMode = VK_SHARING_MODE_EXCLUSIVE,
-        .preTransform = can.currentTransform,
-        .compositeAlpha =
-            canBeOpaque ? VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR : VK_COMPOSITE_ALPHA_INHERIT_BIT_KHR,
-        .presentMode = VK_PRESENT_MODE_FIFO_KHR,
-        .clipped = VK_TRUE,
-        .oldSwapchain = swapchain_};
+    VkSwapchainCreateInfoKHR info{};
+    info.sType = VK_STRUCTURE_TYPE_SWAPCHAIN_CREATE_INFO_KHR;
+    info.surface = surface_;
+    info.minImageCount = std::max(can.minImageCount, kFramesInFlight);
+    info.minImageCount =
+        can.maxImageCount > 0 ? std::min(info.minImageCount, can.maxImageCount) : info.minImageCount;
+    info.imageFormat = format_.format;
+    info.imageColorSpace = format_.colorSpace;
+    info.imageExtent = extent_;
+    info.imageArrayLayers = 1;
+    info.imageUsage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    info.imageSharingMode = VK_SHARING_MODE_EXCLUSIVE;
+    info.preTransform = can.currentTransform;
+    info.compositeAlpha = (can.supportedCompositeAlpha & VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR) != 0
+                              ? VK_COMPOSITE_ALPHA_OPAQUE_BIT_KHR
+                              : VK_COMPOSITE_ALPHA_INHERIT_BIT_KHR;
+    info.presentMode = VK_PRESENT_MODE_FIFO_KHR;
+    info.clipped = VK_TRUE;
+    info.oldSwapchain = swapchain_;
     VkSwapchainKHR made = VK_NULL_HANDLE;
     const VkResult result = vkCreateSwapchainKHR(device, &info, nullptr, &made);
     vkDestroySwapchainKHR(device, swapchain_, nullptr);
@@ -218,8 +226,9 @@ Result<bool> Presenter::begin(Frame& frame) {
     }
     stale_ = acquired == VK_SUBOPTIMAL_KHR;
     vkResetCommandPool(device, own.pool, 0);
-    const VkCommandBufferBeginInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
-                                        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
+    VkCommandBufferBeginInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
+    info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     vkBeginCommandBuffer(own.commands, &info);
     frame.commands = own.commands;
     return true;
@@ -238,7 +247,8 @@ void Presenter::beginDrawing(const Frame& frame, const DeviceImage* picture, con
         // While the window shrinks, the area may reach beyond it.
         const int width = (right - area.x) * static_cast<int>(picture->width) / area.width;
         const int height = (bottom - area.y) * static_cast<int>(picture->height) / area.height;
-        VkImageBlit blit{.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1}};
+        VkImageBlit blit{};
+        blit.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
         blit.srcOffsets[1] = {std::max(width, 1), std::max(height, 1), 1};
         blit.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
         blit.dstOffsets[0] = {area.x, area.y, 0};
@@ -248,10 +258,11 @@ void Presenter::beginDrawing(const Frame& frame, const DeviceImage* picture, con
     }
     recordLayout(frame.commands, window, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
                  VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL);
-    const VkRenderPassBeginInfo info{.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
-                                     .renderPass = renderPass_,
-                                     .framebuffer = images_[frame.image].framebuffer,
-                                     .renderArea = {{}, extent_}};
+    VkRenderPassBeginInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO;
+    info.renderPass = renderPass_;
+    info.framebuffer = images_[frame.image].framebuffer;
+    info.renderArea.extent = extent_;
     vkCmdBeginRenderPass(frame.commands, &info, VK_SUBPASS_CONTENTS_INLINE);
 }
 
@@ -262,22 +273,24 @@ Status Presenter::end(const Frame& frame) {
     GLINT_TRY_DO(checkCall("vkEndCommandBuffer", vkEndCommandBuffer(frame.commands)));
     vkResetFences(device, 1, &own.done);
     const VkPipelineStageFlags stage = VK_PIPELINE_STAGE_TRANSFER_BIT;
-    const VkSubmitInfo submit{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
-                              .waitSemaphoreCount = 1,
-                              .pWaitSemaphores = &own.acquired,
-                              .pWaitDstStageMask = &stage,
-                              .commandBufferCount = 1,
-                              .pCommandBuffers = &own.commands,
-                              .signalSemaphoreCount = 1,
-                              .pSignalSemaphores = &images_[frame.image].drawn};
+    VkSubmitInfo submit{};
+    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
+    submit.waitSemaphoreCount = 1;
+    submit.pWaitSemaphores = &own.acquired;
+    submit.pWaitDstStageMask = &stage;
+    submit.commandBufferCount = 1;
+    submit.pCommandBuffers = &own.commands;
+    submit.signalSemaphoreCount = 1;
+    submit.pSignalSemaphores = &images_[frame.image].drawn;
     GLINT_TRY_DO(checkCall("vkQueueSubmit", vkQueueSubmit(context_.handles().queue, 1, &submit, own.done)));
     own.number = ++submitted_;
-    const VkPresentInfoKHR present{.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR,
-                                   .waitSemaphoreCount = 1,
-                                   .pWaitSemaphores = &images_[frame.image].drawn,
-                                   .swapchainCount = 1,
-                                   .pSwapchains = &swapchain_,
-                                   .pImageIndices = &frame.image};
+    VkPresentInfoKHR present{};
+    present.sType = VK_STRUCTURE_TYPE_PRESENT_INFO_KHR;
+    present.waitSemaphoreCount = 1;
+    present.pWaitSemaphores = &images_[frame.image].drawn;
+    present.swapchainCount = 1;
+    present.pSwapchains = &swapchain_;
+    present.pImageIndices = &frame.image;
     const VkResult result = vkQueuePresentKHR(context_.handles().queue, &present);
     slot_ = (slot_ + 1) % kFramesInFlight;
     if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR) {
@@ -357,11 +370,12 @@ Status Interface::start(GLFWwindow* window, const Presenter& presenter) {
 
     constexpr std::uint32_t kTextures = 16;  // more than Dear ImGui has fonts
     const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kTextures};
-    const VkDescriptorPoolCreateInfo pool{.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                          .flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT,
-                                          .maxSets = kTextures,
-                                          .poolSizeCount = 1,
-                                          .pPoolSizes = &size};
+    VkDescriptorPoolCreateInfo pool{};
+    pool.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    pool.flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT;
+    pool.maxSets = kTextures;
+    pool.poolSizeCount = 1;
+    pool.pPoolSizes = &size;
     GLINT_TRY_DO(
         checkCall("vkCreateDescriptorPool", vkCreateDescriptorPool(handles.device, &pool, nullptr, &pool_)));
 
