@@ -28,7 +28,7 @@ from scene_parts import png
 
 SAMPLES = (2, 4, 8, 16, 32, 64)
 STRATEGIES = ("uber", "visibility", "sorted-uber", "hit-shaders")
-# What `glint render` is told of the light, by kind.
+# The options of `glint render` for each kind of light.
 KINDS = {
     "points": ["--sky", "0"],
     "sizes": ["--sky", "0", "--light-radius", "0.25", "--sun-angle", "11"],

@@ -16,7 +16,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
-# What the bars are divided into, and the members of the JSON that each part sums.
+# The parts of the bars, and the members of the JSON that each part sums.
 PARTS = {
     "notice the edit": ["notice"],
     "read and plan": ["read", "plan"],

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures the window: frames a second, the time to the first picture, and memory over many frames.
 
-    benchmarks/view/measure.py SCENE [--glint FILE] [--size WxH] [--runs N] [--frames N] [--only rate,start,memory]
+    benchmarks/view/measure.py SCENE [--program FILE] [--size WxH] [--runs N] [--frames N] [--only rate,start,memory]
                                [--options WORDS]
 
 Everything runs in an Xvfb of its own, with caches of its own: GLINT_CACHE and MESA_SHADER_CACHE_DIR are folders that
@@ -65,8 +65,8 @@ class Window:
                            MESA_SHADER_CACHE_DIR=str(caches / "mesa"))
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
         start = time.monotonic()
-        process = subprocess.Popen([self.arguments.glint, "view", str(self.arguments.scene.resolve()), "--script",
-                                    "script", "--verbose"] + more + self.arguments.options.split(), cwd=self.folder, env=environment, text=True,
+        process = subprocess.Popen([self.arguments.program, "script", "view", str(self.arguments.scene.resolve()),
+                                    "--verbose"] + more + self.arguments.options.split(), cwd=self.folder, env=environment, text=True,
                                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         first = None
         said = []
@@ -146,7 +146,7 @@ def measure_memory(window, caches):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scene", type=pathlib.Path)
-    parser.add_argument("--glint", default=str(ROOT / "build/release/bin/glint"))
+    parser.add_argument("--program", default=str(ROOT / "build/release/tests/glint-view-script"))
     parser.add_argument("--size", default="640x360")
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument("--frames", type=int, default=10000)

@@ -76,7 +76,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scene", type=pathlib.Path)
     parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("--glint", default=str(ROOT / "build/release/bin/glint"))
+    parser.add_argument("--program", default=str(ROOT / "build/release/tests/glint-view-script"))
     parser.add_argument("--size", default="440x500")
     parser.add_argument("--spp", default="8")
     parser.add_argument("--pixel", default="220 305", help="of the window, which is explained")
@@ -84,8 +84,8 @@ def main():
     with Screen() as screen, tempfile.TemporaryDirectory() as work:
         script = pathlib.Path(work) / "tour"
         script.write_text(TOUR.format(pixel=arguments.pixel))
-        subprocess.run([arguments.glint, "view", str(arguments.scene.resolve()), "--size", arguments.size, "--spp",
-                        arguments.spp, "--script", str(script), "--verbose"], cwd=work, check=True,
+        subprocess.run([arguments.program, str(script), "view", str(arguments.scene.resolve()), "--size", arguments.size,
+                        "--spp", arguments.spp, "--verbose"], cwd=work, check=True,
                        env=dict(os.environ, DISPLAY=screen.display))
         for picture in sorted(pathlib.Path(work).glob("view_*.png")):
             image = Image.open(picture).convert("RGB")

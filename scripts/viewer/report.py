@@ -13,8 +13,8 @@ FACING = 0.5  # cosine of the view from which a surface counts as facing
 COLOURS = {"baseColorTexture", "emissiveTexture", "sheenColorTexture", "specularColorTexture",
            "diffuseTransmissionColorTexture", "diffuseTexture", "specularGlossinessTexture"}
 
-# What the viewer is known to do otherwise than the specification, found by reading its source (version 1.1.0). Each
-# has a sentence, and a function that says whether it concerns a material.
+# The known differences of the viewer from the specification, found by reading its source (version 1.1.0). Each has
+# a sentence, and a function that says whether it concerns a material.
 FAULTS = {
     "split-sum": (
         "The map is filtered as if it were seen head-on, and a table stands for the angle (Karis 2013). Glint's "

@@ -128,7 +128,7 @@ TEST_F(Calibrate, KeepsWhatElseIsInTheFolder) {
     EXPECT_FALSE(std::filesystem::exists(path("out/calibration.json")));
 }
 
-// What a person sends must not tell who it is.
+// A report that a person sends must not tell who it is.
 TEST_F(Calibrate, ReportsTheDeviceWithoutNamesOfPeople) {
     std::filesystem::create_directory(path("secret"));
     writeTinyScene(path("secret"));

@@ -151,7 +151,11 @@ void CommandTest::TearDown() {
 
 Outcome CommandTest::run(const std::vector<std::string>& arguments,
                          const std::vector<std::pair<std::string, std::string>>& variables) const {
-    std::vector<std::string> words{commandPath()};
+    return runAs({commandPath()}, arguments, variables);
+}
+
+Outcome CommandTest::runAs(std::vector<std::string> words, const std::vector<std::string>& arguments,
+                           const std::vector<std::pair<std::string, std::string>>& variables) const {
     words.insert(words.end(), arguments.begin(), arguments.end());
     Outcome outcome = runProgram(words, variables);
     const bool raised = std::ranges::any_of(arguments, [](const std::string& argument) {

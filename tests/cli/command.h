@@ -38,6 +38,9 @@ protected:
     // build's own. Fails the test if a diagnostic has an id or a severity that the table lacks.
     Outcome run(const std::vector<std::string>& arguments,
                 const std::vector<std::pair<std::string, std::string>>& variables = {}) const;
+    // Runs a program that takes the same command line after its own `words`.
+    Outcome runAs(std::vector<std::string> words, const std::vector<std::string>& arguments,
+                  const std::vector<std::pair<std::string, std::string>>& variables = {}) const;
     Outcome runWith(std::vector<std::string> arguments, const std::vector<std::string>& more) const {
         arguments.insert(arguments.end(), more.begin(), more.end());
         return run(arguments);

@@ -35,7 +35,7 @@ protected:
     Outcome ninja(const std::string& plan = "plan") const {
         return runProgram({"ninja", "-f", plan + "/build.ninja"}, {{"NINJA_STATUS", ""}});
     }
-    // What Ninja compiles and makes now; both are below 0 if it fails.
+    // The numbers of things that Ninja compiles and makes now; both are below 0 if it fails.
     struct Work {
         int modules = -1;
         int packages = -1;

@@ -131,7 +131,7 @@ TEST_F(Usage, MistakesExitWithTwoAndSayWhatToDo) {
         EXPECT_TRUE(outcome.out.empty()) << outcome.out;
         EXPECT_TRUE(has(outcome.err, mistake.message)) << mistake.message << "\n" << outcome.err;
         EXPECT_TRUE(has(outcome.err, " --help for its options.")) << outcome.err;
-        // What is wrong comes first, then what to do.
+        // The message says first what is wrong, then what to do.
         const std::string line = outcome.err.substr(0, outcome.err.find('\n'));
         EXPECT_TRUE(has(line, "; ")) << line;
     }

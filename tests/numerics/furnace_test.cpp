@@ -213,7 +213,7 @@ TEST(Furnace, NothingReflectsMoreThanItReceives) {
         if (most > 0.98) {
             most = largestOf(albedo(seen, 20000));
         }
-        // What a rough volume passes from outside is an estimate (see the tests of glass below).
+        // The light that a rough volume passes from outside is an estimate (see the tests of glass below).
         const double bound = seen.has(GLINT_VOLUME) && seen.bsdf.eta.y > 1.0 ? 1.011 : 1.001;
         EXPECT_LE(most, bound) << "material " << i << " of seed " << kSeed << ": " << seen;
         failures += most > bound ? 1 : 0;

@@ -10,7 +10,7 @@ namespace glint::numerics {
 
 // Any float.
 inline constexpr double kAny = verify::kLargestSingle;
-// What rounding adds to a share of 1.
+// A share of 1, with the most that rounding adds to it.
 inline constexpr double kOne = 1.0 + 1e-5;
 
 // For claims about few numbers that so many boxes decide in a second.

@@ -143,7 +143,7 @@ TEST(Intervals, EncloseEveryOperationAtPointsOfTheBox) {
         for (const verify::InputRange& input : claim.inputs) {
             domain.push_back({input.low, input.high});
         }
-        // What proofs evaluate has more patterns than what it was made from.
+        // The program that proofs evaluate has more patterns than the one from which it was made.
         const verify::Program program =
             k % 4 == 0 ? programs()[k] : verify::specialise(programs()[k], domain);
         verify::BoxEvaluator boxes(program);
@@ -352,7 +352,7 @@ TEST(Proofs, AMissingCheckOfADomainIsFound) {
     }
 }
 
-// What depends on a resource is no proof.
+// A proof follows nothing that depends on a resource.
 TEST(Proofs, WhatCannotBeFollowedIsSaid) {
     EXPECT_EQ(mustFail(compileClaim("while (o[0] < i[0]) { o[0] = o[0] * 1.5 + 1.0; }")).id,
               "prove-unsupported");

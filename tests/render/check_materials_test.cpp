@@ -167,7 +167,7 @@ TEST(CheckMaterials, FindEachPlantedFaultAndNoOther) {
             << failures[0].message;
         EXPECT_FALSE(failures[0].hint.empty());
         EXPECT_EQ(stateOf(feature, planted->fails), measure::CheckState::Failed);
-        // What samples should follow is not known if the density is wrong.
+        // If the density is wrong, nobody knows what samples should follow.
         EXPECT_EQ(stateOf(feature, measure::MaterialCheck::Samples),
                   planted->fails == measure::MaterialCheck::Density   ? measure::CheckState::Unsure
                   : planted->fails == measure::MaterialCheck::Samples ? measure::CheckState::Failed

@@ -111,7 +111,7 @@ class EditedScene {
 public:
     explicit EditedScene(EditedSceneOptions options);
 
-    // What is there. Each object was added by the test or, if `first` is set, was uploaded.
+    // The objects that are there. Each was added by the test or, if `first` is set, was uploaded.
     struct Material {
         MaterialHandle handle;
         std::uint32_t kind = 0;

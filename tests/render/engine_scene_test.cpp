@@ -693,7 +693,7 @@ TEST(EngineSceneContent, MaterialsHaveTexturesOfAllDimensionsAndBuffers) {
         }
     }
 
-    // What is declared as a cube must be one.
+    // An image that is declared as a cube must be one.
     session::SceneViewData data = session::makeSceneView(scene);
     data.images[3] = {1, 1, kWhiteTexel};
     const Diagnostic refused = mustFail(GpuScene::upload(sharedContext(), *package, data.view()));

@@ -161,7 +161,7 @@ protected:
         return source;
     }
 
-    // What a kernel writes under a sky, `perHit` values for each hit.
+    // Returns the values that a kernel writes under a sky, `perHit` for each hit.
     static std::vector<float> valuesOf(HitKernel& kernel, const Sky& sky, std::size_t perHit) {
         gpu::FrameConstants constants{};
         constants.seed = 7;

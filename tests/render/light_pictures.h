@@ -1,4 +1,4 @@
-// What the tests of lights share: quads as surfaces, and the means and errors of pictures.
+// The tests of lights share this: quads as surfaces, and the means and errors of pictures.
 #pragma once
 
 #include "gltf/scene.h"

@@ -1,4 +1,4 @@
-// What edits refuse, materials without a case, buffers that grow, and other strategies.
+// Tests edits that are refused, materials without a case, buffers that grow, and other strategies.
 #include "render/edited_scene.h"
 #include "render/moving_scenes.h"
 #include "render/scene_builder.h"

@@ -168,7 +168,7 @@ TEST_F(LiveEditLamps, AnotherTextureIsBrightElsewhere) {
     EXPECT_EQ(lamps_->shining(), lit);
 }
 
-// What concerns no light leaves them alone.
+// An edit that concerns no light leaves the hierarchy alone.
 TEST_F(LiveEditLamps, OtherEditsLeaveTheHierarchyAlone) {
     edited().frame();
     const SceneStore& store = *edited().gpuScene().state().store;

@@ -18,7 +18,7 @@ namespace {
 using namespace glint;
 using namespace glint::testing;
 
-// What light_tree.comp writes for a point.
+// The words that light_tree.comp writes for a point.
 constexpr std::uint32_t kWordsOfChoice = 6;
 // A packed normal of surfaces that take light of both sides (light/tree.glsl).
 constexpr std::uint32_t kBothSides = 0x80008000U;

@@ -195,7 +195,7 @@ TEST(HalfPicture, IsWithinItsBitsOfTheFullOne) {
     }
 }
 
-// What a picture of bright light shows in a package with these layers.
+// Expects the value that a picture of bright light shows in a package with these layers.
 void expectBrightPicture(std::vector<std::string> layers, float expected) {
     gltf::Scene scene = sceneWithCamera();
     materials::Material lamp;

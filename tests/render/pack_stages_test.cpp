@@ -1,4 +1,4 @@
-// What packs add beside lobes: attributes of vertices, a time, coordinates and opacity. Every strategy,
+// Tests what packs add beside lobes: attributes of vertices, a time, coordinates and opacity. Every strategy,
 // tracer and merge policy shows them alike.
 #include "base/files.h"
 #include "materials/declarations.h"

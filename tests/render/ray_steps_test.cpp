@@ -88,7 +88,7 @@ KnownRays knownRays(const gltf::Scene& scene, const RenderSetup& setup, std::uin
     return known;
 }
 
-// What a host asks of its steps.
+// The things that a host asks of its steps.
 struct Asked {
     bool apart = false;       // the steps one by one, with the count on the device
     bool givesHits = false;   // those of the host's list

@@ -1,4 +1,4 @@
-// Which packages a renderer takes over, and what its scene keeps of the values before.
+// Tests which packages a renderer takes over, and what its scene keeps of the values before.
 #include "context/commands.h"
 #include "render/edited_scene.h"
 #include "render/pixel_test.h"

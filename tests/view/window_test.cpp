@@ -41,13 +41,13 @@ protected:
     // Runs the window with a script and fails the test unless it ends well.
     Outcome view(const std::string& script, const std::vector<std::string>& more = {}) const {
         writeText(path("script"), script);
-        std::vector<std::string> words{"view",       "scene.gltf", "--spp", "2",
-                                       "--validate", "--script",   "script"};
+        std::vector<std::string> words{"view", "scene.gltf", "--spp", "2", "--validate"};
         words.insert(words.end(), more.begin(), more.end());
         if (std::ranges::find(more, "--size") == more.end()) {
             words.insert(words.end(), {"--size", "320x180"});
         }
-        Outcome outcome = must(run(words, {{"DISPLAY", screen().display()}}));
+        Outcome outcome =
+            must(runAs({GLINT_VIEW_SCRIPT, "script"}, words, {{"DISPLAY", screen().display()}}));
         return outcome;
     }
     Json report(const std::string& file) const {
@@ -633,7 +633,8 @@ TEST_F(WindowTest, RefusesWhatItCantDo) {
     writeTinyScene(path(""));
     writeText(path("script"), "wait complete\nfly to the moon\n");
     const std::vector<std::pair<std::string, std::string>> variables{{"DISPLAY", screen().display()}};
-    const Outcome script = run({"view", "scene.gltf", "--size", "32x18", "--script", "script"}, variables);
+    const Outcome script =
+        runProgram({GLINT_VIEW_SCRIPT, "script", "view", "scene.gltf", "--size", "32x18"}, variables);
     EXPECT_EQ(script.exit, 1);
     EXPECT_TRUE(has(script.err, "script:2: error: is no step of a script: fly")) << script.err;
     const Outcome missing = run({"view", "none.gltf"}, variables);

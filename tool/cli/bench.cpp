@@ -117,7 +117,7 @@ Result<int> run(const Console& console, const BenchArguments& arguments) {
     report.seed = arguments.render.frame.seed + 1;
     report.batch = static_cast<std::uint32_t>(arguments.batch);
     report.quick = arguments.quick;
-    report.metric = measure::metricNamed(arguments.metric);
+    report.metric = arguments.metric;
     GLINT_TRY_DO(bench(console, arguments, opened.scene, report));
     if (console.refused()) {
         return kExitFailed;

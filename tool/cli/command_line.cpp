@@ -77,10 +77,7 @@ int refuse(const Slip& slip) {
 
 // glint help COMMAND is glint COMMAND --help.
 void addHelp(CLI::App& app, Action& chosen) {
-    std::vector<std::string> names;
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-        names.push_back(command->get_name());
-    }
+    const std::vector<std::string> names = commandNames(app);
     CLI::App& help = addCommand(app, {.name = "help",
                                       .what = "Show what a command is for, and its usual options",
                                       .examples = {"glint help render", "glint help"},

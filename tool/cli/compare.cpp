@@ -6,7 +6,6 @@
 #include "cli/options/options.h"
 #include "cli/report.h"
 #include "cli/table.h"
-#include "image/flip.h"
 #include "image/image_file.h"
 #include "image/tone.h"
 

@@ -78,8 +78,6 @@ void addView(CLI::App& app, Action& chosen, std::span<const char* const> line, c
             "begin with the panel; Tab shows and hides it");
     addText(command, "--screenshots", arguments->request.folder, "DIR",
             "where screenshots are written, under new names (default: here)");
-    addText(command, "--script", arguments->request.script, "FILE",
-            "replay keys, mouse moves and clicks (docs/view.md), for tests and tours");
     command.callback([arguments, line, companion, &command, &chosen] {
         checkPackageChoice(command);
         checkSceneOptions(command, *arguments);
@@ -89,10 +87,9 @@ void addView(CLI::App& app, Action& chosen, std::span<const char* const> line, c
                        ? show(console, *arguments, companion)
                        : startCompanion(
                              "glint-view", line,
-                             makeError(
-                                 "window-missing", "", "this glint was built without its window",
-                                 "install libglfw3-dev, libimgui-dev, libxtst-dev and glslang-tools, then "
-                                 "configure and build Glint again"));
+                             makeError("window-missing", "", "this glint was built without its window",
+                                       "install libglfw3-dev, libimgui-dev and glslang-tools, then "
+                                       "configure and build Glint again"));
         };
     });
 }

@@ -1,6 +1,5 @@
 #include "image/compare.h"
 
-#include "image/flip.h"
 #include "image/tone.h"
 
 #include <algorithm>
@@ -133,9 +132,6 @@ DisplayImage differenceMap(const LinearImage& image, const LinearImage& referenc
 
 namespace {
 
-// Bounds the weight of dark pixels, as in compareImages().
-constexpr double kEpsilon = 0.01;
-
 // The share of pixels that are inliers; the pixels with larger errors are outliers.
 constexpr double kInliers = 0.999;
 
@@ -169,7 +165,7 @@ ImageErrors summarize(const LinearImage& reference, double scale, const Differen
         for (std::size_t c = 0; c < 3; ++c) {
             const double r = scale * reference.pixels[i][c];
             const double d = scale * difference(i, c);
-            ofPixel += d * d / (r * r + kEpsilon);
+            ofPixel += d * d / (r * r + kRelMseEpsilon);
             squared += d * d;
             signedSum += d;
             light += r;

@@ -1,4 +1,4 @@
-#include "image/flip.h"
+#include "image/compare.h"
 
 #include <algorithm>
 #include <array>

@@ -34,15 +34,6 @@ Result<Format> formatOf(const std::filesystem::path& path,
                      std::string("use ") + formats[0].first + " or " + formats[1].first);
 }
 
-DisplayImage toDisplayImage(const LinearImage& image, double exposure) {
-    DisplayImage display{image.width, image.height, {}};
-    display.pixels.reserve(image.pixels.size());
-    for (const std::array<float, 4>& pixel : image.pixels) {
-        display.pixels.push_back(toDisplay({pixel[0], pixel[1], pixel[2]}, exposure));
-    }
-    return display;
-}
-
 Status writeEncoded(const std::filesystem::path& path, const Result<base::Bytes>& bytes) {
     if (!bytes) {
         return bytes.error();
@@ -51,6 +42,15 @@ Status writeEncoded(const std::filesystem::path& path, const Result<base::Bytes>
 }
 
 }  // namespace
+
+DisplayImage toDisplayImage(const LinearImage& image, double exposure) {
+    DisplayImage display{image.width, image.height, {}};
+    display.pixels.reserve(image.pixels.size());
+    for (const std::array<float, 4>& pixel : image.pixels) {
+        display.pixels.push_back(toDisplay({pixel[0], pixel[1], pixel[2]}, exposure));
+    }
+    return display;
+}
 
 Result<ImageFormat> imageFormat(const std::filesystem::path& path) {
     return formatOf<ImageFormat>(path, {{{".png", ImageFormat::Png}, {".exr", ImageFormat::Exr}}});

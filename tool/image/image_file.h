@@ -24,6 +24,9 @@ Result<ImageFormat> imageFormat(const std::filesystem::path& path);
 // Has the errors of readFile(), decodePng() and decodeExr().
 Result<LinearImage> readImage(const std::filesystem::path& path);
 
+// Returns the picture as a display shows it, exposed by `exposure` stops and tone mapped.
+DisplayImage toDisplayImage(const LinearImage& image, double exposure);
+
 enum class RadianceFormat : std::uint8_t { Hdr, Exr };
 
 // Returns the format of a picture that holds radiance, by the extension, in upper or lower case. Error

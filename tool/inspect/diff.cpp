@@ -96,19 +96,6 @@ void readTotals(const compiler::Manifest& manifest, DiffPackage& package) {
                       {"package bytes", bytes}};
 }
 
-Result<DiffPackage> readManifestPart(const std::filesystem::path& folder) {
-    GLINT_TRY(const auto manifest, compiler::readManifest(folder));
-    DiffPackage package;
-    package.settings = settingsOf(manifest);
-    readCases(manifest, package);
-    if (!readMaterials(manifest, package)) {
-        return makeError("manifest-format", (folder / package::kManifestFile).string(),
-                         "has a material of a scene that it lacks", "compile the package again");
-    }
-    readTotals(manifest, package);
-    return package;
-}
-
 using FeatureSet = std::vector<std::string>;
 
 std::vector<SettingChange> compareSettings(const DiffPackage& before, const DiffPackage& after) {
@@ -338,7 +325,15 @@ auto orderOf(const ModuleChange& change) {
 
 Result<DiffPackage> readDiffPackage(const std::filesystem::path& folder) {
     GLINT_TRY(const auto loaded, Package::load(folder));
-    GLINT_TRY(auto package, readManifestPart(folder));
+    GLINT_TRY(const auto manifest, compiler::readManifest(folder));
+    DiffPackage package;
+    package.settings = settingsOf(manifest);
+    readCases(manifest, package);
+    if (!readMaterials(manifest, package)) {
+        return makeError("manifest-format", (folder / package::kManifestFile).string(),
+                         "has a material of a scene that it lacks", "compile the package again");
+    }
+    readTotals(manifest, package);
     for (const package::ModuleEntry& entry : loaded.modules()) {
         package::ModuleKey key{entry.role, entry.index, entry.tracer};
         GLINT_TRY(const auto statistics, compiler::measureSpirv(loaded.spirv(key)));

@@ -32,13 +32,6 @@ namespace {
 
 // --- The reference ---
 
-struct ReferenceOptions {
-    // The target for the reference's own relative error: 0.003 is 0.3 % of a pixel's light. Rendering stops
-    // at maxSamples even if the target is not reached.
-    double target = 0.003;
-    std::uint32_t maxSamples = 16384;
-};
-
 constexpr std::string_view kKind = "reference";
 // The samples of a block: enough for their sequence to cover a pixel, and few enough to have many blocks.
 constexpr std::uint32_t kBlock = 32;
@@ -115,25 +108,24 @@ std::optional<Kept> findKept(compiler::CacheStore* store, const std::string& key
 }
 
 // Fills in the picture and its uncertainty.
-void judge(const image::MeanImage& sum, std::span<const std::uint8_t> surfaces,
-           const ReferenceOptions& options, Reference& reference) {
+void judge(const image::MeanImage& sum, std::span<const std::uint8_t> surfaces, Reference& reference) {
     reference.image = sum.mean();
     reference.samples = sum.blocks() * kBlock;
     reference.exposure = image::automaticExposure(reference.image, surfaces);
     reference.noise = image::noiseOf(reference.image, sum.standardError(), reference.exposure);
     reference.relativeError = std::sqrt(reference.noise.trimmed);
-    reference.target = options.target;
-    reference.reached = reference.relativeError <= options.target;
+    reference.reached = reference.relativeError <= reference.target;
 }
 
 // Renders blocks of samples with independent random numbers; their spread gives the uncertainty of their
 // mean. If `store` has the samples of an earlier run of the same program with the same scene, view and
 // device, it continues from them. With a null `store` nothing is kept.
 Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const compiler::BenchFacts& facts,
-                                const ReferenceOptions& options, compiler::CacheStore* store) {
+                                const BenchSettings& settings, compiler::CacheStore* store) {
     const base::Clock::time_point start = base::Clock::now();
     Reference reference;
     reference.isFull = facts.fullTransport;
+    reference.target = settings.referenceError;
     reference.configuration = simplified(exactValues(facts), configurationOf(bed.base()));
     const std::uint32_t width = bed.base().renderer.width;
     const std::uint32_t height = bed.base().renderer.height;
@@ -146,11 +138,11 @@ Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const c
     std::optional<Mount> mount;
     while (true) {
         if (sum.blocks() > 0 && sum.blocks() % kFewestBlocks == 0) {
-            judge(sum, surfaces, options, reference);
+            judge(sum, surfaces, reference);
             observer.progress(fmt::format("reference: {} samples, within {:.2g} % (target {:.2g} %)",
                                           reference.samples, 100.0 * reference.relativeError,
-                                          100.0 * options.target));
-            if (reference.reached || reference.samples >= options.maxSamples) {
+                                          100.0 * reference.target));
+            if (reference.reached || reference.samples >= settings.referenceSamples) {
                 break;
             }
         }
@@ -178,28 +170,14 @@ Result<Reference> makeReference(const Observer& observer, BenchBed& bed, const c
 
 // --- The measurements of points, in rounds ---
 
-struct MeasureOptions {
-    std::uint32_t rounds = 9;
-    std::uint32_t seed = 1;   // of the order; round r renders with random numbers of its own, seed + r
-    std::uint32_t batch = 8;  // configurations that are mounted at a time, besides the default
-    const FilterMaker* filter = nullptr;  // of points with filteredFrames
-    ErrorMetric metric = ErrorMetric::RelMse;
-};
-
-// The picture against which errors are measured.
-struct Truth {
-    const LinearImage& image;
-    double exposure = 0.0;  // stops
-};
-
 bool sameBits(const LinearImage& a, const LinearImage& b) {
     return a.pixels == b.pixels;
 }
 
 // Returns the errors of all pictures, on at most `jobs` threads. The first picture is the default's. A
 // picture that equals the default's gets its errors.
-std::vector<image::ImageErrors> errorsOf(std::span<const LinearImage* const> images, const Truth& truth,
-                                         int jobs) {
+std::vector<image::ImageErrors> errorsOf(std::span<const LinearImage* const> images,
+                                         const Reference& truth, int jobs) {
     std::vector<image::ImageErrors> errors(images.size());
     base::runParallel(images.size(), jobs, [&](std::size_t i) {
         if (i == 0 || !sameBits(*images[i], *images[0])) {
@@ -240,11 +218,12 @@ double ratio(double x, double y) {
 // milliseconds before each picture, so that clocks are up.
 class Measurer {
 public:
-    // `base` is the default. Every batch adds times to it, and the first batch adds its errors. All arguments
-    // must outlive the result. Has the errors of BenchBed::mount().
-    static Result<Measurer> create(const Observer& observer, BenchBed& bed, const MeasureOptions& options,
-                                   const Truth& truth, BenchPoint& base) {
-        Measurer measurer(observer, bed, options, truth);
+    // `base` is the default. Every batch adds times to it, and the first batch adds its errors. `filter` is for
+    // points with filteredFrames. Of `report` the reference counts, and the members that the caller of runBench()
+    // has set. All arguments must outlive the result. Has the errors of BenchBed::mount().
+    static Result<Measurer> create(const Observer& observer, BenchBed& bed, const FilterMaker* filter,
+                                   const BenchReport& report, BenchPoint& base) {
+        Measurer measurer(observer, bed, filter, report);
         GLINT_TRY(auto entry, measurer.mount(base));
         measurer.baseEntry_.push_back(std::move(entry));
         return measurer;
@@ -255,9 +234,9 @@ public:
     Status measure(std::span<BenchPoint> points) {
         // The loop runs at least once, for the default.
         for (std::size_t begin = 0; begin < std::max<std::size_t>(points.size(), 1);
-             begin += options_.batch) {
+             begin += report_.batch) {
             std::vector<Entry> entries;
-            const std::size_t end = std::min(begin + options_.batch, points.size());
+            const std::size_t end = std::min(begin + report_.batch, points.size());
             for (std::size_t i = begin; i < end; ++i) {
                 observer_.progress(
                     fmt::format("compiling {} of {}: {}", i + 1, points.size(), points[i].name));
@@ -285,12 +264,12 @@ private:
         LinearImage mean;  // of its pictures so far
     };
 
-    Measurer(const Observer& observer, BenchBed& bed, const MeasureOptions& options, const Truth& truth)
-        : observer_(observer), bed_(bed), options_(options), truth_(truth) {}
+    Measurer(const Observer& observer, BenchBed& bed, const FilterMaker* filter, const BenchReport& report)
+        : observer_(observer), bed_(bed), filter_(filter), report_(report) {}
 
     Result<Entry> mount(BenchPoint& point) const {
         GLINT_TRY(auto mount, point.filteredFrames > 0
-                                  ? bed_.mountFiltered(*options_.filter, point.filteredFrames)
+                                  ? bed_.mountFiltered(*filter_, point.filteredFrames)
                                   : bed_.mount(point.configuration, point.package));
         // Drivers may compile a pipeline when it first runs.
         GLINT_TRY([[maybe_unused]] const auto first, mount.exposeSamples(0, 1));
@@ -309,17 +288,17 @@ private:
             all.push_back(&entry);
         }
         constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15ULL;  // spreads small seeds over 64 bits
-        std::mt19937_64 random(options_.seed + kOdd * seed);
-        for (std::uint32_t round = 0; round < options_.rounds; ++round) {
+        std::mt19937_64 random(report_.seed + kOdd * seed);
+        for (std::uint32_t round = 0; round < report_.rounds; ++round) {
             GLINT_TRY_DO(warmUp(baseEntry_.front(), kRoundWarmUp));
             for (const std::size_t i : shuffled(all.size(), random)) {
-                GLINT_TRY_DO(expose(*all[i], options_.seed + round));
+                GLINT_TRY_DO(expose(*all[i], report_.seed + round));
             }
             keep(all, round);
         }
         const auto means =
             base::mapped<const LinearImage*>(all, [](const Entry* entry) { return &entry->mean; });
-        const std::vector<image::ImageErrors> errors = errorsOf(means, truth_, bed_.base().compile.jobs);
+        const std::vector<image::ImageErrors> errors = errorsOf(means, report_.reference, bed_.base().compile.jobs);
         for (std::size_t i = baseIsKnown_ ? 1 : 0; i < all.size(); ++i) {
             all[i]->point->errorOfMean = errors[i];
         }
@@ -344,7 +323,7 @@ private:
     void keep(std::span<Entry*> entries, std::uint32_t round) {
         const auto images = base::mapped<const LinearImage*>(
             entries, [](const Entry* entry) { return &entry->exposure.image; });
-        const std::vector<image::ImageErrors> errors = errorsOf(images, truth_, bed_.base().compile.jobs);
+        const std::vector<image::ImageErrors> errors = errorsOf(images, report_.reference, bed_.base().compile.jobs);
         const double baseMs = entries[0]->exposure.milliseconds;
         const double baseHitMs = entries[0]->exposure.hitMs;
         for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -364,7 +343,7 @@ private:
             addToMean(entries[i]->mean, exposure.image, round + 1);
             point.errors.push_back(errors[i]);
             point.errorRatios.push_back(
-                ratio(valueOf(options_.metric, errors[i]), valueOf(options_.metric, errors[0])));
+                ratio(valueOf(report_.metric, errors[i]), valueOf(report_.metric, errors[0])));
             point.sameImage = point.sameImage && sameBits(*images[i], *images[0]);
             if (round == 0) {
                 point.counters = exposure.counters;
@@ -375,8 +354,8 @@ private:
 
     const Observer& observer_;
     BenchBed& bed_;
-    MeasureOptions options_;
-    const Truth& truth_;
+    const FilterMaker* filter_;
+    const BenchReport& report_;
     std::vector<Entry> baseEntry_;  // the one of the default
     bool baseIsKnown_ = false;      // its errors
     std::uint64_t batches_ = 0;
@@ -405,12 +384,8 @@ public:
     Status run() {
         GLINT_TRY_DO(makeTruth());
         base_ = makePoint(PointKind::Default, {});
-        const MeasureOptions options{static_cast<std::uint32_t>(settings_.rounds), report_.seed,
-                                     static_cast<std::uint32_t>(settings_.batch), settings_.filter,
-                                     report_.metric};
-        const Truth truth{report_.reference.image, report_.reference.exposure};
         observer_.progress("compiling the default");
-        GLINT_TRY(auto measurer, Measurer::create(observer_, bed_, options, truth, base_));
+        GLINT_TRY(auto measurer, Measurer::create(observer_, bed_, settings_.filter, report_, base_));
         std::vector<BenchPoint> points;
         for (const Candidate& candidate : settings_.candidates) {
             BenchPoint point = makePoint(PointKind::Package, {});
@@ -465,15 +440,13 @@ private:
         facts.float16 = bed_.facts().float16;
         facts.packsTextures = gltf::hasBasisu() && bed_.context().texelFormats().has(TexelFormat::Bc7, true);
         facts.fullTransport = settings_.reference == "full";
-        const ReferenceOptions options{settings_.referenceError,
-                                       static_cast<std::uint32_t>(settings_.referenceSamples)};
-        GLINT_TRY(report_.reference, makeReference(observer_, bed_, facts, options, store_));
+        GLINT_TRY(report_.reference, makeReference(observer_, bed_, facts, settings_, store_));
         if (!report_.reference.reached) {
             observer_.report(makeWarning(
                 "bench-reference", report_.scene.file,
                 fmt::format("the reference is within {:.2g} % after {} samples, not {:.2g} %",
                             100.0 * report_.reference.relativeError, report_.reference.samples,
-                            100.0 * options.target),
+                            100.0 * report_.reference.target),
                 "give more --reference-spp, or ask for less with --reference-error: smaller errors can't "
                 "be told apart"));
         }

@@ -2,13 +2,12 @@
 
 #include <glint/measure/point.h>
 
-#include <algorithm>
-#include <array>
-#include <iterator>
-
 namespace glint::measure {
 
 namespace {
+
+constexpr double HitTimes::*kHitParts[] = {&HitTimes::dispatch, &HitTimes::trace, &HitTimes::order,
+                                           &HitTimes::shade, &HitTimes::shadow};
 
 // Returns null for passes of primary surfaces or of the picture, and for checks.
 double HitTimes::*partOf(Pass pass) {
@@ -35,20 +34,16 @@ double HitTimes::*partOf(Pass pass) {
 }  // namespace
 
 HitTimes& HitTimes::operator+=(const HitTimes& other) {
-    dispatch += other.dispatch;
-    trace += other.trace;
-    order += other.order;
-    shade += other.shade;
-    shadow += other.shadow;
+    for (double HitTimes::*const part : kHitParts) {
+        this->*part += other.*part;
+    }
     return *this;
 }
 
 HitTimes& HitTimes::operator/=(double count) {
-    dispatch /= count;
-    trace /= count;
-    order /= count;
-    shade /= count;
-    shadow /= count;
+    for (double HitTimes::*const part : kHitParts) {
+        this->*part /= count;
+    }
     return *this;
 }
 
@@ -60,23 +55,6 @@ HitTimes hitTimesOf(std::span<const PassTiming> passes) {
         }
     }
     return times;
-}
-
-namespace {
-
-constexpr std::array<std::string_view, 4> kMetrics{"relMse", "trimmed", "rmse", "flip"};
-constexpr std::array<std::string_view, 7> kKinds{"default", "single", "pair",    "search",
-                                                 "package", "exact",  "filtered"};
-
-}  // namespace
-
-std::string_view nameOf(ErrorMetric metric) {
-    return kMetrics.at(static_cast<std::size_t>(metric));
-}
-
-ErrorMetric metricNamed(std::string_view name) {
-    const auto found = std::ranges::find(kMetrics, name);
-    return static_cast<ErrorMetric>(std::distance(kMetrics.begin(), found));
 }
 
 double valueOf(ErrorMetric metric, const image::ImageErrors& errors) {
@@ -95,10 +73,6 @@ double valueOf(ErrorMetric metric, const image::ImageErrors& errors) {
 
 double additive(ErrorMetric metric, double error) {
     return metric == ErrorMetric::Rmse ? error * error : error;
-}
-
-std::string_view nameOf(PointKind kind) {
-    return kKinds.at(static_cast<std::size_t>(kind));
 }
 
 Interval timeRatio(const BenchPoint& point) {

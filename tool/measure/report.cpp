@@ -3,8 +3,7 @@
 #include "base/lists.h"
 #include "base/text.h"
 #include "image/compare.h"
-#include "image/png.h"
-#include "image/tone.h"
+#include "image/image_file.h"
 #include "measure/page.h"
 #include "settings/descriptor.h"
 
@@ -331,24 +330,16 @@ Status add(Pictures& pictures, std::uint32_t factor, const std::string& name,
     return okStatus();
 }
 
-image::DisplayImage shown(const LinearImage& image, double exposure) {
-    image::DisplayImage display{image.width, image.height, {}};
-    display.pixels.reserve(image.pixels.size());
-    for (const std::array<float, 4>& pixel : image.pixels) {
-        display.pixels.push_back(image::toDisplay({pixel[0], pixel[1], pixel[2]}, exposure));
-    }
-    return display;
-}
-
 Result<Pictures> picturesOf(const BenchReport& report) {
     const double exposure = report.reference.exposure;
     const std::uint32_t factor = pictureScale(report);
     Pictures pictures;
     const LinearImage reference = image::exposed(report.reference.image, exposure);
-    Status added = add(pictures, factor, kReferenceImage, shown(report.reference.image, exposure));
+    Status added =
+        add(pictures, factor, kReferenceImage, image::toDisplayImage(report.reference.image, exposure));
     for (std::size_t i = 0; added && i < report.points.size(); ++i) {
         const LinearImage& image = report.points[i].image;
-        added = add(pictures, factor, imageName(i), shown(image, exposure));
+        added = add(pictures, factor, imageName(i), image::toDisplayImage(image, exposure));
         if (added) {
             added = add(pictures, factor, errorImageName(i),
                         image::differenceMap(image::exposed(image, exposure), reference));

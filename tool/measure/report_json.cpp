@@ -421,7 +421,7 @@ Fields fieldsOf(const PointOf*) {
         output<&T::index>("id", "Index in `points`."),
         output<&T::point, &Point::name>("name", "The settings that differ from the default."),
         output("kind", "The reason for measuring it.", [](const T& it) { return nameOf(it.point().kind); },
-               {.names = {"default", "single", "pair", "search", "package", "exact", "filtered"}}),
+               {.names = base::wordsFor<PointKind>()}),
         output("settings", "The settings that differ from the default, as on the command line.",
                [](const T& it) { return inOrder(it.point().configuration); }),
         output<&T::point, &Point::package>("package", "Folder that --candidate named; null for others.",

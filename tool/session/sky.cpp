@@ -20,12 +20,12 @@ namespace {
 
 using Corners = std::array<glm::dvec3, 3>;
 
-// Returns 1, or -1 if the transform mirrors, which swaps the sides of a triangle.
-double handedness(const std::array<float, 12>& rows) {
+// Returns whether the transform mirrors, which swaps the sides of a triangle.
+bool mirrors(const std::array<float, 12>& rows) {
     const glm::dvec3 x{rows[0], rows[1], rows[2]};
     const glm::dvec3 y{rows[4], rows[5], rows[6]};
     const glm::dvec3 z{rows[8], rows[9], rows[10]};
-    return glm::dot(glm::cross(x, y), z) < 0.0 ? -1.0 : 1.0;
+    return glm::dot(glm::cross(x, y), z) < 0.0;
 }
 
 // Returns a vector along the normal of the triangle's front; its length is twice the area.
@@ -42,7 +42,7 @@ void visitTriangles(const gltf::Scene& scene, const SceneViewData& view,
         if (!instance.visible) {
             continue;
         }
-        const bool mirrored = handedness(instance.objectToWorld) < 0.0;
+        const bool mirrored = mirrors(instance.objectToWorld);
         for (const gltf::Primitive& primitive : scene.meshes[instance.mesh].primitives) {
             const std::vector<glm::dvec3> positions = placedPositions(scene, view, i, primitive);
             for (std::size_t first = 0; first + 2 < primitive.indices.size(); first += 3) {

@@ -41,7 +41,7 @@ constexpr std::string_view kShaders = "Shaders";
 constexpr std::uint32_t kMakers = kOfCompile | kOfRender;
 constexpr std::uint32_t kPlanners = kOfCompile | kOfExplain | kOfRender;
 
-// What a row has besides its place, its text and its values.
+// The members of a row besides its place, its text and its values.
 struct Further {
     SettingBench bench{};
     std::string_view document{};

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 #include <numeric>

@@ -7,7 +7,6 @@
 #include <glint/renderer.h>
 
 #include <array>
-#include <cstdint>
 #include <deque>
 #include <map>
 #include <optional>

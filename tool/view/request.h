@@ -9,11 +9,30 @@
 #include <glint/measure/observer.h>
 #include <glint/result.h>
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
+struct GLFWwindow;
+
 namespace glint::view {
+
+class Controls;
+
+// An open window, for a program that uses it as a person does (tests/view/script.h).
+struct WindowAccess {
+    GLFWwindow* window = nullptr;
+    const Controls* controls = nullptr;
+    std::function<bool()> isComplete;  // nothing is being made, and all samples are there
+    std::function<bool()> hasFailed;   // an error is shown
+    std::function<void(const std::string&)> drop;
+    std::function<Status(const std::string&)> report;  // writes the window's state as JSON
+    std::function<std::uint64_t()> frames;
+    std::function<void(const std::string&)> detail;  // with --verbose
+};
+// Is called between two frames, and returns whether it is done.
+using WindowDriver = std::function<Result<bool>()>;
 
 // A line of an explanation: a label and a text.
 struct Field {
@@ -29,7 +48,6 @@ struct Request {
     std::string animation = "0";  // a name, a number, or "all"
     bool plays = false;           // from the start
     std::string folder = ".";     // of screenshots
-    std::string script;           // a file of input to replay; empty: none
     bool showsPanel = true;
 
     // Gets every message that the window shows. It must outlive the window.
@@ -42,11 +60,13 @@ struct Request {
     // Called with the device when it is there, and before it goes: the driver's pipelines are kept in a file.
     std::function<void(Context&)> opened;
     std::function<void(Context&)> closing;
+    // Makes what uses the window in place of a person. Empty: nothing does.
+    std::function<Result<WindowDriver>(const WindowAccess&)> drive{};
 };
 
 // Opens the window and returns when it is closed. Errors: "window-open" (no display), "window-surface" (the
-// device can't show pictures in it), "window-script" (a step of the script failed), "validation" (with
-// Settings::validate), those of the device, and those of reading the scene and making its first picture.
+// device can't show pictures in it), "validation" (with Settings::validate), those of the device, of reading
+// the scene and making its first picture, and of Request::drive.
 Status showWindow(const Request& request);
 
 // --- The command line that makes the same picture as the window: glint render with the settings that differ

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <string>
-
 namespace glint::view {
 
 Diagnostic callError(const char* call, VkResult result) {

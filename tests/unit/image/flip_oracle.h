@@ -8,7 +8,7 @@
 
 namespace glint::testing {
 
-// Returns the same as flipMap() of image/flip.h, from the formulas of Andersson and others 2020.
+// Returns the same as flipMap() of image/compare.h, from the formulas of Andersson and others 2020.
 std::vector<double> plainFlip(const LinearImage& image, const LinearImage& reference, double pixelsPerDegree);
 
 }  // namespace glint::testing

@@ -1,4 +1,4 @@
-#include "image/flip.h"
+#include "image/compare.h"
 
 #include "image/tone.h"
 #include "unit/image/flip_oracle.h"

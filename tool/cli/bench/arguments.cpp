@@ -222,9 +222,9 @@ void addSweepOptions(CLI::App& command, BenchArguments& arguments) {
 
 void addErrorOptions(CLI::App& command, BenchArguments& arguments) {
     const OptionGroup group(command, "Errors");
-    addChoice(command, "--metric", arguments.metric, {"relMse", "trimmed", "rmse", "flip"},
-              "the error by which configurations are ordered; trimmed: relMSE without the worst 0.1 % of "
-              "pixels, so that fireflies do not decide");
+    addNamed(command, "--metric", arguments.metric,
+             "the error by which configurations are ordered; trimmed: relMSE without the worst 0.1 % of "
+             "pixels, so that fireflies do not decide");
     addChoice(
         command, "--reference", arguments.reference, {"full", "same"},
         "what errors are measured against; full: all of light transport, that is unlimited bounces, effects "

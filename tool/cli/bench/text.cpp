@@ -50,10 +50,8 @@ std::string percentText(double share) {
     return fmt::format("{:.1f} %", 100.0 * share);
 }
 
-using measure::Interval;
-std::string timeText(const measure::BenchReport& report, std::size_t point) {
-    const measure::Interval time = measure::timeOf(report, point);
-    return fmt::format("{:.3g} ({:.3g} to {:.3g})", time.median, time.low, time.high);
+std::string textOf(const measure::Interval& interval) {
+    return fmt::format("{:.3g} ({:.3g} to {:.3g})", interval.median, interval.low, interval.high);
 }
 
 std::string ratioText(const measure::BenchPoint& point) {
@@ -62,11 +60,6 @@ std::string ratioText(const measure::BenchPoint& point) {
     }
     const measure::Interval ratio = timeRatio(point);
     return isTimeTie(point) ? fmt::format("{:.2f} tie", ratio.median) : fmt::format("{:.2f}", ratio.median);
-}
-
-std::string errorText(const measure::BenchReport& report, const measure::BenchPoint& point) {
-    const measure::Interval error = errorOf(point, report.metric);
-    return fmt::format("{:.3g} ({:.3g} to {:.3g})", error.median, error.low, error.high);
 }
 
 std::string changeText(const measure::BenchReport& report, std::size_t index) {
@@ -80,7 +73,7 @@ std::string changeText(const measure::BenchReport& report, std::size_t index) {
 std::vector<std::string> rowOf(const measure::BenchReport& report, std::size_t index,
                                const std::string& name) {
     const measure::BenchPoint& point = report.points[index];
-    return {name, timeText(report, index), ratioText(point), errorText(report, point),
+    return {name, textOf(timeOf(report, index)), ratioText(point), textOf(errorOf(point, report.metric)),
             changeText(report, index)};
 }
 
@@ -172,13 +165,11 @@ std::string adviceText(const measure::BenchReport& report) {
 std::string strategiesTable(const measure::StrategyReport& report) {
     Rows rows{{"strategy", "ms of hits", "ratio", "trace", "order", "shade"}};
     for (const measure::StrategyRow& row : report.rows) {
-        rows.push_back(
-            {row.strategy,
-             fmt::format("{:.3g} ({:.3g} to {:.3g})", row.hits.median, row.hits.low, row.hits.high),
-             fmt::format("{:.2f} ({:.2f} to {:.2f})", row.hitRatio.median, row.hitRatio.low,
-                         row.hitRatio.high),
-             fmt::format("{:.3g}", row.traceMs), fmt::format("{:.3g}", row.orderMs),
-             fmt::format("{:.3g}", row.shadeMs)});
+        rows.push_back({row.strategy, textOf(row.hits),
+                        fmt::format("{:.2f} ({:.2f} to {:.2f})", row.hitRatio.median, row.hitRatio.low,
+                                    row.hitRatio.high),
+                        fmt::format("{:.3g}", row.traceMs), fmt::format("{:.3g}", row.orderMs),
+                        fmt::format("{:.3g}", row.shadeMs)});
     }
     return formatTable(rows);
 }

@@ -59,7 +59,7 @@ constexpr DiagnosticList kLists[] = {
      " timings-unavailable"
      " tlas-limit tracer uri-unsafe validation validation-layer variant-unknown verify-missing"
      " vertex-limit view-layer view-reference view-source vulkan-call vulkan-function vulkan-loader"
-     " werror window-drop window-missing window-open window-script window-surface"
+     " werror window-drop window-missing window-open window-surface"
      " "},
     {kWarning,
      " accessor-bounds accessor-form accessor-layout alpha-mode animation-channel animation-keyframes"

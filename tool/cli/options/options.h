@@ -23,6 +23,7 @@ struct Slip {
     std::string message;
 };
 
+std::vector<std::string> commandNames(const CLI::App& app);
 // Returns null if there is no command of that name.
 const CLI::App* findCommand(const CLI::App& app, std::string_view name);
 

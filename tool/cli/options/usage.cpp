@@ -11,14 +11,6 @@ namespace {
 
 using Arguments = std::span<const char* const>;
 
-std::vector<std::string> commandNames(const CLI::App& app) {
-    std::vector<std::string> names;
-    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-        names.push_back(command->get_name());
-    }
-    return names;
-}
-
 std::vector<std::string> optionNames(const CLI::App& app) {
     std::vector<std::string> names;
     for (const CLI::Option* option : app.get_options()) {
@@ -106,6 +98,14 @@ std::optional<std::string> findEmptyValue(const CLI::App& app, Arguments argumen
 }
 
 }  // namespace
+
+std::vector<std::string> commandNames(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+        names.push_back(command->get_name());
+    }
+    return names;
+}
 
 const CLI::App* findCommand(const CLI::App& app, std::string_view name) {
     const auto commands =

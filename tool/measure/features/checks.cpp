@@ -269,13 +269,6 @@ Result<std::vector<double>> baseEnergies(const FeatureOnDevice& on, const std::v
                                 [](const LobeIntegrals& integral) { return largestOf(integral.whole); });
 }
 
-CheckOutcome outcomeOf(MaterialCheck check, double limit) {
-    CheckOutcome outcome;
-    outcome.check = check;
-    outcome.limit = limit;
-    return outcome;
-}
-
 // Judges one combination and view by each of the checks.
 void judgeIntegrals(const LobeIntegrals& integrals, const compiler::FeatureKernelOutput& shares,
                     double baseEnergy, const CheckPlace& place, const FeatureOnDevice& on,
@@ -361,7 +354,7 @@ compiler::FeatureKernelInput inputOf(const FeatureOnDevice& on, const CheckedMat
 }
 
 Result<CheckOutcome> checkRanges(const FeatureOnDevice& on) {
-    CheckOutcome outcome = outcomeOf(MaterialCheck::Range, 0.0);
+    CheckOutcome outcome{.check = MaterialCheck::Range};
     const std::vector<Direction> views = adverseViews();
     GLINT_TRY(const auto surfaceView, surfaceViews(on, views));
     std::vector<compiler::FeatureKernelInput> inputs;
@@ -395,7 +388,7 @@ Result<CheckOutcome> checkRanges(const FeatureOnDevice& on) {
 }
 
 Result<CheckOutcome> checkReciprocity(const FeatureOnDevice& on) {
-    CheckOutcome outcome = outcomeOf(MaterialCheck::Reciprocity, kReciprocityLimit);
+    CheckOutcome outcome{.check = MaterialCheck::Reciprocity, .limit = kReciprocityLimit};
     if (on.lobe == 0 || !on.feature.code->isReciprocal) {
         outcome.state = on.lobe == 0 ? CheckState::Absent : CheckState::Unasked;
         return outcome;
@@ -457,11 +450,12 @@ Result<CheckOutcome> checkReciprocity(const FeatureOnDevice& on) {
 }
 
 Result<IntegralOutcomes> checkIntegrals(const FeatureOnDevice& on) {
-    IntegralOutcomes outcomes{outcomeOf(MaterialCheck::Density, kDensityLimit),
-                              outcomeOf(MaterialCheck::Samples, kSignificanceLimit),
-                              outcomeOf(MaterialCheck::Energy, kEnergyLimit),
-                              outcomeOf(MaterialCheck::Albedo, kAlbedoLimit)};
-    outcomes.samples.worst = 1.0;
+    IntegralOutcomes outcomes{
+        {.check = MaterialCheck::Density, .limit = kDensityLimit},
+        {.check = MaterialCheck::Samples, .worst = 1.0, .limit = kSignificanceLimit},
+        {.check = MaterialCheck::Energy, .limit = kEnergyLimit},
+        {.check = MaterialCheck::Albedo, .limit = kAlbedoLimit},
+    };
     GLINT_TRY(const auto seen, seenMaterials(on));
     GLINT_TRY(const auto samples, sampleAll(on, seen));
     const Result<std::vector<LobeIntegrals>> integrals =

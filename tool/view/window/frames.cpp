@@ -267,10 +267,10 @@ Status Window::drawFrame(const Presenter::Frame& frame) {
     const bool isNew = complete && !wasComplete_;
     wasComplete_ = complete;
     if (autoExposure_ && sides_[0]->picture.isReady() && (isNew || exposureIsNew_)) {
-        measureExposure();
+        reportErrorOf(measureExposure());
     }
     if (wantsShot_ && complete && isLookCurrent()) {
-        saveScreenshot();
+        reportErrorOf(saveScreenshot());
     }
     return okStatus();
 }

@@ -353,9 +353,7 @@ void Window::compare(bool on) {
     }
     sides_[1] = std::make_unique<Side>(*context_);
     sides_[1]->wanted = sides_[0]->wanted;
-    if (const Status kept = sides_[1]->picture.edit(edits_, 0, 0); !kept) {
-        report(kept.error());
-    }
+    reportErrorOf(sides_[1]->picture.edit(edits_, 0, 0));
     shown_ = Shown::Wipe;
     edited_ = 1;
     order(1);

@@ -111,11 +111,7 @@ void Window::dropEdits(const Diagnostic& error) {
         return;
     }
     edits_.resize(kept);
-    forSides([&](Side& one) {
-        if (const Status left = one.picture.edit(edits_, kept, presenter_->submitted() + 1); !left) {
-            report(left.error());
-        }
-    });
+    forSides([&](Side& one) { reportErrorOf(one.picture.edit(edits_, kept, presenter_->submitted() + 1)); });
     say("the edit was not made: " + error.message);
 }
 

@@ -8,8 +8,6 @@
 
 #include <GLFW/glfw3.h>
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
 #include <imgui.h>
 #include <numeric>
 #include <utility>
@@ -309,7 +307,7 @@ void Window::drawCompare() {
     }
     ImGui::SameLine(0.0F, 24.0F);
     if (controls_.mark("Measure", ImGui::Button("Measure"))) {
-        measureDifference();
+        reportErrorOf(measureDifference());
     }
     tip("how far B is from A: as seen (FLIP), and in linear light");
     ImGui::AlignTextToFramePadding();

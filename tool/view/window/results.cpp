@@ -3,7 +3,6 @@
 #include "base/files.h"
 #include "base/text.h"
 #include "image/compare.h"
-#include "image/flip.h"
 #include "image/image_file.h"
 #include "image/tone.h"
 #include "settings/descriptor.h"
@@ -85,7 +84,7 @@ Status Window::takeBuilds() {
             error_.reset();
             continue;
         }
-        if (!sides_[0]->picture.isReady() && !script_) {
+        if (!sides_[0]->picture.isReady() && !driver_) {
             // Nothing is shown yet, and nobody can correct it here.
             return installed;
         }
@@ -205,20 +204,16 @@ std::uint64_t residentBytes() {
 
 }  // namespace
 
-void Window::measureExposure() {
+Status Window::measureExposure() {
     Picture& picture = sides_[0]->picture;
-    if (picture.samples() == 0) {
-        return;
+    if (picture.samples() > 0) {
+        GLINT_TRY(const auto image, picture.renderer().readOutput());
+        GLINT_TRY(const auto surfaces, picture.renderer().readSurfaces());
+        exposure_ = static_cast<float>(image::automaticExposure(image, surfaces));
+        exposureIsNew_ = false;
+        wakes_ = 4;
     }
-    const Result<LinearImage> image = picture.renderer().readOutput();
-    const Result<std::vector<std::uint8_t>> surfaces = picture.renderer().readSurfaces();
-    if (!image || !surfaces) {
-        report(image ? surfaces.error() : image.error());
-        return;
-    }
-    exposure_ = static_cast<float>(image::automaticExposure(*image, *surfaces));
-    exposureIsNew_ = false;
-    wakes_ = 4;
+    return okStatus();
 }
 
 Status Window::writeShot(const std::string& file, const Look& shown, const LinearImage& image) {
@@ -234,14 +229,10 @@ Status Window::writeShot(const std::string& file, const Look& shown, const Linea
     return image::writeImage(file, image, exposure, layers);
 }
 
-void Window::saveScreenshot() {
+Status Window::saveScreenshot() {
     wantsShot_ = false;
     Picture& picture = side().picture;
-    const Result<LinearImage> image = picture.renderer().readOutput();
-    if (!image) {
-        report(image.error());
-        return;
-    }
+    GLINT_TRY(const auto image, picture.renderer().readOutput());
     fs::path file;
     const std::string stem = fs::path(scene_).stem().string();
     // A layer needs a file that holds its numbers.
@@ -251,10 +242,7 @@ void Window::saveScreenshot() {
     do {
         file = fs::path(request_.folder) / fmt::format("{}-{:03}.{}", stem, ++shots_, extension);
     } while (fs::exists(file, error));
-    if (Status written = writeShot(file, shown, *image); !written) {
-        report(written.error());
-        return;
-    }
+    GLINT_TRY_DO(writeShot(file, shown, image));
     const std::string animation = animationChoice_ >= static_cast<int>(picture.scene().animations.size())
                                       ? std::string("all")
                                       : std::to_string(animationChoice_);
@@ -268,11 +256,7 @@ void Window::saveScreenshot() {
     if (!edits_.empty()) {
         edits = file;
         edits.replace_extension(".edits.json");
-        const std::string text = base::toText(base::jsonOf(session::EditList{edits_}));
-        if (Status written = base::writeFile(edits, text); !written) {
-            report(written.error());
-            return;
-        }
+        GLINT_TRY_DO(base::writeFile(edits, base::toText(base::jsonOf(session::EditList{edits_}))));
     }
     const std::vector<std::string> words =
         shotWords(settings, {scene_, file.string(), camera, static_cast<double>(exposure_),
@@ -281,37 +265,26 @@ void Window::saveScreenshot() {
     fs::path command = file;
     command.replace_extension(".sh");
     const std::string line = base::shellWords(words);
-    if (Status written =
-            base::writeFile(command, "# Makes the picture beside this file again.\n" + line + "\n");
-        !written) {
-        report(written.error());
-        return;
-    }
+    GLINT_TRY_DO(base::writeFile(command, "# Makes the picture beside this file again.\n" + line + "\n"));
     say("wrote " + file.string());
     report(Diagnostic{Severity::Note, "window-shot", file.string(), "shows the picture; this makes it again",
                       line});
+    return okStatus();
 }
 
-void Window::measureDifference() {
+Status Window::measureDifference() {
     if (!sides_[1] || !sides_[1]->picture.isReady()) {
-        return;
+        return okStatus();
     }
-    const Result<LinearImage> first = sides_[0]->picture.renderer().readOutput();
-    const Result<LinearImage> second = sides_[1]->picture.renderer().readOutput();
-    if (!first || !second) {
-        report(first ? second.error() : first.error());
-        return;
-    }
-    const Result<image::ImageDifference> linear = image::compareImages(*second, *first, "B", "A");
-    if (!linear) {
-        report(linear.error());
-        return;
-    }
+    GLINT_TRY(const auto first, sides_[0]->picture.renderer().readOutput());
+    GLINT_TRY(const auto second, sides_[1]->picture.renderer().readOutput());
+    GLINT_TRY(const auto linear, image::compareImages(second, first, "B", "A"));
     const auto exposure = static_cast<double>(exposure_);
     const double flip = image::flipMean(
-        image::flipMap(image::displayedImage(*second, exposure), image::displayedImage(*first, exposure)));
-    difference_ = fmt::format("FLIP {:.4f}, RMSE {:.3g}, most {:.3g} at {}, {}", flip, linear->rmse,
-                              linear->absolute.value, linear->absolute.x, linear->absolute.y);
+        image::flipMap(image::displayedImage(second, exposure), image::displayedImage(first, exposure)));
+    difference_ = fmt::format("FLIP {:.4f}, RMSE {:.3g}, most {:.3g} at {}, {}", flip, linear.rmse,
+                              linear.absolute.value, linear.absolute.x, linear.absolute.y);
+    return okStatus();
 }
 
 Status Window::writeReport(const std::string& file) {

@@ -51,7 +51,7 @@ Window::~Window() {
         vkDeviceWaitIdle(context_->handles().device);
         request_.closing(*context_);
     }
-    script_ = nullptr;
+    driver_ = nullptr;
     for (std::unique_ptr<Side>& one : sides_) {
         one.reset();
     }
@@ -167,16 +167,14 @@ Status Window::open() {
     plays_ = request_.plays;
     poses_ = poses_ || plays_;
     order(0);
-    if (!request_.script.empty()) {
-        const ScriptHost host{window_,
-                              &controls_,
-                              [this] { return isComplete() && hasWantedSize(); },
-                              [this] { return error_.has_value(); },
-                              [this](const std::string& file) { onDrop(file); },
-                              [this](const std::string& file) { return writeReport(file); },
-                              [this] { return frames_; },
-                              [this](const std::string& text) { request_.observer->detail(text); }};
-        GLINT_TRY(script_, readScript(request_.script, host));
+    if (request_.drive) {
+        GLINT_TRY(
+            driver_,
+            request_.drive(
+                {window_, &controls_, [this] { return isComplete() && hasWantedSize(); },
+                 [this] { return error_.has_value(); }, [this](const std::string& file) { onDrop(file); },
+                 [this](const std::string& file) { return writeReport(file); }, [this] { return frames_; },
+                 [this](const std::string& text) { request_.observer->detail(text); }}));
         glfwFocusWindow(window_);
     }
     return okStatus();
@@ -214,7 +212,7 @@ void Window::say(const std::string& text) {
 
 Status Window::run() {
     while (glfwWindowShouldClose(window_) == GLFW_FALSE) {
-        if (isIdle() && !script_) {
+        if (isIdle() && !driver_) {
             glfwWaitEventsTimeout(kPollMs / 1000.0);
         } else {
             glfwPollEvents();
@@ -222,15 +220,15 @@ Status Window::run() {
         if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED) == GLFW_TRUE) {
             glfwWaitEventsTimeout(kPollMs / 1000.0);
             ++frames_;
-        } else if (!isIdle() || script_) {
+        } else if (!isIdle() || driver_) {
             GLINT_TRY_DO(frame());
         }
         pollFiles();
         GLINT_TRY_DO(takeBuilds());
-        if (script_) {
-            GLINT_TRY(const bool isDone, script_());
+        if (driver_) {
+            GLINT_TRY(const bool isDone, driver_());
             if (isDone) {
-                script_ = nullptr;
+                driver_ = nullptr;
             }
         }
         const std::vector<std::string> validation = context_->validationMessages();

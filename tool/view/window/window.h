@@ -10,14 +10,12 @@
 #include "view/look.h"
 #include "view/picture.h"
 #include "view/presenter.h"
-#include "view/script.h"
 
 #include <glint/package.h>
 
 #include <array>
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -74,6 +72,12 @@ private:
     void report(const Diagnostic& message);
     void say(const std::string& text);
     void fail(const Diagnostic& error);
+    // Reports the error, if there is one.
+    void reportErrorOf(const Status& status) {
+        if (!status) {
+            report(status.error());
+        }
+    }
     Side& side() {
         return *sides_[edited_];
     }
@@ -132,10 +136,10 @@ private:
     void chooseLook(const Look& look);
 
     // --- results.cpp: measurements and files ---
-    void measureExposure();
+    Status measureExposure();
     Status writeShot(const std::string& file, const Look& shown, const LinearImage& image);
-    void saveScreenshot();
-    void measureDifference();
+    Status saveScreenshot();
+    Status measureDifference();
     Status writeReport(const std::string& file);
 
     // --- outliner.cpp: the tree of nodes, and edits ---
@@ -173,7 +177,7 @@ private:
     std::unique_ptr<Display> display_;
     std::array<std::unique_ptr<Side>, kPictures> sides_;
     std::unique_ptr<Builder> builder_;
-    std::function<Result<bool>()> script_;  // readScript(); empty: none
+    WindowDriver driver_;  // empty: none
 
     std::string scene_;
     // The scene and settings that are shown while another scene is being opened.

@@ -105,7 +105,7 @@ private:
     bool ordersHits_ = false;
 };
 
-// What a bench knows of its scene and its device.
+// The facts about its scene and its device that a bench knows.
 struct BedFacts {
     bool positionFetch = false;  // of the device and the compiler
     bool float16 = false;        // of the device

@@ -36,7 +36,7 @@ struct BenchSettings {
     // Measures the default's picture filtered, alone and after 15 frames, and also one of 64 samples. Null:
     // no filter.
     const FilterMaker* filter = nullptr;
-    std::string metric = "trimmed";
+    ErrorMetric metric = ErrorMetric::Trimmed;
     // The reference has all of light transport. Otherwise it shares the default's effects, bounces and other
     // settings of light transport.
     std::string reference = "full";  // or same

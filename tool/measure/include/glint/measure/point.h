@@ -6,6 +6,7 @@
 #include <glint/measure/settings.h>
 #include <glint/measure/statistics.h>
 #include <glint/renderer.h>
+#include <glint/result.h>
 
 #include <cstdint>
 #include <map>
@@ -35,16 +36,29 @@ struct HitTimes {
 // Adds up all passes of a sample (Timing::Passes).
 HitTimes hitTimesOf(std::span<const PassTiming> passes);
 
+using glint::nameOf;
+
 // The error by which points are ordered, a member of ImageErrors.
-enum class ErrorMetric { RelMse, Trimmed, Rmse, Flip };
-std::string_view nameOf(ErrorMetric metric);  // as the JSON has it: "relMse"
-ErrorMetric metricNamed(std::string_view name);
+enum class ErrorMetric : std::uint8_t { RelMse, Trimmed, Rmse, Flip };
+inline constexpr Named<ErrorMetric> kErrorMetricNames[] = {{ErrorMetric::RelMse, "relMse"},
+                                                           {ErrorMetric::Trimmed, "trimmed"},
+                                                           {ErrorMetric::Rmse, "rmse"},
+                                                           {ErrorMetric::Flip, "flip"}};
+constexpr std::span<const Named<ErrorMetric>> namesOf(ErrorMetric /*type*/) {
+    return kErrorMetricNames;
+}
 double valueOf(ErrorMetric metric, const image::ImageErrors& errors);
 // Returns the error in a measure that adds up over independent causes: that of RMSE is its square.
 double additive(ErrorMetric metric, double error);
 
-enum class PointKind { Default, Single, Pair, Search, Package, Exact, Filtered };
-std::string_view nameOf(PointKind kind);
+enum class PointKind : std::uint8_t { Default, Single, Pair, Search, Package, Exact, Filtered };
+inline constexpr Named<PointKind> kPointKindNames[] = {
+    {PointKind::Default, "default"},  {PointKind::Single, "single"},   {PointKind::Pair, "pair"},
+    {PointKind::Search, "search"},    {PointKind::Package, "package"}, {PointKind::Exact, "exact"},
+    {PointKind::Filtered, "filtered"}};
+constexpr std::span<const Named<PointKind>> namesOf(PointKind /*type*/) {
+    return kPointKindNames;
+}
 // Returns whether settings alone distinguish such a point from the default.
 constexpr bool isOfSettings(PointKind kind) {
     return kind != PointKind::Package && kind != PointKind::Filtered;

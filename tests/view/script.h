@@ -1,20 +1,19 @@
 // Replays input: keys, mouse moves and clicks that go through the X server, as those of a person do.
 #pragma once
 
-#include "view/controls.h"
+#include "view/request.h"
 
 #include <glint/result.h>
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 struct GLFWwindow;
 
-namespace glint::view {
+namespace glint::testing {
 
 // Each call returns when the server has passed the input on, so that the next look at events finds it.
 class X11Input {
@@ -46,18 +45,6 @@ private:
     unsigned long window_ = 0;
 };
 
-// The queries of a script to the window itself. Everything else is input.
-struct ScriptHost {
-    GLFWwindow* window = nullptr;
-    const Controls* controls = nullptr;
-    std::function<bool()> isComplete;  // nothing is being made, and all samples are there
-    std::function<bool()> hasFailed;   // an error is shown
-    std::function<void(const std::string&)> drop;
-    std::function<Status(const std::string&)> report;  // writes the window's state as JSON
-    std::function<std::uint64_t()> frames;
-    std::function<void(const std::string&)> detail;  // says which step begins
-};
-
 // Reads the steps of a file. A line has a word and its arguments; # begins a comment.
 //   wait complete            until nothing is made any more and all samples are there
 //   wait failed              until an error is shown
@@ -82,9 +69,8 @@ struct ScriptHost {
 //   quit
 // Errors: those of reading the file, and "window-script" for a line that is none of these.
 //
-// The result is to be called between two frames. It goes on with the steps and returns whether all are done.
-// Error "window-script" if a step or a part of it fails or takes longer than three minutes. The members of
-// `host` must outlive it.
-Result<std::function<Result<bool>()>> readScript(const std::string& file, const ScriptHost& host);
+// The result has the error "window-script" if a step or a part of it fails or takes longer than three
+// minutes.
+Result<view::WindowDriver> readScript(const std::string& file, const view::WindowAccess& access);
 
-}  // namespace glint::view
+}  // namespace glint::testing

@@ -10,7 +10,7 @@
 extern "C" Display* glfwGetX11Display(void);
 extern "C" Window glfwGetX11Window(GLFWwindow* window);
 
-namespace glint::view {
+namespace glint::testing {
 
 namespace {
 
@@ -123,4 +123,4 @@ std::optional<X11Input::Pixels> X11Input::picture() const {
     return result;
 }
 
-}  // namespace glint::view
+}  // namespace glint::testing

@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/files.h"
 #include "image/image_file.h"
+#include "view/controls.h"
 
 #define GLFW_INCLUDE_NONE
 #include <fmt/format.h>
@@ -18,7 +19,7 @@
 #include <system_error>
 #include <utility>
 
-namespace glint::view {
+namespace glint::testing {
 
 namespace {
 
@@ -61,8 +62,8 @@ std::string keyOfCharacter(char c) {
 
 class Script {
 public:
-    Script(std::string file, const ScriptHost& host)
-        : file_(std::move(file)), host_(host), input_(host.window) {}
+    Script(std::string file, const view::WindowAccess& access)
+        : file_(std::move(file)), host_(access), input_(access.window) {}
 
     // Reads the steps.
     Status read(const std::string& text) {
@@ -417,7 +418,7 @@ private:
             if (host_.frames() < *last + kSettle) {
                 return false;
             }
-            const std::optional<Controls::Place> place = host_.controls->find(control);
+            const std::optional<view::Controls::Place> place = host_.controls->find(control);
             if (!place) {
                 return false;
             }
@@ -439,7 +440,7 @@ private:
     void clickControl(const std::string& control, bool withControlKey = false) {
         reveal(control);
         act([this, control]() -> Result<bool> {
-            const std::optional<Controls::Place> place = host_.controls->find(control);
+            const std::optional<view::Controls::Place> place = host_.controls->find(control);
             if (!place) {
                 return false;
             }
@@ -457,7 +458,7 @@ private:
     }
 
     std::string file_;
-    ScriptHost host_;
+    view::WindowAccess host_;
     X11Input input_;
     struct Step {
         int line = 0;
@@ -472,11 +473,11 @@ private:
 
 }  // namespace
 
-Result<std::function<Result<bool>()>> readScript(const std::string& file, const ScriptHost& host) {
+Result<view::WindowDriver> readScript(const std::string& file, const view::WindowAccess& access) {
     GLINT_TRY(const auto bytes, base::readFile(file));
-    const auto script = std::make_shared<Script>(file, host);
+    const auto script = std::make_shared<Script>(file, access);
     GLINT_TRY_DO(script->read(std::string(base::asText(bytes))));
-    return std::function<Result<bool>()>([script] { return script->step(); });
+    return view::WindowDriver([script] { return script->step(); });
 }
 
-}  // namespace glint::view
+}  // namespace glint::testing
