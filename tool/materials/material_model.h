@@ -463,6 +463,13 @@ struct ModelSource {
     bool operator==(const ModelSource&) const = default;
 };
 
+// A file of a pack, in the state in which it was read.
+struct PackFile {
+    std::string path;
+    std::uint64_t bytes = 0;
+    std::uint64_t hash = 0;  // base::hashBytes()
+};
+
 // A feature in the order in which the features of a key are decided. A key that lacks `needs` lacks it, too.
 struct FeatureStep {
     int feature = 0;  // index into MaterialModel::features
@@ -485,6 +492,7 @@ public:
     std::vector<EffectDeclaration> effects;  // by the number of their bit
     std::vector<FeatureCode> code;           // in the order in which it runs
     std::vector<ModelSource> sources;        // GLSL of packs; that of Glint's own features is embedded
+    std::vector<PackFile> files;             // all files of packs, sorted by name
     FeatureMask unlit = 0;                   // features without light
     FeatureMask bothSides = 0;               // features that let light through to the far side
     FeatureMask ownModels = 0;               // models whose GLSL stands in place of glTF's base

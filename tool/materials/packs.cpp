@@ -53,9 +53,22 @@ Diagnostic folderError(const std::string& folder, std::string message) {
                      "docs/material_features.md and docs/effects.md describe");
 }
 
+// Returns whether a path has the extension, as std::filesystem does, which is much slower.
+bool hasExtension(const fs::path& path, std::string_view extension) {
+    const std::string_view text = path.native();
+    return text.size() > extension.size() && text.ends_with(extension) &&
+           text[text.size() - extension.size() - 1] != '/';
+}
+
 bool isPackFile(const fs::path& path) {
-    return path.extension() == ".json" || path.extension() == ".glsl" || path.extension() == ".comp" ||
-           path.extension() == ".spv";
+    return hasExtension(path, ".json") || hasExtension(path, ".glsl") || hasExtension(path, ".comp") ||
+           hasExtension(path, ".spv");
+}
+
+// The order of paths, without their components.
+bool isBefore(const fs::path& a, const fs::path& b) {
+    const auto rank = [](char c) { return c == '/' ? 0 : static_cast<unsigned char>(c); };
+    return std::ranges::lexicographical_compare(a.native(), b.native(), {}, rank, rank);
 }
 
 // Adds the files of one folder.
@@ -75,7 +88,7 @@ Status addFolder(const std::string& folder, std::vector<fs::path>& files) {
         return folderError(folder, fmt::format("can't be listed: {}", error.message()));
     }
     const auto begin = files.begin() + static_cast<std::ptrdiff_t>(before);
-    if (std::none_of(begin, files.end(), [](const fs::path& path) { return path.extension() == ".json"; })) {
+    if (std::none_of(begin, files.end(), [](const fs::path& path) { return hasExtension(path, ".json"); })) {
         return folderError(folder, "holds no declaration of a material feature or an effect");
     }
     return okStatus();
@@ -212,7 +225,7 @@ class KeptModels {
 public:
     // Has the errors of loadMaterialModel() about contents.
     Result<const MaterialModel*> find(std::span<const DeclarationFile> files,
-                                      std::vector<ModelSource> sources) {
+                                      std::vector<ModelSource> sources, std::vector<PackFile> read) {
         const std::lock_guard lock(mutex_);
         GLINT_TRY(auto parsed, parseDeclarations(files, parsed_));
         const bool isSame = !models_.empty() && parsed == parsed_;
@@ -225,6 +238,7 @@ public:
             return model.error();
         }
         model->sources = std::move(sources);
+        model->files = std::move(read);
         GLINT_TRY_DO(checkSources(*model));
         parsed_ = std::move(parsed);
         return &models_.emplace_back(std::move(*model));
@@ -243,7 +257,7 @@ Result<std::vector<fs::path>> packFiles(std::span<const std::string> folders) {
     for (const std::string& folder : folders) {
         GLINT_TRY_DO(addFolder(folder, files));
     }
-    std::ranges::sort(files);
+    std::ranges::sort(files, isBefore);
     files.erase(std::unique(files.begin(), files.end()), files.end());
     return files;
 }
@@ -257,13 +271,15 @@ Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> fold
     std::deque<std::string> texts;
     std::vector<DeclarationFile> declarations;
     std::vector<ModelSource> sources;
+    std::vector<PackFile> read;
     for (const base::BuiltinFile& file : declarationFiles()) {
         declarations.push_back({file.name, file.text});
     }
     for (const fs::path& file : files) {
         GLINT_TRY(const auto bytes, base::readFile(file, kMaxFileBytes));
         std::string text(bytes.begin(), bytes.end());
-        if (file.extension() != ".json") {
+        read.push_back({file.string(), text.size(), base::hashBytes(text)});
+        if (!hasExtension(file, ".json")) {
             sources.push_back({file.generic_string(), std::move(text)});
         } else {
             declarations.push_back(
@@ -271,7 +287,7 @@ Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> fold
         }
     }
     static KeptModels kept;
-    return kept.find(declarations, std::move(sources));
+    return kept.find(declarations, std::move(sources), std::move(read));
 }
 
 }  // namespace glint::materials
