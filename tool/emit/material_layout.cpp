@@ -322,8 +322,8 @@ MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, std::sp
         std::vector<std::size_t> order(which.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
         std::vector<std::ptrdiff_t> counts;
-        for (const std::vector<bool>& uses : which) {
-            counts.push_back(std::count(uses.begin(), uses.end(), true));
+        for (const std::vector<bool>& one : which) {
+            counts.push_back(std::count(one.begin(), one.end(), true));
         }
         std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t i) { return counts[i]; });
         return order;

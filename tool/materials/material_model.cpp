@@ -282,8 +282,10 @@ std::vector<int> MaterialModel::indicesOf(const FeatureMask& mask) const {
     std::vector<int> indices;
     mask.forEach([&](int bit) {
         // Features of models have ascending bits, and come after all others.
-        const int index = bit < kFirstOfModels ? ofSharedBit_[static_cast<std::size_t>(bit)]
-                                               : models.front().feature + bit - kFirstOfModels;
+        const int first = models.empty() ? 0 : models.front().feature;
+        const int index =
+            bit < kFirstOfModels ? ofSharedBit_[static_cast<std::size_t>(bit)] : first + bit - kFirstOfModels;
+        // The set may be one of another model, with more features.
         if (static_cast<std::size_t>(index) < features.size() &&
             features[static_cast<std::size_t>(index)].bit == bit) {
             indices.push_back(index);
@@ -332,12 +334,12 @@ FeatureMask MaterialModel::featuresOf(int model) const {
 }
 
 bool MaterialModel::hasParameter(int model, int parameter) const {
-    if (model < 0) {
+    const int base = model < 0 ? -1 : models[static_cast<std::size_t>(model)].feature;
+    const int its = base < 0 ? -1 : features[static_cast<std::size_t>(base)].object;
+    if (its < 0) {
         return true;
     }
-    const int base = models[static_cast<std::size_t>(model)].feature;
-    const MaterialObject& object =
-        objects[static_cast<std::size_t>(features[static_cast<std::size_t>(base)].object)];
+    const MaterialObject& object = objects[static_cast<std::size_t>(its)];
     return std::ranges::binary_search(object.fills, parameter) ||
            object.replaces != parameters[static_cast<std::size_t>(parameter)].object;
 }
