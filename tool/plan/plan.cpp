@@ -76,8 +76,8 @@ std::vector<RecordUse> recordUses(std::span<const materials::Material> materials
     std::map<int, std::shared_ptr<RecordUse>> byModel;
     const auto join = [&byModel](RecordUse use) {
         const std::vector<int> joined = use.models;
-        for (const int model : joined) {
-            const auto other = byModel.find(model);
+        for (const int one : joined) {
+            const auto other = byModel.find(one);
             if (other != byModel.end()) {
                 appendUnique(use.models, other->second->models);
                 use.used |= other->second->used;
@@ -85,8 +85,8 @@ std::vector<RecordUse> recordUses(std::span<const materials::Material> materials
             }
         }
         const auto whole = std::make_shared<RecordUse>(std::move(use));
-        for (const int model : whole->models) {
-            byModel[model] = whole;
+        for (const int one : whole->models) {
+            byModel[one] = whole;
         }
     };
     for (std::size_t i = 0; i < primitives.size(); ++i) {
@@ -104,8 +104,8 @@ std::vector<RecordUse> recordUses(std::span<const materials::Material> materials
         return {{{-1}, 0, false}};
     }
     std::vector<RecordUse> uses;
-    for (const auto& [model, use] : byModel) {
-        if (model == use->models.front()) {
+    for (const auto& [one, use] : byModel) {
+        if (one == use->models.front()) {
             uses.push_back(*use);
         }
     }
