@@ -182,9 +182,9 @@ private:
         differs_.reset();
         const std::set<std::string> before(listed_.begin(), listed_.end());
         const std::set<std::string> after(now.begin(), now.end());
-        std::vector<std::string> others;
-        std::ranges::set_symmetric_difference(before, after, std::back_inserter(others));
-        return others;
+        std::vector<std::string> changed;
+        std::ranges::set_symmetric_difference(before, after, std::back_inserter(changed));
+        return changed;
     }
 
     void takeSettings(const std::vector<std::string>& changed) {
