@@ -21,6 +21,7 @@
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 namespace glint::testing {
@@ -186,6 +187,41 @@ TEST_F(Watching, AnEditMakesANewPackageOfTheCasesItTouches) {
     EXPECT_TRUE(has(watch.line(3), "new package; cases: 0 compiled, 2 kept; other modules: 0 compiled"))
         << watch.line(3);
     EXPECT_EQ(stamp(), 3U);
+    EXPECT_EQ(watch.interrupt(), 0);
+}
+
+TEST_F(Watching, ThePackageOfEachEditIsThatOfAFreshRun) {
+    const std::string include = "#include \"shared.glsl\"\n";
+    const std::string declaration = readText(path("pack/mud.json"));
+    writeText(path("pack/shared.glsl"), "float mudShare() { return 0.5; }\n");
+    const auto sharing = [&](double shade) {
+        std::string text = include + mud(shade);
+        text.replace(text.find("mud);"), 4, "mud * mudShare())");
+        return text;
+    };
+    replace("pack/mud.glsl", sharing(0.25));
+    const std::vector<std::pair<std::string, std::string>> edits{
+        {"pack/mud.glsl", sharing(0.5)},
+        {"pack/shared.glsl", "float mudShare() { return 0.25; }\n"},
+        {"pack/mud.json", std::regex_replace(declaration, std::regex("\"default\": 0"), "\"default\": 0.5")},
+        {"pack/mud.json", "{"},
+        {"pack/mud.json", declaration},
+        {"pack/dust.json", std::regex_replace(declaration, std::regex("mud"), "dust")},
+        {"pack/dust.glsl", std::regex_replace(std::regex_replace(mud(0.75), std::regex("mud"), "dust"),
+                                              std::regex("MUD"), "DUST")},
+    };
+    Running watch(path("."), words());
+    watch.line(1);
+    std::size_t number = 1;
+    for (const auto& [name, text] : edits) {
+        replace(name, text);
+        const std::string line = watch.line(++number);
+        Words once{"compile", "scene.gltf", "-o", "again", "--strategy", "visibility", "--merge", "none"};
+        once.insert(once.end(), {"--materials", "pack", "--cache", "none"});
+        const bool works = run(once).exit == 0;
+        EXPECT_EQ(has(line, "failed"), !works) << line;
+        EXPECT_TRUE(!works || contentsOf(path("package")) == contentsOf(path("again"))) << line;
+    }
     EXPECT_EQ(watch.interrupt(), 0);
 }
 

@@ -300,6 +300,7 @@ bool addOutputs(const compiler::CompiledPackage& package, const CompileArguments
 
 // The scenes of a run, and all decisions about them.
 struct Resolved {
+    const materials::MaterialModel* model = nullptr;
     std::vector<gltf::Scene> scenes;
     compiler::Build build;
 };
@@ -312,6 +313,7 @@ Result<Resolved> readAndResolve(const Console& console, const CompileArguments& 
     GLINT_TRY(const auto import,
               session::importOptions(arguments.settings, session::ImageReading::None, cache.store()));
     Resolved resolved;
+    resolved.model = import.materialModel;
     GLINT_TRY(resolved.scenes, readScenes(arguments.scenes, import));
     report(warningsOf(resolved.scenes));
     GLINT_TRY(const auto target, measure::targetOf(arguments.settings));
@@ -332,7 +334,7 @@ Result<Resolved> readAndResolve(const Console& console, const CompileArguments& 
 
 // `watched` is null unless the run is one of a watch.
 Result<int> compileOnce(const Console& console, const CompileArguments& arguments, CompileCache& cache,
-                        std::span<const std::filesystem::path> further, WatchedRun* watched) {
+                        WatchedRun* watched) {
     const base::Clock::time_point start = base::Clock::now();
     const bool plans = !arguments.planOnly.path.empty();
     if (watched == nullptr && !arguments.dryRun && !plans) {
@@ -342,7 +344,8 @@ Result<int> compileOnce(const Console& console, const CompileArguments& argument
         }
     }
     compiler::ActionRecord run;
-    const bool known = addFiles(run.inputs, further);
+    const std::vector<std::filesystem::path> others = otherInputs(arguments);
+    const bool known = addFiles(run.inputs, others);
     const auto report = [&](const std::vector<Diagnostic>& diagnostics) {
         run.diagnostics.insert(run.diagnostics.end(), diagnostics.begin(), diagnostics.end());
         console.report(diagnostics);
@@ -356,8 +359,12 @@ Result<int> compileOnce(const Console& console, const CompileArguments& argument
     const std::vector<compiler::FileState> sceneFiles = filesOf(resolved.scenes);
     run.inputs.insert(run.inputs.begin(), sceneFiles.begin(), sceneFiles.end());
     std::vector<std::string> dependencies = pathsOf(sceneFiles);
-    for (const std::filesystem::path& file : further) {
+    for (const std::filesystem::path& file : others) {
         dependencies.push_back(file.string());
+    }
+    for (const materials::PackFile& file : resolved.model->files) {
+        run.inputs.push_back({file.path, file.bytes, file.hash, {}});
+        dependencies.push_back(file.path);
     }
     if (!arguments.depfile.file.empty()) {
         GLINT_TRY([[maybe_unused]] const auto listed,
@@ -406,11 +413,11 @@ Result<int> compile(const Console& console, const CompileArguments& arguments) {
     const std::vector<std::filesystem::path> further = furtherInputs(arguments);
     CompileCache cache(arguments.cache, arguments.options, further);
     if (!arguments.watch) {
-        return compileOnce(console, arguments, cache, further, nullptr);
+        return compileOnce(console, arguments, cache, nullptr);
     }
     const int code = watchInputs(console, arguments,
                                  [&](const Console& own, const CompileArguments& current, WatchedRun& run) {
-                                     return compileOnce(own, current, cache, furtherInputs(current), &run);
+                                     return compileOnce(own, current, cache, &run);
                                  });
     cache.close(console);
     return code;

@@ -50,7 +50,7 @@ void addModuleFiles(CompiledPackage& package, const std::string& source, bool em
         if (emitGlsl) {
             const std::string header = fmt::format("// Made by glint {} from {}. Do not edit.\n",
                                                    toolVersion(), commentText(source));
-            package.files.push_back({"glsl/" + module.name, toBytes(makeReadable(module.glsl, header))});
+            package.files.push_back({"glsl/" + module.name, toBytes(makeReadable(*module.glsl, header))});
         }
     }
 }

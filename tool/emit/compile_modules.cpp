@@ -24,40 +24,23 @@ namespace {
 
 // The compiled form of one text, which several modules may have.
 struct CompiledText {
-    CachedModule module;
+    std::shared_ptr<const CachedModule> module;
     bool compiled = false;
 };
 
-std::optional<CachedModule> findCompiled(const std::string& text, ModuleCache* cache, WarmModules* warm) {
-    if (warm != nullptr) {
-        if (std::optional<CachedModule> found = warm->findModule(text)) {
-            return found;
-        }
-    }
-    std::optional<CachedModule> found = cache != nullptr ? cache->find(text) : std::nullopt;
-    if (found && warm != nullptr) {
-        warm->putModule(text, *found);
-    }
-    return found;
-}
-
-void putCompiled(const std::string& text, const CachedModule& module, ModuleCache* cache, WarmModules* warm) {
-    if (cache != nullptr) {
-        cache->put(text, module);
-    }
-    if (warm != nullptr) {
-        warm->putModule(text, module);
-    }
+CompiledText textOf(CachedModule module, bool compiled) {
+    return {std::make_shared<const CachedModule>(std::move(module)), compiled};
 }
 
 ShaderSource shaderOf(const ModuleSource& source) {
-    return {source.name, source.stage, source.glsl.withPlaces(), source.functionsApart};
+    return {source.name, source.stage, source.glsl->unit.withPlaces(), source.functionsApart};
 }
 
 Result<CompiledText> takeText(const ModuleSource& source, const std::string& text,
-                              const std::filesystem::path& file) {
+                              const std::filesystem::path& folder) {
+    const std::filesystem::path file = folder / (nameOfModuleText(text) + std::string(kCompiledModuleSuffix));
     Result<CachedModule> module = readCompiledModule(file, text, source.name);
-    return module ? Result<CompiledText>(CompiledText{std::move(*module), false}) : module.error();
+    return module ? Result<CompiledText>(textOf(std::move(*module), false)) : module.error();
 }
 
 constexpr std::string_view kComputeSuffix = ".comp";
@@ -76,9 +59,9 @@ CompiledModule makeCompiled(ModuleSource& source, const CompiledText& text, bool
     module.key = source.key;
     module.file = spirvFileName(source);
     module.name = std::move(source.name);
-    module.glsl = std::move(source.glsl);
-    module.spirv = text.module.spirv;
-    module.statistics = text.module.statistics;
+    module.glsl = {source.glsl, &source.glsl->unit};
+    module.spirv = text.module->spirv;
+    module.statistics = text.module->statistics;
     module.hash = base::hashBytes({reinterpret_cast<const std::uint8_t*>(module.spirv.data()),
                                    module.spirv.size() * sizeof(std::uint32_t)});
     module.compiled = text.compiled && isFirst;
@@ -105,8 +88,8 @@ class DistinctTexts {
 public:
     struct Text {
         const ModuleSource* source = nullptr;  // the first that has it
-        const std::string* text = nullptr;     // points into places_
-        std::vector<std::size_t> parts;        // texts, the one with the entry point first
+        TextHash hash;
+        std::vector<std::size_t> parts;  // texts, the one with the entry point first
     };
 
     DistinctTexts(std::span<const ModuleSource> sources, bool debugInfo) : debugInfo_(debugInfo) {
@@ -134,15 +117,15 @@ private:
         for (const std::shared_ptr<const ModuleSource>& part : source.parts) {
             parts.push_back(add(*part));
         }
-        const auto [place, added] = places_.emplace(makeModuleText(source, debugInfo_), texts_.size());
+        const auto [place, added] = places_.emplace(hashOfModuleText(source, debugInfo_), texts_.size());
         if (added) {
-            texts_.push_back({&source, &place->first, std::move(parts)});
+            texts_.push_back({&source, place->first, std::move(parts)});
         }
         return place->second;
     }
 
     bool debugInfo_;
-    std::map<std::string, std::size_t> places_;
+    std::map<TextHash, std::size_t> places_;
     std::vector<Text> texts_;
     std::vector<std::size_t> textOf_;
     std::vector<bool> isFirst_;
@@ -205,8 +188,8 @@ private:
             if (texts_[i].source->link) {
                 needed[i] = false;
             } else if (!texts_[i].parts.empty()) {
-                if (std::optional<CachedModule> found = findCompiled(*texts_[i].text, cache_, warm_)) {
-                    results_[i] = CompiledText{std::move(*found), false};
+                if (std::optional<CompiledText> found = find(texts_[i])) {
+                    results_[i] = std::move(*found);
                 }
             }
         }
@@ -228,13 +211,30 @@ private:
         return order;
     }
 
+    // Returns the compiled form that an earlier run has left, if there is one.
+    std::optional<CompiledText> find(const DistinctTexts::Text& text) const {
+        if (auto found = warm_ != nullptr ? warm_->findModule(text.hash) : nullptr) {
+            return CompiledText{std::move(found), false};
+        }
+        std::optional<CachedModule> module =
+            cache_ != nullptr ? cache_->find(makeModuleText(*text.source, options_.debugInfo)) : std::nullopt;
+        if (!module) {
+            return std::nullopt;
+        }
+        CompiledText found = textOf(std::move(*module), false);
+        if (warm_ != nullptr) {
+            warm_->putModule(text.hash, found.module);
+        }
+        return found;
+    }
+
     Result<CompiledText> compile(std::size_t index) {
         const DistinctTexts::Text& text = texts_[index];
         if (!text.parts.empty()) {
             return join(text);
         }
-        if (std::optional<CachedModule> found = findCompiled(*text.text, cache_, warm_)) {
-            return CompiledText{std::move(*found), false};
+        if (std::optional<CompiledText> found = find(text)) {
+            return std::move(*found);
         }
         return keep(text, compileMeasured(shaderOf(*text.source), options_, text.source->link));
     }
@@ -246,7 +246,7 @@ private:
             if (!results_[part]->ok()) {
                 return results_[part]->error();
             }
-            parts.push_back(&(*results_[part])->module);
+            parts.push_back((*results_[part])->module.get());
         }
         // The joins that wait or run share the threads.
         const int idle = jobs_ / std::max(1, ++joins_);
@@ -260,8 +260,14 @@ private:
         if (!module) {
             return module.error();
         }
-        putCompiled(*text.text, *module, cache_, warm_);
-        return CompiledText{std::move(*module), true};
+        if (cache_ != nullptr) {
+            cache_->put(makeModuleText(*text.source, options_.debugInfo), *module);
+        }
+        CompiledText compiled = textOf(std::move(*module), true);
+        if (warm_ != nullptr) {
+            warm_->putModule(text.hash, compiled.module);
+        }
+        return compiled;
     }
 
     const std::vector<DistinctTexts::Text>& texts_;
@@ -324,9 +330,7 @@ Result<std::vector<CompiledModule>> takeModules(std::vector<ModuleSource> source
         if (text.source->link) {
             continue;  // the module that was joined from it has been made already
         }
-        GLINT_TRY(taken.back(),
-                  takeText(*text.source, *text.text,
-                           folder / (nameOfModuleText(*text.text) + std::string(kCompiledModuleSuffix))));
+        GLINT_TRY(taken.back(), takeText(*text.source, makeModuleText(*text.source, debugInfo), folder));
     }
     return makeModules(sources, distinct, taken);
 }

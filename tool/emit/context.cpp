@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <functional>
+#include <map>
 #include <vector>
 
 namespace glint::compiler {
@@ -112,12 +114,17 @@ Result<std::string> renderTemplate(const SourceSet& sources, std::string_view na
     if (!text) {
         return makeError("template", std::string(name), "there is no such template");
     }
-    mustache::mustache parsed{std::string(*text)};
-    if (!parsed.is_valid()) {
-        return makeError("template", std::string(name), parsed.error_message());
+    // Templates are Glint's own, so they are few, and packages render some of them for each case.
+    thread_local std::map<std::string, mustache::mustache, std::less<>> known;
+    auto parsed = known.find(*text);
+    if (parsed == known.end()) {
+        parsed = known.emplace(*text, mustache::mustache{std::string(*text)}).first;
+        parsed->second.set_custom_escape([](const std::string& value) { return value; });
     }
-    parsed.set_custom_escape([](const std::string& value) { return value; });
-    return parsed.render(context);
+    if (!parsed->second.is_valid()) {
+        return makeError("template", std::string(name), parsed->second.error_message());
+    }
+    return parsed->second.render(context);
 }
 
 }  // namespace glint::compiler

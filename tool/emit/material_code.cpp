@@ -37,12 +37,12 @@ std::string hasFeature(const materials::Feature& feature, Asked asked) {
 // The condition under which code runs; empty if it always runs.
 std::string conditionOf(const materials::MaterialModel& model, const materials::FeatureMask& used,
                         const materials::FeatureCode& code, Asked asked) {
-    const auto feature = [&](int index) { return model.features[static_cast<std::size_t>(index)]; };
-    std::string text = code.feature < 0 ? "" : hasFeature(feature(code.feature), asked);
-    for (const materials::Feature& other : model.features) {
-        if (code.unless.has(other.bit) && used.has(other.bit)) {
-            text += fmt::format("{}!{}", text.empty() ? "" : " && ", hasFeature(other, asked));
-        }
+    const auto has = [&](int feature) {
+        return hasFeature(model.features[static_cast<std::size_t>(feature)], asked);
+    };
+    std::string text = code.feature < 0 ? "" : has(code.feature);
+    for (const int other : model.indicesOf(code.unless & used)) {
+        text += fmt::format("{}!{}", text.empty() ? "" : " && ", has(other));
     }
     return text;
 }
@@ -151,7 +151,7 @@ void addLayers(mustache::data& context, const materials::MaterialModel& model,
 }
 
 std::vector<const materials::FeatureCode*> codeOf(const materials::MaterialModel& model,
-                                                  materials::FeatureMask used) {
+                                                  const materials::FeatureMask& used) {
     std::vector<const materials::FeatureCode*> code;
     for (const materials::FeatureCode& one : model.code) {
         if (one.feature < 0 || used.has(model.features[static_cast<std::size_t>(one.feature)].bit)) {
@@ -315,17 +315,23 @@ Diagnostic explainGlslError(Diagnostic error, const materials::MaterialModel& mo
     return error;
 }
 
-Result<const SourceSet*> MaterialCodeOfCases::find(materials::FeatureMask used) {
-    materials::FeatureMask withCode = 0;
+MaterialCodeOfCases::MaterialCodeOfCases(const SourceSet& sources, const Plan& plan)
+    : sources_(sources),
+      model_(*plan.model),
+      layout_(materialLayoutOf(plan)),
+      ofMasks_(maskCodeFeatures(*plan.model)) {
     for (const materials::FeatureCode& code : model_.code) {
-        withCode |= code.feature < 0 ? 0 : model_.features[static_cast<std::size_t>(code.feature)].mask();
+        withCode_ |= code.feature < 0 ? 0 : model_.features[static_cast<std::size_t>(code.feature)].mask();
     }
-    const auto [place, isNew] = made_.try_emplace(used & withCode);
+}
+
+Result<const SourceSet*> MaterialCodeOfCases::find(const materials::FeatureMask& used) {
+    const auto [place, isNew] = made_.try_emplace(used & withCode_);
     if (isNew) {
         GLINT_TRY_DO(addMaterialCode(sources_, model_, used, place->second));
         if (!model_.models.empty()) {
             // Whatever the case, rays meet surfaces whose opacity is the code of another one.
-            const materials::FeatureMask named = model_.withBases(used | maskCodeFeatures(model_));
+            const materials::FeatureMask named = model_.withBases(used | ofMasks_);
             place->second.add("generated/features.glsl", model_.featureDefines(named));
             place->second.add("generated/material_record.glsl", recordDeclarations(layout_, named));
         }

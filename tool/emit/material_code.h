@@ -39,17 +39,18 @@ Diagnostic explainGlslError(Diagnostic error, const materials::MaterialModel& mo
 class MaterialCodeOfCases {
 public:
     // Both must outlive this.
-    MaterialCodeOfCases(const SourceSet& sources, const Plan& plan)
-        : sources_(sources), model_(*plan.model), layout_(materialLayoutOf(plan)) {}
+    MaterialCodeOfCases(const SourceSet& sources, const Plan& plan);
 
     // Returns the files for keys with features of `used` alone. They are valid as long as this. Has the
     // errors of renderTemplate().
-    Result<const SourceSet*> find(materials::FeatureMask used);
+    Result<const SourceSet*> find(const materials::FeatureMask& used);
 
 private:
     const SourceSet& sources_;
     const materials::MaterialModel& model_;
     MaterialLayout layout_;
+    materials::FeatureMask ofMasks_;                    // maskCodeFeatures()
+    materials::FeatureMask withCode_ = 0;               // all features that have code
     std::map<materials::FeatureMask, SourceSet> made_;  // by the features that have code
 };
 

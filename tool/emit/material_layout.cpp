@@ -8,6 +8,7 @@
 #include <cstring>
 #include <functional>
 #include <interop/scene.h>
+#include <map>
 #include <numeric>
 
 namespace glint::compiler {
@@ -19,7 +20,7 @@ using package::Role;
 constexpr std::uint32_t kNumberBytes = materials::kNumberBytes;
 
 bool has(const std::vector<int>& models, int model) {
-    return std::ranges::find(models, model) != models.end();
+    return std::ranges::binary_search(models, model);
 }
 
 bool isUsed(const materials::MaterialModel& model, int feature, const materials::FeatureMask& used) {
@@ -111,10 +112,12 @@ std::string memberOf(const RecordField& field, RecordLanguage language) {
 
 // Whether a frame may be that of a texture's coordinates though no key reads the texture.
 bool takesFrameOf(const materials::MaterialModel& model, int texture, const materials::FeatureMask& used) {
+    if (texture != model.textureOf(Role::TangentFrame)) {
+        return false;
+    }
     const materials::FeatureMask sets = model.mask(Role::TexCoord0) | model.mask(Role::TexCoord1);
     const bool matters = (used & sets) == sets || (used & model.mask(Role::TurnedFrames)) != 0;
-    return matters && texture == model.textureOf(Role::TangentFrame) &&
-           std::ranges::any_of(model.features, [&](const materials::Feature& feature) {
+    return matters && std::ranges::any_of(model.features, [&](const materials::Feature& feature) {
                return feature.needsTangents && feature.texture < 0 && used.has(feature.bit);
            });
 }
@@ -129,28 +132,40 @@ public:
           strength_(model.featuresFor(Role::EmissionStrength)) {
         hasStrength_ =
             std::ranges::any_of(uses, [this](const RecordUse& use) { return (use.used & strength_) != 0; });
+        for (std::size_t i = 0; i < uses.size(); ++i) {
+            for (const int one : uses[i].models) {
+                useOf_[one] = i;
+            }
+        }
     }
 
     // Each returns which of the uses have it.
     std::vector<bool> ofParameter(int parameter) const {
-        return which([&](const RecordUse& use) { return hasParameter(use, parameter); });
+        return which(model_.parameters[static_cast<std::size_t>(parameter)].feature,
+                     [&](const RecordUse& use) { return hasParameter(use, parameter); });
     }
     std::vector<bool> ofDerived(const materials::DerivedField& field) const {
-        return which([&](const RecordUse& use) { return isUsed(model_, field.feature, use.used); });
+        return which(field.feature,
+                     [&](const RecordUse& use) { return isUsed(model_, field.feature, use.used); });
     }
     std::vector<bool> ofTexture(int texture) const {
         const int feature = model_.textures[static_cast<std::size_t>(texture)].feature;
-        return which([&](const RecordUse& use) {
+        return which(feature, [&](const RecordUse& use) {
             return isUsed(model_, feature, use.used) || takesFrameOf(model_, texture, use.used);
         });
     }
 
 private:
+    // What belongs to a feature of a model is in no records but those of the model.
     template <typename Has>
-    std::vector<bool> which(const Has& has) const {
-        std::vector<bool> uses;
-        for (const RecordUse& use : uses_) {
-            uses.push_back(has(use));
+    std::vector<bool> which(int feature, const Has& has) const {
+        std::vector<bool> uses(uses_.size());
+        const int owner = feature < 0 ? -1 : model_.features[static_cast<std::size_t>(feature)].model;
+        const auto only = useOf_.find(owner);
+        const std::size_t first = owner < 0 ? 0 : only != useOf_.end() ? only->second : uses.size();
+        const std::size_t end = owner < 0 ? uses.size() : std::min(first + 1, uses.size());
+        for (std::size_t i = first; i < end; ++i) {
+            uses[i] = has(uses_[i]);
         }
         return uses;
     }
@@ -181,6 +196,7 @@ private:
     materials::FeatureMask emission_;
     materials::FeatureMask strength_;
     bool hasStrength_ = false;
+    std::map<int, std::size_t> useOf_;  // by model
 };
 
 // Gives places to what only some uses have. Two things that one use has lie in different places.
@@ -240,14 +256,20 @@ const RecordField* MaterialLayout::fieldOf(Role role) const {
     return parameter < 0 || found == fields.end() ? nullptr : &*found;
 }
 
+const RecordField* MaterialLayout::fieldNamed(std::string_view name) const {
+    const auto found = byName.find(name);
+    return found == byName.end() ? nullptr : &fields[found->second];
+}
+
 int MaterialLayout::slotOf(int texture) const {
-    const auto found = std::ranges::find(textures, texture, &TextureSlot::texture);
-    return found == textures.end() ? -1 : found->slot;
+    const auto found = std::ranges::lower_bound(textures, texture, {}, &TextureSlot::texture);
+    return found == textures.end() || found->texture != texture ? -1 : found->slot;
 }
 
 int MaterialLayout::slotOf(int texture, int ofModel) const {
-    const auto found = std::ranges::find(textures, texture, &TextureSlot::texture);
-    return found == textures.end() || !has(found->models, ofModel) ? -1 : found->slot;
+    const auto found = std::ranges::lower_bound(textures, texture, {}, &TextureSlot::texture);
+    return found == textures.end() || found->texture != texture || !has(found->models, ofModel) ? -1
+                                                                                                : found->slot;
 }
 
 MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, std::span<const RecordUse> uses) {
@@ -258,6 +280,7 @@ MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, std::sp
     const auto add = [&](RecordField field, std::vector<bool> which) {
         field.models = modelsOf(uses, which);
         if (!field.models.empty()) {
+            layout.byName.emplace(field.name, layout.fields.size());
             layout.fields.push_back(std::move(field));
             usesOfField.push_back(std::move(which));
         }
@@ -298,8 +321,11 @@ MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, std::sp
     const auto byUses = [](const std::vector<std::vector<bool>>& which) {
         std::vector<std::size_t> order(which.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
-        std::ranges::stable_sort(order, std::ranges::greater(),
-                                 [&](std::size_t i) { return std::ranges::count(which[i], true); });
+        std::vector<std::ptrdiff_t> counts;
+        for (const std::vector<bool>& one : which) {
+            counts.push_back(std::count(one.begin(), one.end(), true));
+        }
+        std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t i) { return counts[i]; });
         return order;
     };
     Overlay numbers(uses.size());
@@ -374,7 +400,23 @@ std::string nameConstant(const materials::Parameter& parameter, std::size_t valu
     return "k" + materials::capitalized(parameter.name) + materials::capitalized(parameter.names[value]);
 }
 
-std::string recordStruct(const MaterialLayout& layout, RecordLanguage language) {
+namespace {
+
+// Whether shaders with those features may name what belongs to the feature.
+bool isNamed(const materials::MaterialModel& model, int feature, const materials::FeatureMask& used) {
+    const int owner = feature < 0 ? -1 : model.features[static_cast<std::size_t>(feature)].model;
+    return owner < 0 || used.has(model.models[static_cast<std::size_t>(owner)].firstBit - 1);
+}
+
+int featureOf(const MaterialLayout& layout, const RecordField& field) {
+    return field.parameter >= 0 ? layout.model->parameters[static_cast<std::size_t>(field.parameter)].feature
+                                : layout.model->derived[static_cast<std::size_t>(field.derived)].feature;
+}
+
+}  // namespace
+
+std::string recordStruct(const MaterialLayout& layout, RecordLanguage language,
+                         const materials::FeatureMask& used) {
     std::string text = "struct MaterialRecord {\n";
     for (const RecordField& field : layout.fields) {
         if (layout.isShared(field)) {
@@ -386,7 +428,7 @@ std::string recordStruct(const MaterialLayout& layout, RecordLanguage language) 
         text += fmt::format("    float own[{}];  // the fields that only some models have:\n",
                             layout.ownFloats());
         for (const RecordField& field : layout.fields) {
-            if (!layout.isShared(field)) {
+            if (!layout.isShared(field) && isNamed(*layout.model, featureOf(layout, field), used)) {
                 text += fmt::format("    //   own[{}]: {}\n", ownIndex(layout, field),
                                     memberOf(field, RecordLanguage::Glsl));
             }
@@ -401,23 +443,15 @@ std::string recordStruct(const MaterialLayout& layout, RecordLanguage language) 
 
 std::string recordDeclarations(const MaterialLayout& layout, const materials::FeatureMask& used) {
     const materials::MaterialModel& model = *layout.model;
-    // Whether shaders with those features may name what belongs to the feature.
-    const auto isNamed = [&](int feature) {
-        const int owner = feature < 0 ? -1 : model.features[static_cast<std::size_t>(feature)].model;
-        return owner < 0 || used.has(model
-                                         .features[static_cast<std::size_t>(
-                                             model.models[static_cast<std::size_t>(owner)].feature)]
-                                         .bit);
-    };
     std::string text = "// The values of a material that the scenes of the package need.\n" +
-                       recordStruct(layout, RecordLanguage::Glsl);
+                       recordStruct(layout, RecordLanguage::Glsl, used);
     text +=
         "layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer MaterialArray { "
         "MaterialRecord "
         "data[]; };\n";
     text += "// The textures of a record.\n";
     for (std::size_t i = 0; i < model.textures.size(); ++i) {
-        if (isNamed(model.textures[i].feature)) {
+        if (isNamed(model, model.textures[i].feature, used)) {
             text += fmt::format("const uint {} = {}u;\n", textureConstant(model.textures[i].name),
                                 std::max(0, layout.slotOf(static_cast<int>(i))));
         }
@@ -436,11 +470,11 @@ std::string recordDeclarations(const MaterialLayout& layout, const materials::Fe
     text += "#define GLINT_MATERIAL(hit) hostMaterials().data[(hit).material]\n";
     text += "// The values of a hit's material. No key of the package reads those that are constants here.\n";
     const auto define = [&](const std::string& name, const std::string& constant, bool isArray) {
-        const auto field = std::ranges::find(layout.fields, name, &RecordField::name);
-        text += fieldMacros(name, isArray, field != layout.fields.end() ? readOf(layout, *field) : constant);
+        const RecordField* const field = layout.fieldNamed(name);
+        text += fieldMacros(name, isArray, field != nullptr ? readOf(layout, *field) : constant);
     };
     for (const materials::Parameter& parameter : model.parameters) {
-        if (!parameter.inRecord || !isNamed(parameter.feature)) {
+        if (!parameter.inRecord || !isNamed(model, parameter.feature, used)) {
             continue;
         }
         for (std::size_t i = 0; i < parameter.names.size(); ++i) {
@@ -455,7 +489,7 @@ std::string recordDeclarations(const MaterialLayout& layout, const materials::Fe
     }
     for (const materials::DerivedField& field : model.derived) {
         const std::array<double, 4> zero{};
-        if (isNamed(field.feature)) {
+        if (isNamed(model, field.feature, used)) {
             define(
                 field.name,
                 literalOf(*field.type, std::span(zero).first(static_cast<std::size_t>(field.type->channels))),

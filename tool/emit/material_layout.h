@@ -5,7 +5,10 @@
 
 #include "plan/plan.h"
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -47,7 +50,8 @@ struct MaterialLayout {
     std::uint32_t textureOffset = 0;
     std::uint32_t textureCount = 0;
     std::uint32_t bytes = 0;
-    bool turnsFrames = false;  // Some key has turnedFrames.
+    bool turnsFrames = false;                                  // Some key has turnedFrames.
+    std::map<std::string, std::size_t, std::less<>> byName{};  // indices into `fields`
 
     std::uint32_t ownFloats() const {
         return (textureOffset - ownOffset) / 4;
@@ -58,6 +62,8 @@ struct MaterialLayout {
     }
     // Returns the field of the parameter that has the role, or null.
     const RecordField* fieldOf(package::Role role) const;
+    // Returns the field of that name, or null.
+    const RecordField* fieldNamed(std::string_view name) const;
     // Returns the place of a texture in the record, or -1.
     int slotOf(int texture) const;
     // Returns that place, or -1 if records of the model lack the texture.
@@ -79,9 +85,11 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
 // has the field; those of arrays take an index, too. Of what belongs to models of packs, it has that of the
 // models of `used`.
 std::string recordDeclarations(const MaterialLayout& layout, const materials::FeatureMask& used);
-// Returns the struct alone, in GLSL or, with the types of interop/types.h, in C++.
+// Returns the struct alone, in GLSL or, with the types of interop/types.h, in C++. Its comments list the
+// fields of the models of `used`.
 enum class RecordLanguage : std::uint8_t { Glsl, Cpp };
-std::string recordStruct(const MaterialLayout& layout, RecordLanguage language);
+std::string recordStruct(const MaterialLayout& layout, RecordLanguage language,
+                         const materials::FeatureMask& used = materials::kAllFeatures);
 // Returns the constant of a value of an enum: "kToonEdgeSoft".
 std::string nameConstant(const materials::Parameter& parameter, std::size_t value);
 

@@ -130,7 +130,11 @@ bool takeInput(std::string_view line, ModuleText& module) {
 
 }  // namespace
 
-std::string makeModuleText(const ModuleSource& source, bool debugInfo) {
+namespace {
+
+// Returns the comments above the GLSL. `nameOfPart` returns a text that stands for that of a part.
+template <typename NameOfPart>
+std::string headOfText(const ModuleSource& source, bool debugInfo, const NameOfPart& nameOfPart) {
     std::string text = fmt::format("{}\n{}{}\n", kFirstLine, kStage, nameInText(source.stage));
     for (const std::string& function : source.functionsApart) {
         text += fmt::format("{}{}\n", kApart, function);
@@ -147,17 +151,35 @@ std::string makeModuleText(const ModuleSource& source, bool debugInfo) {
         }
     }
     for (const std::shared_ptr<const ModuleSource>& part : source.parts) {
-        text += fmt::format("{}{}\n", kPart, nameOfModuleText(makeModuleText(*part, debugInfo)));
+        text += fmt::format("{}{}\n", kPart, nameOfPart(*part));
     }
     if (debugInfo) {
         text += fmt::format("{}{}\n", kNamed, source.name);
     }
     text += kLastLine;
     text += '\n';
-    if (debugInfo) {
-        return text + source.glsl.withPlaces();
-    }
-    return text + (source.prepared ? source.prepared->essential : essentialText(source.glsl.text()));
+    return text;
+}
+
+std::string hexText(const TextHash& hash) {
+    return base::hexHash(hash.first) + base::hexHash(hash.second);
+}
+
+}  // namespace
+
+std::string makeModuleText(const ModuleSource& source, bool debugInfo) {
+    const std::string head = headOfText(source, debugInfo, [&](const ModuleSource& part) {
+        return nameOfModuleText(makeModuleText(part, debugInfo));
+    });
+    return head + (debugInfo ? source.glsl->unit.withPlaces() : source.glsl->essential);
+}
+
+TextHash hashOfModuleText(const ModuleSource& source, bool debugInfo) {
+    const std::string head = headOfText(source, debugInfo, [&](const ModuleSource& part) {
+        return hexText(hashOfModuleText(part, debugInfo));
+    });
+    return hashOfText(head +
+                      hexText(debugInfo ? hashOfText(source.glsl->unit.withPlaces()) : source.glsl->hash));
 }
 
 Result<ModuleText> readModuleText(std::string_view text, const std::string& name) {
@@ -196,8 +218,7 @@ Result<ModuleText> readModuleText(std::string_view text, const std::string& name
 }
 
 std::string nameOfModuleText(std::string_view text) {
-    return base::hexHash(base::hashBytes(base::asBytes(text))) +
-           base::hexHash(base::hashBytes(base::asBytes(text), 1));
+    return hexText(hashOfText(text));
 }
 
 namespace fs = std::filesystem;

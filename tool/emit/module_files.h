@@ -39,6 +39,8 @@ std::string moduleCompiler();
 // linked, the names of the texts of its parts, and its own name if names are kept. Two modules have equal
 // texts exactly if they are compiled alike. Without debug information the GLSL is that of essentialText().
 std::string makeModuleText(const ModuleSource& source, bool debugInfo);
+// Returns a hash that differs between texts of makeModuleText(), which it need not make.
+TextHash hashOfModuleText(const ModuleSource& source, bool debugInfo);
 
 struct ModuleText {
     ShaderSource source;

@@ -7,12 +7,13 @@
 
 #include <glint/internal/package_modules.h>
 
+#include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 namespace glint::compiler {
@@ -22,24 +23,44 @@ public:
     void add(std::string name, std::string text);
     // Returns the file's text, which is valid as long as the set.
     std::optional<std::string_view> find(std::string_view name) const;
+    // Returns a number that differs between texts of the file, or nothing if there is no such file.
+    std::optional<std::uint64_t> markOf(std::string_view name) const;
     SourceLookup lookup() const;
 
 private:
-    std::map<std::string, std::string, std::less<>> files_;
+    struct File {
+        std::string text;
+        std::uint64_t mark = 0;
+    };
+    struct NameHash : std::hash<std::string_view> {
+        using is_transparent = void;
+    };
+    std::unordered_map<std::string, File, NameHash, std::equal_to<>> files_;
+};
+
+// Identifies a text of a module (makeModuleText()), or a part of one.
+using TextHash = std::pair<std::uint64_t, std::uint64_t>;
+TextHash hashOfText(std::string_view text);
+
+// The GLSL of a module after flattening and pruning.
+struct PreparedGlsl {
+    PreparedGlsl(GlslUnit prepared, std::string essentialOfIt)
+        : unit(std::move(prepared)), essential(std::move(essentialOfIt)), hash(hashOfText(essential)) {}
+
+    GlslUnit unit;          // without unused functions, constants and macros
+    std::string essential;  // essentialText() of it
+    TextHash hash;          // of `essential`
 };
 
 // --- Shader modules between templates and SPIR-V ---
-
-struct PreparedGlsl;
 
 // A module before it is compiled.
 struct ModuleSource {
     package::ModuleKey key;
     ShaderStage stage = ShaderStage::Compute;
-    std::string name;                                // "uber.comp"
-    GlslUnit glsl;                                   // without unused functions, constants and macros
-    std::vector<std::string> functionsApart{};       // as in ShaderSource
-    std::shared_ptr<const PreparedGlsl> prepared{};  // the same GLSL, if a package has made it
+    std::string name;  // "uber.comp"
+    std::shared_ptr<const PreparedGlsl> glsl{};
+    std::vector<std::string> functionsApart{};  // as in ShaderSource
     // Not empty if the module is compiled in parts, the one with the entry point first: see compilePart().
     // They make what `glsl` says.
     std::vector<std::shared_ptr<const ModuleSource>> parts{};

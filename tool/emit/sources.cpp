@@ -18,12 +18,18 @@
 namespace glint::compiler {
 
 void SourceSet::add(std::string name, std::string text) {
-    files_.insert_or_assign(std::move(name), std::move(text));
+    const std::uint64_t mark = base::hashBytes(text);
+    files_.insert_or_assign(std::move(name), File{std::move(text), mark});
 }
 
 std::optional<std::string_view> SourceSet::find(std::string_view name) const {
     const auto place = files_.find(name);
-    return place == files_.end() ? std::nullopt : std::optional<std::string_view>(place->second);
+    return place == files_.end() ? std::nullopt : std::optional<std::string_view>(place->second.text);
+}
+
+std::optional<std::uint64_t> SourceSet::markOf(std::string_view name) const {
+    const auto place = files_.find(name);
+    return place == files_.end() ? std::nullopt : std::optional(place->second.mark);
 }
 
 SourceLookup SourceSet::lookup() const {

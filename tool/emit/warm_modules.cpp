@@ -12,37 +12,28 @@ namespace glint::compiler {
 
 namespace {
 
-// A text that is not there differs from every text that is.
-constexpr std::uint64_t kAbsent = 0;
-
-std::uint64_t markOf(std::optional<std::string_view> text) {
-    return text ? base::hashBytes(*text) | 1U : kAbsent;
-}
-
 std::pair<std::uint64_t, std::uint64_t> warmKeyOf(std::string_view name, std::string_view text) {
-    return {text.size(), base::hashBytes(text) ^ (base::hashBytes(name) << 1U)};
+    const TextHash hash = hashOfText(text);
+    return {hash.first, hash.second ^ (base::hashBytes(name) << 1U)};
 }
 
 }  // namespace
 
-SourceLookup WarmModules::Reader::recording() {
-    return [this](std::string_view name) {
-        const std::optional<std::string_view> found = lookup_(name);
-        read_.emplace(name, markOf(found));
-        return found;
-    };
+TextHash hashOfText(std::string_view text) {
+    return {base::hashBytes(base::asBytes(text)), base::hashBytes(base::asBytes(text), 1)};
 }
 
 std::shared_ptr<const PreparedGlsl> WarmModules::findGlsl(std::string_view name, std::string_view text,
-                                                          const SourceLookup& lookup) {
+                                                          const IncludedFiles& files) {
+    const Key key = warmKeyOf(name, text);
     const std::lock_guard lock(mutex_);
-    const auto known = glsl_.find(warmKeyOf(name, text));
+    const auto known = glsl_.find(key);
     if (known == glsl_.end()) {
         return nullptr;
     }
     for (Glsl& candidate : known->second) {
         const bool same = std::ranges::all_of(
-            candidate.read, [&](const auto& file) { return markOf(lookup(file.first)) == file.second; });
+            candidate.read, [&](const auto& file) { return files.markOf(file.first) == file.second; });
         if (same) {
             candidate.used = run_;
             return candidate.glsl;
@@ -51,25 +42,25 @@ std::shared_ptr<const PreparedGlsl> WarmModules::findGlsl(std::string_view name,
     return nullptr;
 }
 
-void WarmModules::putGlsl(std::string_view name, std::string_view text, const Reader& reader,
+void WarmModules::putGlsl(std::string_view name, std::string_view text, Read read,
                           std::shared_ptr<const PreparedGlsl> glsl) {
     const std::lock_guard lock(mutex_);
-    glsl_[warmKeyOf(name, text)].push_front({reader.read_, std::move(glsl), run_});
+    glsl_[warmKeyOf(name, text)].push_front({std::move(read), std::move(glsl), run_});
 }
 
-std::optional<CachedModule> WarmModules::findModule(std::string_view text) {
+std::shared_ptr<const CachedModule> WarmModules::findModule(const TextHash& text) {
     const std::lock_guard lock(mutex_);
-    const auto known = modules_.find(warmKeyOf("", text));
+    const auto known = modules_.find(text);
     if (known == modules_.end()) {
-        return std::nullopt;
+        return nullptr;
     }
     known->second.used = run_;
-    return *known->second.module;
+    return known->second.module;
 }
 
-void WarmModules::putModule(std::string_view text, const CachedModule& module) {
+void WarmModules::putModule(const TextHash& text, std::shared_ptr<const CachedModule> module) {
     const std::lock_guard lock(mutex_);
-    modules_[warmKeyOf("", text)] = {std::make_shared<const CachedModule>(module), run_};
+    modules_[text] = {std::move(module), run_};
 }
 
 void WarmModules::endRun() {
@@ -122,25 +113,28 @@ void ModuleDrafts::add(std::shared_ptr<ModuleSource> module, std::string origin,
 }
 
 Status ModuleDrafts::finish(const Draft& draft) const {
-    const SourceLookup lookup = [&](std::string_view name) {
-        const std::optional<std::string_view> found = draft.own->find(name);
-        return found ? found : sources_.find(name);
-    };
+    const IncludedFiles files(*draft.own, sources_);
     ModuleSource& module = *draft.module;
-    module.prepared = warm_ == nullptr ? nullptr : warm_->findGlsl(draft.origin, draft.text, lookup);
-    if (!module.prepared) {
-        WarmModules::Reader reader(lookup);
-        GLINT_TRY(const auto flattened,
-                  flatten(draft.origin, draft.text, reader.recording(), FlattenSide::Glsl));
-        GlslUnit unit = dropUnused(cutDecided(flattened));
-        std::string essential = essentialText(unit.text());
-        module.prepared =
-            std::make_shared<const PreparedGlsl>(PreparedGlsl{std::move(unit), std::move(essential)});
-        if (warm_ != nullptr) {
-            warm_->putGlsl(draft.origin, draft.text, reader, module.prepared);
-        }
+    module.glsl = warm_ == nullptr ? nullptr : warm_->findGlsl(draft.origin, draft.text, files);
+    if (module.glsl) {
+        return okStatus();
     }
-    module.glsl = module.prepared->unit;
+    WarmModules::Read read;
+    const SourceLookup lookup = [&](std::string_view name) {
+        if (warm_ != nullptr) {
+            read.emplace_back(name, files.markOf(name));
+        }
+        return files.find(name);
+    };
+    GLINT_TRY(const auto flattened, flatten(draft.origin, draft.text, lookup, FlattenSide::Glsl));
+    GlslUnit unit = dropUnused(cutDecided(flattened));
+    std::string essential = essentialText(unit.text());
+    module.glsl = std::make_shared<const PreparedGlsl>(std::move(unit), std::move(essential));
+    if (warm_ != nullptr) {
+        std::ranges::sort(read);
+        read.erase(std::unique(read.begin(), read.end()), read.end());
+        warm_->putGlsl(draft.origin, draft.text, std::move(read), module.glsl);
+    }
     return okStatus();
 }
 

@@ -21,47 +21,54 @@
 
 namespace glint::compiler {
 
-// A module's GLSL after flattening and pruning.
-struct PreparedGlsl {
-    GlslUnit unit;
-    std::string essential;  // essentialText() of it
+// The files that modules include: those of one set hide those of another.
+class IncludedFiles {
+public:
+    // Both must outlive this.
+    IncludedFiles(const SourceSet& own, const SourceSet& others) : own_(own), others_(others) {}
+
+    std::optional<std::string_view> find(std::string_view name) const {
+        const std::optional<std::string_view> found = own_.find(name);
+        return found ? found : others_.find(name);
+    }
+    std::optional<std::uint64_t> markOf(std::string_view name) const {
+        const std::optional<std::uint64_t> found = own_.markOf(name);
+        return found ? found : others_.markOf(name);
+    }
+
+private:
+    const SourceSet& own_;
+    const SourceSet& others_;
 };
 
 // Keeps the GLSL and the SPIR-V of modules whose inputs stay the same from run to run. A module's GLSL is
 // found by the text that it starts with and the contents of every file that it included, by name; its SPIR-V
-// by the text that makeModuleText() made. Texts are compared by size and 64-bit hash. What a run has not used
-// for kRuns runs is dropped. Thread-safe but for endRun().
+// by the hash of the text that makeModuleText() makes. Files are compared by a 64-bit hash. What a run has
+// not used for kRuns runs is dropped. Thread-safe but for endRun().
 class WarmModules {
 public:
     static constexpr std::uint64_t kRuns = 8;
 
-    // Returns what prepare() gave for the same text, name and included files.
-    std::shared_ptr<const PreparedGlsl> findGlsl(std::string_view name, std::string_view text,
-                                                 const SourceLookup& lookup);
-    // Passes on to `lookup` and notes what it finds.
-    class Reader {
-    public:
-        explicit Reader(const SourceLookup& lookup) : lookup_(lookup) {}
-        SourceLookup recording();
+    // The files that a module asked for, by name, each with SourceSet::markOf() of it.
+    using Read = std::vector<std::pair<std::string, std::optional<std::uint64_t>>>;
 
-    private:
-        friend class WarmModules;
-        const SourceLookup& lookup_;
-        std::map<std::string, std::uint64_t, std::less<>> read_;  // by name: mark of the text
-    };
-    void putGlsl(std::string_view name, std::string_view text, const Reader& reader,
+    // Returns what was put for the same text, name and included files.
+    std::shared_ptr<const PreparedGlsl> findGlsl(std::string_view name, std::string_view text,
+                                                 const IncludedFiles& files);
+    void putGlsl(std::string_view name, std::string_view text, Read read,
                  std::shared_ptr<const PreparedGlsl> glsl);
 
-    std::optional<CachedModule> findModule(std::string_view text);
-    void putModule(std::string_view text, const CachedModule& module);
+    // Returns null if there is none.
+    std::shared_ptr<const CachedModule> findModule(const TextHash& text);
+    void putModule(const TextHash& text, std::shared_ptr<const CachedModule> module);
 
     // Drops what was not used lately. Call it between runs.
     void endRun();
 
 private:
-    using Key = std::pair<std::uint64_t, std::uint64_t>;  // size and hash
+    using Key = TextHash;
     struct Glsl {
-        std::map<std::string, std::uint64_t, std::less<>> read;
+        Read read;
         std::shared_ptr<const PreparedGlsl> glsl;
         std::uint64_t used = 0;  // run
     };

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -85,11 +86,35 @@ Status readTexture(const ObjectSource& object, std::string_view member, TextureT
     return okStatus();
 }
 
-// Returns an object of a material's JSON, or null if the material does not have it.
-const Json* objectOf(const Json& json, const materials::MaterialObject& object) {
-    return object.name.empty()  ? &json
-           : object.isExtension ? findExtension(json, object.name)
-                                : find(json, object.name);
+// The objects of a material's JSON that the model knows, by their indices.
+using Objects = std::map<int, const Json*>;
+
+Objects objectsOf(const Json& json, const materials::MaterialModel& model) {
+    Objects objects{{0, &json}};
+    const auto add = [&](const Json& members, bool areExtensions) {
+        for (const auto& [name, member] : members.items()) {
+            const int object = model.findObject(name);
+            if (object > 0 && model.objects[static_cast<std::size_t>(object)].isExtension == areExtensions) {
+                objects.emplace(object, &member);
+            }
+        }
+    };
+    add(json, false);
+    if (const Json* const extensions = find(json, "extensions")) {
+        add(*extensions, true);
+    }
+    return objects;
+}
+
+// Returns the ascending elements of `list` of the objects.
+std::vector<int> allOf(const Objects& objects, const materials::MaterialModel& model,
+                       std::vector<int> materials::MaterialObject::*list) {
+    std::set<int> all;
+    for (const auto& [object, json] : objects) {
+        const std::vector<int>& some = model.objects[static_cast<std::size_t>(object)].*list;
+        all.insert(some.begin(), some.end());
+    }
+    return {all.begin(), all.end()};
 }
 
 std::string pointerOf(const std::string& pointer, const materials::MaterialObject& object) {
@@ -98,18 +123,19 @@ std::string pointerOf(const std::string& pointer, const materials::MaterialObjec
                : fmt::format("{}{}/{}", pointer, object.isExtension ? "/extensions" : "", object.name);
 }
 
-Status readTextures(Document& document, TextureTable& textures, const Json& json, const std::string& pointer,
-                    materials::Material& material) {
+Status readTextures(Document& document, TextureTable& textures, const Objects& objects,
+                    const std::string& pointer, materials::Material& material) {
     const materials::MaterialModel& model = material.model();
-    for (std::size_t slot = 0; slot < model.textures.size(); ++slot) {
+    for (const int index : allOf(objects, model, &materials::MaterialObject::textures)) {
+        const auto slot = static_cast<std::size_t>(index);
         for (const materials::MaterialTexture::Place& place : model.textures[slot].places) {
-            const materials::MaterialObject& owner = model.objects[static_cast<std::size_t>(place.object)];
-            const Json* const object = objectOf(json, owner);
-            if (object == nullptr || !material.reads(place.object)) {
+            const auto object = objects.find(place.object);
+            if (object == objects.end() || !material.reads(place.object)) {
                 continue;
             }
-            GLINT_TRY_DO(readTexture({document, *object, pointerOf(pointer, owner)}, place.member, textures,
-                                     model.textures[slot].dimension, material.textures, slot));
+            const materials::MaterialObject& owner = model.objects[static_cast<std::size_t>(place.object)];
+            GLINT_TRY_DO(readTexture({document, *object->second, pointerOf(pointer, owner)}, place.member,
+                                     textures, model.textures[slot].dimension, material.textures, slot));
         }
     }
     return okStatus();
@@ -199,18 +225,24 @@ void readParameter(const ObjectSource& object, const materials::Parameter& param
 // Warns of extensions that another one of the material excludes.
 void warnOfConflicts(Document& document, const std::string& pointer, const materials::Material& material) {
     const materials::MaterialModel& model = material.model();
-    const auto objectOf = [&](const materials::Feature& feature) {
-        return feature.object >= 0 && material.given.has(feature.object) ? feature.object : -1;
-    };
-    std::set<int> told;
-    for (const materials::Exclusion& exclusion : model.exclusions) {
-        const int by = objectOf(model.features[static_cast<std::size_t>(exclusion.by)]);
-        if (by < 0) {
-            continue;
+    // The features that the material's objects ask for, and what these exclude.
+    std::set<int> asked;
+    std::set<int> exclusions;
+    for (const int object : material.given) {
+        for (const int feature : model.objects[static_cast<std::size_t>(object)].asksFor) {
+            const std::vector<int>& own = model.features[static_cast<std::size_t>(feature)].exclusions;
+            asked.insert(feature);
+            exclusions.insert(own.begin(), own.end());
         }
-        for (const materials::Feature& feature : model.features) {
-            const int object = exclusion.excluded.has(feature.bit) ? objectOf(feature) : -1;
-            if (object < 0 || object == by || !told.insert(object).second) {
+    }
+    std::set<int> told;
+    for (const int place : exclusions) {
+        const materials::Exclusion& exclusion = model.exclusions[static_cast<std::size_t>(place)];
+        const int by = model.features[static_cast<std::size_t>(exclusion.by)].object;
+        for (const int index : asked) {
+            const materials::Feature& feature = model.features[static_cast<std::size_t>(index)];
+            const int object = feature.object;
+            if (!exclusion.excluded.has(feature.bit) || object == by || !told.insert(object).second) {
                 continue;
             }
             document.warn("material-conflict",
@@ -222,27 +254,27 @@ void warnOfConflicts(Document& document, const std::string& pointer, const mater
     }
 }
 
-void readParameters(Document& document, const Json& json, const std::string& pointer,
+void readParameters(Document& document, const Json& json, const Objects& objects, const std::string& pointer,
                     materials::Material& material) {
     const materials::MaterialModel& model = material.model();
-    for (std::size_t i = 0; i < model.objects.size(); ++i) {
-        if (objectOf(json, model.objects[i]) != nullptr) {
-            material.given.add(static_cast<int>(i));
-        }
+    for (const auto& [object, ignored] : objects) {
+        material.given.add(object);
     }
-    for (std::size_t i = 0; i < model.objects.size(); ++i) {
-        for (const materials::MaterialObject::Setting& setting : model.objects[i].settings) {
-            if (material.reads(static_cast<int>(i))) {
+    // Objects that replace others are read where they are given.
+    for (const auto& [object, ignored] : objects) {
+        for (const materials::MaterialObject::Setting& setting :
+             model.objects[static_cast<std::size_t>(object)].settings) {
+            if (material.reads(object)) {
                 const materials::Parameter& parameter =
                     model.parameters[static_cast<std::size_t>(setting.parameter)];
                 std::ranges::copy(setting.numbers, material.values.begin() + parameter.first);
             }
         }
     }
-    for (const materials::Parameter& parameter : model.parameters) {
+    for (const int index : allOf(objects, model, &materials::MaterialObject::parameters)) {
+        const materials::Parameter& parameter = model.parameters[static_cast<std::size_t>(index)];
         const materials::MaterialObject& owner = model.objects[static_cast<std::size_t>(parameter.object)];
-        const Json* const object = objectOf(json, owner);
-        if (object != nullptr && material.reads(parameter.object)) {
+        if (material.reads(parameter.object)) {
             if (parameter.aliasOf >= 0) {
                 // The value is that of an extension whose feature multiplies by it.
                 const auto own = static_cast<std::size_t>(parameter.aliasOf);
@@ -251,7 +283,8 @@ void readParameters(Document& document, const Json& json, const std::string& poi
                     material.given.add(its);
                 }
             }
-            readParameter({document, *object, pointerOf(pointer, owner)}, parameter, material);
+            readParameter({document, *objects.at(parameter.object), pointerOf(pointer, owner)}, parameter,
+                          material);
         }
     }
     warnOfConflicts(document, pointer, material);
@@ -276,8 +309,9 @@ Status importMaterials(Document& document, Scene& scene) {
         material.name = memberOr<std::string>(json, "name", "");
         material.alphaMode = readAlphaMode(document, memberOr<std::string>(json, "alphaMode", ""), pointer);
         material.doubleSided = memberOr(json, "doubleSided", false);
-        readParameters(document, json, pointer, material);
-        GLINT_TRY_DO(readTextures(document, textures, json, pointer, material));
+        const Objects objects = objectsOf(json, material.model());
+        readParameters(document, json, objects, pointer, material);
+        GLINT_TRY_DO(readTextures(document, textures, objects, pointer, material));
         checkTransfer(document, scene, material, pointer);
         scene.materials.push_back(std::move(material));
     }

@@ -74,8 +74,16 @@ struct ImageWork {
 std::vector<std::uint32_t> channelsThatMatter(const materials::MaterialModel& model) {
     std::vector<std::uint32_t> channels(model.textures.size());
     const auto read = [&](const materials::Expression& expression) {
-        for (const materials::Parameter& parameter : model.parameters) {
-            const auto symbol = static_cast<int>(&parameter - model.parameters.data());
+        for (const int symbol : expression.symbols()) {
+            const int texel = symbol - model.symbolOfTexel(0);
+            if (texel >= 0 && texel < static_cast<int>(channels.size())) {
+                const std::uint32_t used = expression.channelsOf(symbol);
+                channels[static_cast<std::size_t>(texel)] |= std::popcount(used) < 3 ? used : 0;
+            }
+            if (symbol >= static_cast<int>(model.parameters.size())) {
+                continue;
+            }
+            const materials::Parameter& parameter = model.parameters[static_cast<std::size_t>(symbol)];
             const std::uint32_t used = parameter.scaledBy < 0 ? 0 : expression.channelsOf(symbol);
             for (std::size_t i = 0; i < 4 && used != 0; ++i) {
                 const int channel = parameter.scaledByChannels[i];
@@ -84,10 +92,6 @@ std::vector<std::uint32_t> channelsThatMatter(const materials::MaterialModel& mo
                         1U << static_cast<unsigned>(channel);
                 }
             }
-        }
-        for (std::size_t i = 0; i < channels.size(); ++i) {
-            const std::uint32_t used = expression.channelsOf(model.symbolOfTexel(static_cast<int>(i)));
-            channels[i] |= std::popcount(used) < 3 ? used : 0;
         }
     };
     for (const materials::Feature& feature : model.features) {

@@ -150,6 +150,7 @@ struct ParsedDeclaration {
     ~ParsedDeclaration() = default;
 
     std::string name;
+    std::string text;
     bool isOfPack;
     DeclarationJson json;
     std::optional<EffectDeclaration> effect{};  // Declarations of effects have nothing of the following.

@@ -218,7 +218,8 @@ bool isIdentifier(std::string_view name) {
 
 }  // namespace
 
-ParsedDeclaration::ParsedDeclaration(const DeclarationFile& file) : name(file.name), isOfPack(file.isOfPack) {
+ParsedDeclaration::ParsedDeclaration(const DeclarationFile& file)
+    : name(file.name), text(file.text), isOfPack(file.isOfPack) {
     const auto* const bytes = reinterpret_cast<const std::uint8_t*>(file.text.data());
     if (base::nestsTooDeep({bytes, file.text.size()})) {
         failAt(name, "nests too deep");
@@ -285,10 +286,11 @@ MaterialModel ModelBuilder::build() {
         }
     }
     std::vector<DeclaredCode> code;
+    std::map<int, FeatureMask> replacedBy = replacing();
     for (const File& file : files_) {
         if (file->members->has("glsl")) {
             code.push_back(readFeatureCode(*file->members, file->name, file.mainFeature));
-            code.back().code.unless = replacing(file.object);
+            code.back().code.unless = replacedBy[file.object];
             code.back().code.isOfPack = file->isOfPack;
         }
     }
@@ -303,15 +305,15 @@ MaterialModel ModelBuilder::build() {
     return std::move(model_);
 }
 
-FeatureMask ModelBuilder::replacing(int object) const {
-    FeatureMask mask = 0;
+std::map<int, FeatureMask> ModelBuilder::replacing() const {
+    std::map<int, FeatureMask> masks;
     for (const File& file : files_) {
         const int replaced = model_.objects[static_cast<std::size_t>(file.object)].replaces;
-        if (object > 0 && replaced == object && file.mainFeature >= 0) {
-            mask |= model_.features[static_cast<std::size_t>(file.mainFeature)].mask();
+        if (replaced > 0 && file.mainFeature >= 0) {
+            masks[replaced] |= model_.features[static_cast<std::size_t>(file.mainFeature)].mask();
         }
     }
-    return mask;
+    return masks;
 }
 
 int ModelBuilder::addObject(const std::string& name, bool isExtension) {
@@ -385,13 +387,20 @@ auto caught(const Make& make) -> Result<decltype(make())> {
 
 }  // namespace
 
-Result<ParsedDeclarations> parseDeclarations(std::span<const DeclarationFile> files) {
+Result<ParsedDeclarations> parseDeclarations(std::span<const DeclarationFile> files,
+                                             const ParsedDeclarations& known) {
     std::vector<DeclarationFile> sorted(files.begin(), files.end());
     std::ranges::sort(sorted, {}, &DeclarationFile::name);
     return caught([&] {
         ParsedDeclarations parsed;
+        auto earlier = known.begin();
         for (const DeclarationFile& file : sorted) {
-            parsed.push_back(std::make_shared<const ParsedDeclaration>(file));
+            while (earlier != known.end() && (*earlier)->name < file.name) {
+                ++earlier;
+            }
+            const bool isKnown = earlier != known.end() && (*earlier)->name == file.name &&
+                                 (*earlier)->text == file.text && (*earlier)->isOfPack == file.isOfPack;
+            parsed.push_back(isKnown ? *earlier : std::make_shared<const ParsedDeclaration>(file));
         }
         return parsed;
     });

@@ -17,9 +17,11 @@
 
 namespace glint::materials {
 
-// Reads what each file says by itself. Error "declaration": a file is no JSON, or has unknown or missing
-// members; the place is file#/json/pointer.
-Result<ParsedDeclarations> parseDeclarations(std::span<const DeclarationFile> files);
+// Reads what each file says by itself, in the order of their names. Takes those of `known`, an earlier
+// result, whose file has the same name and text. Error "declaration": a file is no JSON, or has unknown or
+// missing members; the place is file#/json/pointer.
+Result<ParsedDeclarations> parseDeclarations(std::span<const DeclarationFile> files,
+                                             const ParsedDeclarations& known = {});
 
 // Makes the model of all files together, as they may refer to each other. The result depends on neither the
 // order of the files nor their folders. Error "declaration": that of parseDeclarations(), or a file uses a
@@ -35,10 +37,10 @@ Result<MaterialModel> readDeclarations(std::span<const DeclarationFile> files);
 Result<std::vector<std::filesystem::path>> packFiles(std::span<const std::string> folders);
 
 // Returns the model of Glint's own features together with those of the packs. It lives as long as the
-// program, as materials refer to it. Without folders it is builtinMaterialModel(). Has the errors of
-// packFiles(), readFile() and readDeclarations(), and "materials-glsl" if a file that a declaration names is
-// not there, or reads a texture without asking whether the key has it, or a value that records of its model
-// lack.
+// program, as materials refer to it. Without folders it is builtinMaterialModel(). What the last call has
+// read is not parsed again as long as the files have the same text. Has the errors of packFiles(), readFile()
+// and readDeclarations(), and "materials-glsl" if a file that a declaration names is not there, or reads a
+// texture without asking whether the key has it, or a value that records of its model lack.
 Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> folders);
 
 }  // namespace glint::materials

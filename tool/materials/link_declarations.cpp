@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <interop/models.h>
 #include <tuple>
 #include <utility>
 
@@ -34,7 +35,7 @@ void ModelBuilder::assignBits() {
         if (row.base >= 0) {
             row.feature.bit = own++;
             if (row.base == i) {
-                model_.models.push_back({row.feature.name, index, own, 0});
+                model_.models.push_back({row.feature.name, index, own});
             } else if (++model_.models.back().bits > kOwnFeatures) {
                 failAt(row.where, fmt::format("{} has more than {} features of its own",
                                               model_.models.back().name, kOwnFeatures));
@@ -63,6 +64,7 @@ void ModelBuilder::assignBits() {
     for (VertexAttribute& attribute : model_.attributes) {
         attribute.feature = indexOf[static_cast<std::size_t>(attribute.feature)];
     }
+    model_.indexBits();
     // Slots have the order of their bits.
     std::ranges::sort(model_.textures, {}, &MaterialTexture::feature);
     for (std::size_t i = 0; i < model_.textures.size(); ++i) {
@@ -76,10 +78,15 @@ bool ModelBuilder::isLobe(const Feature& feature) {
 
 void ModelBuilder::orderByDependence() {
     const std::size_t count = model_.features.size();
-    std::vector<std::set<int>> needs(count);
+    std::vector<std::vector<int>> needs(count);
     const auto isLate = [&](const Feature& feature) {
         return feature.stage == Stage::Attributes || feature.stage == Stage::Coordinates;
     };
+    for (const Exclusion& exclusion : model_.exclusions) {
+        for (const int excluded : model_.indicesOf(exclusion.excluded)) {
+            needs[static_cast<std::size_t>(excluded)].push_back(exclusion.by);
+        }
+    }
     for (std::size_t i = 0; i < count; ++i) {
         const Feature& feature = model_.features[i];
         for (const NeutralReason& reason : feature.neutral) {
@@ -89,50 +96,58 @@ void ModelBuilder::orderByDependence() {
             addNeeds(*feature.given, needs[i]);
         }
         if (feature.lobe >= 0) {
-            needs[i].insert(feature.lobe);
+            needs[i].push_back(feature.lobe);
         }
         if (feature.model >= 0 && model_.baseOf(feature) != static_cast<int>(i)) {
-            needs[i].insert(model_.baseOf(feature));
-        }
-        for (const Exclusion& exclusion : model_.exclusions) {
-            if (exclusion.excluded.has(feature.bit)) {
-                needs[i].insert(exclusion.by);
-            }
+            needs[i].push_back(model_.baseOf(feature));
         }
         if (asksFor(feature, Fact::ModelOfPack)) {
             for (const BaseModel& model : model_.models) {
-                needs[i].insert(model.feature);
+                needs[i].push_back(model.feature);
             }
         }
         if (asksFor(feature, Fact::ChangesOpacity)) {
             for (const FeatureCode& code : model_.code) {
                 if (!code.opacity.empty() && code.feature != static_cast<int>(i)) {
-                    needs[i].insert(code.feature);
+                    needs[i].push_back(code.feature);
                 }
             }
         }
         for (std::size_t other = 0; isLate(feature) && other < count; ++other) {
             if (!isLate(model_.features[other])) {
-                needs[i].insert(static_cast<int>(other));
+                needs[i].push_back(static_cast<int>(other));
             }
         }
     }
-    std::vector<bool> placed(count);
+    // How many each waits for, and which wait for each.
+    std::vector<std::size_t> open(count);
+    std::vector<std::vector<int>> waiting(count);
+    std::set<int> ready;
+    for (std::size_t i = 0; i < count; ++i) {
+        open[i] = needs[i].size();
+        for (const int need : needs[i]) {
+            waiting[static_cast<std::size_t>(need)].push_back(static_cast<int>(i));
+        }
+        if (open[i] == 0) {
+            ready.insert(static_cast<int>(i));
+        }
+    }
     while (model_.order.size() < count) {
-        const auto next = std::ranges::find_if(indices(count), [&](int i) {
-            return !placed[static_cast<std::size_t>(i)] &&
-                   std::ranges::all_of(needs[static_cast<std::size_t>(i)],
-                                       [&](int need) { return placed[static_cast<std::size_t>(need)]; });
-        });
-        if (next == indices(count).end()) {
+        if (ready.empty()) {
             // The last one, as features of packs come last.
-            const auto left = std::find(placed.rbegin(), placed.rend(), false);
-            const Feature& feature = model_.features[static_cast<std::size_t>(placed.rend() - left) - 1];
+            const auto left = std::find_if(open.rbegin(), open.rend(), [](std::size_t n) { return n > 0; });
+            const Feature& feature = model_.features[static_cast<std::size_t>(open.rend() - left) - 1];
             failAt(named_[feature.name],
                    fmt::format("the conditions of \"{}\" lead back to it", feature.name));
         }
-        placed[static_cast<std::size_t>(*next)] = true;
-        const Feature& feature = model_.features[static_cast<std::size_t>(*next)];
+        const int next = *ready.begin();
+        ready.erase(ready.begin());
+        for (const int other : waiting[static_cast<std::size_t>(next)]) {
+            if (--open[static_cast<std::size_t>(other)] == 0) {
+                ready.insert(other);
+            }
+        }
+        const Feature& feature = model_.features[static_cast<std::size_t>(next)];
         const int base = feature.model < 0 ? -1 : model_.baseOf(feature);
         // What is asked for by value is decided for every material.
         const bool byObject = base >= 0 && !featureAt(base).given && featureAt(base).object >= 0 &&
@@ -141,7 +156,7 @@ void ModelBuilder::orderByDependence() {
                                       ? model_.objects[static_cast<std::size_t>(featureAt(base).object)].steps
                                       : model_.commonSteps;
         steps.push_back(static_cast<int>(model_.order.size()));
-        model_.order.push_back({*next, base < 0 || base == *next ? -1 : featureAt(base).bit});
+        model_.order.push_back({next, base < 0 || base == next ? -1 : featureAt(base).bit});
     }
 }
 
@@ -169,22 +184,22 @@ void ModelBuilder::excludeFromModels() {
                 {static_cast<int>(i), later, fmt::format("{} is the material's model", feature.name)});
         }
     }
+    std::map<int, FeatureMask> furtherOf;  // by object
+    for (const File& file : files_) {
+        for (const Members& further : file->features) {
+            furtherOf[file.object] |= model_.mask(fullName(file.scope, further.text("name")));
+        }
+    }
+    const FeatureMask changing = ofBase & ~models;
     for (const FeatureCode& code : model_.code) {
         if (code.model.empty()) {
             continue;
         }
         const Feature& feature = featureAt(code.feature);
         model_.ownModels |= feature.mask();
-        FeatureMask excluded = ofBase & ~models;
         const int replaced = model_.objects[static_cast<std::size_t>(feature.object)].replaces;
-        for (const File& file : files_) {
-            if (file.object != replaced) {
-                continue;
-            }
-            for (const Members& further : file->features) {
-                excluded |= model_.mask(fullName(file.scope, further.text("name")));
-            }
-        }
+        const auto further = furtherOf.find(replaced);
+        const FeatureMask excluded = further == furtherOf.end() ? changing : changing | further->second;
         model_.exclusions.push_back(
             {code.feature, excluded, fmt::format("{} is the material's model", code.name)});
     }
@@ -204,6 +219,42 @@ void ModelBuilder::indexModel() {
         object.feature = object.feature < 0 ? index : object.feature;
         object.base = object.base < 0 && feature.stage == Stage::Base ? index : object.base;
         object.isUnlit = object.isUnlit || model_.unlit.has(feature.bit);
+        object.asksFor.push_back(index);
+    }
+    for (std::size_t i = 0; i < model_.parameters.size(); ++i) {
+        const Parameter& parameter = model_.parameters[i];
+        MaterialObject& object = model_.objects[static_cast<std::size_t>(parameter.object)];
+        object.parameters.push_back(static_cast<int>(i));
+        if (parameter.aliasOf >= 0) {
+            object.fills.insert(std::ranges::upper_bound(object.fills, parameter.aliasOf), parameter.aliasOf);
+        }
+    }
+    for (std::size_t i = 0; i < model_.textures.size(); ++i) {
+        for (const MaterialTexture::Place& place : model_.textures[i].places) {
+            std::vector<int>& textures = model_.objects[static_cast<std::size_t>(place.object)].textures;
+            if (textures.empty() || textures.back() != static_cast<int>(i)) {
+                textures.push_back(static_cast<int>(i));
+            }
+        }
+    }
+    const int color = model_.parameterOf(package::Role::BaseColor);
+    for (std::size_t i = 0; i < model_.models.size(); ++i) {
+        BaseModel& model = model_.models[i];
+        const int base = featureAt(model.feature).bit;
+        model.word = static_cast<std::uint32_t>(i) + 1;
+        model.word |= model_.unlit.has(base) ? gpu::kModelUnlit : 0U;
+        model.word |= model_.bothSides.has(base) ? gpu::kModelBothSides : 0U;
+        model.word |= model_.ownModels.has(base) ? gpu::kModelOwnCode : 0U;
+        const bool hasColor = color >= 0 && model_.hasParameter(static_cast<int>(i), color);
+        model.word |= hasColor ? gpu::kModelBaseColor : 0U;
+    }
+    for (const FeatureCode& code : model_.code) {
+        const int owner = code.feature < 0 ? -1 : featureAt(code.feature).model;
+        if (owner >= 0) {
+            std::uint32_t& word = model_.models[static_cast<std::size_t>(owner)].word;
+            word |= code.isSampled ? gpu::kModelSampled : 0U;
+            word |= code.coordinates.empty() && code.opacity.empty() ? 0U : gpu::kModelChangesAlpha;
+        }
     }
 }
 
@@ -228,18 +279,11 @@ bool ModelBuilder::asksFor(const Feature& feature, Fact fact) const {
     });
 }
 
-const std::vector<int>& ModelBuilder::indices(std::size_t count) {
-    for (std::size_t i = indices_.size(); i < count; ++i) {
-        indices_.push_back(static_cast<int>(i));
-    }
-    return indices_;
-}
-
-void ModelBuilder::addNeeds(const Expression& expression, std::set<int>& needs) const {
+void ModelBuilder::addNeeds(const Expression& expression, std::vector<int>& needs) const {
     const int first = model_.symbolOfFeature(0);
     for (const int symbol : expression.symbols()) {
         if (symbol >= first && symbol < first + static_cast<int>(model_.features.size())) {
-            needs.insert(symbol - first);
+            needs.push_back(symbol - first);
         }
     }
 }

@@ -120,6 +120,9 @@ bool Material::isUnlit() const {
 }
 
 bool Material::reads(int object) const {
+    if (model_->objects[static_cast<std::size_t>(object)].replaces >= 0 && !given.has(object)) {
+        return false;
+    }
     // An unlit material reads the plain base, whatever replaces it.
     const bool unlit = isUnlit();
     const auto rowOf = [this](int one) -> const MaterialObject& {
@@ -198,13 +201,21 @@ std::string lostInput(const Material& material, const PrimitiveInputs& primitive
         return {};
     }
     FeatureMask asked = 0;
-    for (const Feature& one : model.features) {
-        asked |= isAsked(one) ? one.mask() : 0;
+    for (const auto& [slot, info] : material.textures) {
+        asked |= info.texture >= 0
+                     ? model.features[static_cast<std::size_t>(model.textures[slot].feature)].mask()
+                     : FeatureMask();
     }
-    for (const Exclusion& exclusion : model.exclusions) {
-        const Feature& by = model.features[static_cast<std::size_t>(exclusion.by)];
-        if (asked.has(by.bit) && exclusion.excluded.has(feature.bit)) {
-            return {};
+    for (const int object : material.given) {
+        for (const int one : model.objects[static_cast<std::size_t>(object)].asksFor) {
+            asked |= model.features[static_cast<std::size_t>(one)].mask();
+        }
+    }
+    for (const int by : model.indicesOf(asked)) {
+        for (const int exclusion : model.features[static_cast<std::size_t>(by)].exclusions) {
+            if (model.exclusions[static_cast<std::size_t>(exclusion)].excluded.has(feature.bit)) {
+                return {};
+            }
         }
     }
     const PrimitiveInputs whole = withEveryAttribute(primitive);
@@ -313,10 +324,8 @@ bool MaterialFacts::hasTangents() const {
 bool MaterialFacts::takesPlainFrame(const Feature& feature) const {
     const MaterialModel& model = material_.model();
     const int index = static_cast<int>(&feature - model.features.data());
-    return feature.needsTangents && feature.texture < 0 &&
-           std::ranges::none_of(model.features, [&](const Feature& other) {
-               return other.texture >= 0 && other.needsTangents && isInKey(other) &&
-                      (other.lobe < 0 || other.lobe == index);
+    return feature.needsTangents && feature.texture < 0 && !anyInKey([&](const Feature& other) {
+               return other.texture >= 0 && other.needsTangents && (other.lobe < 0 || other.lobe == index);
            });
 }
 
@@ -329,10 +338,7 @@ const TextureInfo* MaterialFacts::plainFrameTexture() const {
 
 bool MaterialFacts::turnsTangents() const {
     const MaterialModel& model = material_.model();
-    return std::ranges::any_of(model.features, [&](const Feature& feature) {
-        if (!isInKey(feature)) {
-            return false;
-        }
+    return anyInKey([&](const Feature& feature) {
         if (feature.texture >= 0) {
             // A lobe that needs a frame may take it from its own texture.
             const bool framed =
@@ -345,33 +351,29 @@ bool MaterialFacts::turnsTangents() const {
     });
 }
 
-bool MaterialFacts::isInKey(const Feature& feature) const {
-    return key_.has(feature.bit);
+template <typename Is>
+bool MaterialFacts::anyInKey(const Is& is) const {
+    const MaterialModel& model = material_.model();
+    return std::ranges::any_of(model.indicesOf(key_), [&](int index) {
+        return is(model.features[static_cast<std::size_t>(index)]);
+    });
 }
 
 bool MaterialFacts::readsTexCoord(int set) const {
-    for (const Feature& feature : material_.model().features) {
-        if (!isInKey(feature)) {
-            continue;
-        }
+    return anyInKey([&](const Feature& feature) {
         if (feature.needsTexCoord == set) {
             return true;
         }
         if (feature.texture >= 0) {
-            if (!feature.hasOwnCoordinates &&
-                material_.textures[static_cast<std::size_t>(feature.texture)].texCoord == set) {
-                return true;
-            }
-            continue;
+            return !feature.hasOwnCoordinates &&
+                   material_.textures[static_cast<std::size_t>(feature.texture)].texCoord == set;
         }
-        if (takesPlainFrame(feature) && !hasTangents()) {
-            const TextureInfo* const plain = plainFrameTexture();
-            if (set == (plain != nullptr ? plain->texCoord : primitive_.hasTexCoords0 ? 0 : 1)) {
-                return true;
-            }
+        if (!takesPlainFrame(feature) || hasTangents()) {
+            return false;
         }
-    }
-    return false;
+        const TextureInfo* const plain = plainFrameTexture();
+        return set == (plain != nullptr ? plain->texCoord : primitive_.hasTexCoords0 ? 0 : 1);
+    });
 }
 
 Certainty MaterialFacts::fact(Fact fact) const {
@@ -402,8 +404,8 @@ Certainty MaterialFacts::fact(Fact fact) const {
         case Fact::ReadsTexCoord1:
             return certain(readsTexCoord(1));
         case Fact::MovesTextures:
-            return certain(std::ranges::any_of(model.features, [&](const Feature& feature) {
-                return feature.texture >= 0 && key_.has(feature.bit) &&
+            return certain(anyInKey([&](const Feature& feature) {
+                return feature.texture >= 0 &&
                        isMoved(material_.textures[static_cast<std::size_t>(feature.texture)]);
             }));
         case Fact::GivesTransforms:
@@ -411,9 +413,7 @@ Certainty MaterialFacts::fact(Fact fact) const {
                 return slot.second.hasTransform || isMoved(slot.second);
             }));
         case Fact::NeedsTangents:
-            return certain(std::ranges::any_of(model.features, [&](const Feature& feature) {
-                return feature.needsTangents && key_.has(feature.bit);
-            }));
+            return certain(anyInKey([](const Feature& feature) { return feature.needsTangents; }));
         case Fact::DerivesTangents:
             return certain(primitive_.derivesTangents);
         case Fact::TurnsTangents:

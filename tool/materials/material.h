@@ -298,7 +298,9 @@ private:
     Certainty fact(Fact fact) const;
     bool readsTexCoord(int set) const;
     bool hasTangents() const;
-    bool isInKey(const Feature& feature) const;
+    // Returns whether `is` holds for a feature of the key.
+    template <typename Is>
+    bool anyInKey(const Is& is) const;
     // Returns whether a feature without a texture needs a frame, and no texture of the key gives it one.
     bool takesPlainFrame(const Feature& feature) const;
     const TextureInfo* plainFrameTexture() const;  // null: the first UV set

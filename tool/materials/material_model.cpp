@@ -257,13 +257,14 @@ int MaterialModel::findTexture(std::string_view name, int model) const {
     return own >= 0 ? own : findTexture(name);
 }
 
-FeatureMask MaterialModel::withBases(FeatureMask mask) const {
-    for (const BaseModel& model : models) {
-        for (int bit = model.firstBit; bit < model.firstBit + model.bits; ++bit) {
-            mask |= mask.has(bit) ? FeatureMask::ofBit(model.firstBit - 1) : FeatureMask();
+FeatureMask MaterialModel::withBases(const FeatureMask& mask) const {
+    FeatureMask whole = mask;
+    mask.forEach([&](int bit) {
+        if (bit >= kFirstOfModels) {
+            whole |= FeatureMask::ofBit(models[static_cast<std::size_t>(modelOfBit(bit))].firstBit - 1);
         }
-    }
-    return mask;
+    });
+    return whole;
 }
 
 FeatureMask MaterialModel::mask(std::string_view feature) const {
@@ -271,12 +272,33 @@ FeatureMask MaterialModel::mask(std::string_view feature) const {
     return index < 0 ? 0 : features[static_cast<std::size_t>(index)].mask();
 }
 
-std::vector<std::string_view> MaterialModel::names(FeatureMask mask) const {
-    std::vector<std::string_view> names;
-    for (const Feature& feature : features) {
-        if (mask.has(feature.bit)) {
-            names.emplace_back(feature.name);
+void MaterialModel::indexBits() {
+    for (std::size_t i = 0; i < features.size() && features[i].bit < kFirstOfModels; ++i) {
+        ofSharedBit_[static_cast<std::size_t>(features[i].bit)] = static_cast<int>(i);
+    }
+}
+
+std::vector<int> MaterialModel::indicesOf(const FeatureMask& mask) const {
+    std::vector<int> indices;
+    mask.forEach([&](int bit) {
+        // Features of models have ascending bits, and come after all others.
+        const int first = models.empty() ? 0 : models.front().feature;
+        const int index =
+            bit < kFirstOfModels ? ofSharedBit_[static_cast<std::size_t>(bit)] : first + bit - kFirstOfModels;
+        // The set may be one of another model, with more features.
+        if (static_cast<std::size_t>(index) < features.size() &&
+            features[static_cast<std::size_t>(index)].bit == bit) {
+            indices.push_back(index);
         }
+    });
+    std::ranges::sort(indices);
+    return indices;
+}
+
+std::vector<std::string_view> MaterialModel::names(const FeatureMask& mask) const {
+    std::vector<std::string_view> names;
+    for (const int index : indicesOf(mask)) {
+        names.emplace_back(features[static_cast<std::size_t>(index)].name);
     }
     return names;
 }
@@ -302,10 +324,8 @@ FeatureMask MaterialModel::featuresOf(int model) const {
         return mask;
     }
     const BaseModel& row = models[static_cast<std::size_t>(model)];
-    for (const Exclusion& exclusion : exclusions) {
-        if (exclusion.by == row.feature) {
-            mask &= ~exclusion.excluded;
-        }
+    for (const int exclusion : features[static_cast<std::size_t>(row.feature)].exclusions) {
+        mask &= ~exclusions[static_cast<std::size_t>(exclusion)].excluded;
     }
     for (int bit = row.firstBit - 1; bit < row.firstBit + row.bits; ++bit) {
         mask |= FeatureMask::ofBit(bit);
@@ -314,34 +334,14 @@ FeatureMask MaterialModel::featuresOf(int model) const {
 }
 
 bool MaterialModel::hasParameter(int model, int parameter) const {
-    if (model < 0) {
+    const int base = model < 0 ? -1 : models[static_cast<std::size_t>(model)].feature;
+    const int its = base < 0 ? -1 : features[static_cast<std::size_t>(base)].object;
+    if (its < 0) {
         return true;
     }
-    const int base = models[static_cast<std::size_t>(model)].feature;
-    const int object = features[static_cast<std::size_t>(base)].object;
-    const bool isFilled = std::ranges::any_of(parameters, [&](const Parameter& other) {
-        return other.aliasOf == parameter && other.object == object;
-    });
-    return isFilled || objects[static_cast<std::size_t>(object)].replaces !=
-                           parameters[static_cast<std::size_t>(parameter)].object;
-}
-
-std::uint32_t MaterialModel::modelWord(int model) const {
-    const BaseModel& row = models[static_cast<std::size_t>(model)];
-    const int base = features[static_cast<std::size_t>(row.feature)].bit;
-    std::uint32_t word = static_cast<std::uint32_t>(model) + 1;
-    word |= unlit.has(base) ? gpu::kModelUnlit : 0U;
-    word |= bothSides.has(base) ? gpu::kModelBothSides : 0U;
-    word |= ownModels.has(base) ? gpu::kModelOwnCode : 0U;
-    const int color = parameterOf(package::Role::BaseColor);
-    word |= color >= 0 && hasParameter(model, color) ? gpu::kModelBaseColor : 0U;
-    for (const FeatureCode& one : code) {
-        const bool isOfModel =
-            one.feature >= 0 && features[static_cast<std::size_t>(one.feature)].model == model;
-        word |= isOfModel && one.isSampled ? gpu::kModelSampled : 0U;
-        word |= isOfModel && !(one.coordinates.empty() && one.opacity.empty()) ? gpu::kModelChangesAlpha : 0U;
-    }
-    return word;
+    const MaterialObject& object = objects[static_cast<std::size_t>(its)];
+    return std::ranges::binary_search(object.fills, parameter) ||
+           object.replaces != parameters[static_cast<std::size_t>(parameter)].object;
 }
 
 package::KeyWords MaterialModel::words(const FeatureMask& mask) const {
@@ -419,20 +419,10 @@ std::string MaterialModel::featureDefines(const FeatureMask& used) const {
         "#define GLINT_BOTH_SIDES_LOBES 0x{:x}u\n",
         lobes.shared(), unlit.shared(), bothSides.shared());
     for (const Feature& feature : features) {
-        const std::string name = feature.macroEnd();
         if (feature.model >= 0) {
-            const int bit = feature.bit - models[static_cast<std::size_t>(feature.model)].firstBit;
-            const std::string rest =
-                fmt::format("{}u, {}, 0x{:x}u)", feature.model + 1, std::max(bit, 0) / 32,
-                            bit < 0 ? 0U : 1U << static_cast<unsigned>(bit % 32));
-            text += used.has(features[static_cast<std::size_t>(baseOf(feature))].bit)
-                        ? fmt::format(
-                              "#define GLINT_HAS_{0}(features) hasOwn(features, {1}\n"
-                              "#define GLINT_KEY_HAS_{0}(features) ownOfKey(features, {1}\n",
-                              name, rest)
-                        : "";
-            continue;
+            break;  // These come last.
         }
+        const std::string name = feature.macroEnd();
         const std::string bit = fmt::format("0x{:x}u\n", 1U << (static_cast<unsigned>(feature.bit) % 32U));
         text += fmt::format("#define {} {}", feature.macro, bit);
         const package::Role ofTexture = feature.texture < 0
@@ -448,6 +438,19 @@ std::string MaterialModel::featureDefines(const FeatureMask& used) const {
                             feature.bit < kFirstInput ? "hasLobe" : "hasInput", feature.macro);
         text += fmt::format("#define GLINT_KEY_HAS_{}(features) {}(features, {})\n", name,
                             feature.bit < kFirstInput ? "lobeOfKey" : "inputOfKey", feature.macro);
+    }
+    for (const BaseModel& model : models) {
+        for (int i = 0; i <= model.bits && used.has(model.firstBit - 1); ++i) {
+            const Feature& feature = features[static_cast<std::size_t>(model.feature + i)];
+            const int bit = feature.bit - model.firstBit;
+            const std::string rest =
+                fmt::format("{}u, {}, 0x{:x}u)", feature.model + 1, std::max(bit, 0) / 32,
+                            bit < 0 ? 0U : 1U << static_cast<unsigned>(bit % 32));
+            text += fmt::format(
+                "#define GLINT_HAS_{0}(features) hasOwn(features, {1}\n"
+                "#define GLINT_KEY_HAS_{0}(features) ownOfKey(features, {1}\n",
+                feature.macroEnd(), rest);
+        }
     }
     return text;
 }

@@ -212,6 +212,12 @@ struct MaterialObject {
     // Indices into MaterialModel::order, ascending: the features of a base model that only materials with
     // this object may have.
     std::vector<int> steps{};
+    std::vector<int> asksFor{};  // indices into MaterialModel::features: those that its presence asks for
+    // Ascending indices into MaterialModel::parameters and MaterialModel::textures of those that have a place
+    // in it.
+    std::vector<int> parameters{};
+    std::vector<int> textures{};
+    std::vector<int> fills{};  // indices into MaterialModel::parameters, ascending: those that its own set
 };
 
 // A parameter of a material: adjacent numbers of Material::values, those of an array's elements one after the
@@ -407,6 +413,8 @@ struct BaseModel {
     int feature = -1;  // index into MaterialModel::features: the base itself
     int firstBit = 0;  // of its further features, which follow each other
     int bits = 0;      // how many these are, at most kOwnFeatures
+    // The word by which shaders know the base: its number and what it does.
+    std::uint32_t word = 0;
 };
 
 // The effects of a material on light, by which effects are chosen.
@@ -451,6 +459,15 @@ enum class Fact : std::uint8_t {
 struct ModelSource {
     std::string name;
     std::string text;
+
+    bool operator==(const ModelSource&) const = default;
+};
+
+// A file of a pack, in the state in which it was read.
+struct PackFile {
+    std::string path;
+    std::uint64_t bytes = 0;
+    std::uint64_t hash = 0;  // base::hashBytes()
 };
 
 // A feature in the order in which the features of a key are decided. A key that lacks `needs` lacks it, too.
@@ -475,6 +492,7 @@ public:
     std::vector<EffectDeclaration> effects;  // by the number of their bit
     std::vector<FeatureCode> code;           // in the order in which it runs
     std::vector<ModelSource> sources;        // GLSL of packs; that of Glint's own features is embedded
+    std::vector<PackFile> files;             // all files of packs, sorted by name
     FeatureMask unlit = 0;                   // features without light
     FeatureMask bothSides = 0;               // features that let light through to the far side
     FeatureMask ownModels = 0;               // models whose GLSL stands in place of glTF's base
@@ -497,6 +515,8 @@ public:
     // Makes those of the names so far fast. It is needed again, for all of them, after rows have moved.
     void indexNames();
     void indexAllNames();
+    // Makes indicesOf() know the bits of all features.
+    void indexBits();
     // The same for what materials of a model of a pack mean by a name: a thing of the model, or else one that
     // all models share. `model` is an index into `models`; -1: of glTF's bases.
     int findParameter(std::string_view name, int model) const;
@@ -511,8 +531,10 @@ public:
     // Returns the features that decide about the values of the parameter and the texture with the role: those
     // that read them, and those that give and move the coordinates of the texture.
     FeatureMask featuresFor(package::Role role) const;
-    // Returns the names of the features of `mask`, in the order of bits.
-    std::vector<std::string_view> names(FeatureMask mask) const;
+    // Returns the features of a set with an end, as ascending indices into `features`.
+    std::vector<int> indicesOf(const FeatureMask& mask) const;
+    // Returns their names in the same order.
+    std::vector<std::string_view> names(const FeatureMask& mask) const;
     // Returns the numbers that any texture of the slot can hold: those of one that is not flat come from the
     // program alone, in any format.
     ValueInterval anyTexel(int texture) const {
@@ -534,7 +556,7 @@ public:
     // none of an object that the model replaces, unless a parameter of the model fills it.
     bool hasParameter(int model, int parameter) const;
     // Returns the set with the base of each feature of a model.
-    FeatureMask withBases(FeatureMask mask) const;
+    FeatureMask withBases(const FeatureMask& mask) const;
     // Returns a key as packages and shaders have it. If `mask` has no base of a pack, its model is 0.
     package::KeyWords words(const FeatureMask& mask) const;
     // Returns the set that the words of a key stand for.
@@ -545,8 +567,10 @@ public:
                                                               const FeatureMask& sometimes) const;
     // Returns how many words shaders need for the own features of the models of `used`: at least 1.
     int ownWordCount(const FeatureMask& used) const;
-    // Returns the word by which shaders know the base of index `model`: its number and what it does.
-    std::uint32_t modelWord(int model) const;
+    // Returns the word of the base of index `model`.
+    std::uint32_t modelWord(int model) const {
+        return models[static_cast<std::size_t>(model)].word;
+    }
     // Returns "#define GLINT_BASE_COLOR_TEXTURE 0x1u" for every feature that all models share; lobes and
     // inputs are numbered within their own word. For these and for all features of the models of `used`,
     // GLINT_HAS_BASE_COLOR_TEXTURE(features) asks for it, and GLINT_KEY_HAS_BASE_COLOR_TEXTURE(features)
@@ -579,6 +603,7 @@ private:
     NameIndex textureIndex_;
     NameIndex featureIndex_;
     NameIndex objectIndex_;
+    std::array<int, kFirstOfModels> ofSharedBit_{};  // index of the feature of each bit that all models share
 };
 
 // Returns the name, unique in all declarations, of what a model of a pack declares by `name`. It begins with

@@ -48,8 +48,8 @@ private:
 
     // declarations.cpp
 
-    // Returns the features whose objects a material may have in place of this one.
-    FeatureMask replacing(int object) const;
+    // Returns, by object, the features whose objects a material may have in place of it.
+    std::map<int, FeatureMask> replacing() const;
     int addObject(const std::string& name, bool isExtension);
     // Returns the full name of what the object declares, which must be new: every full name stands for one
     // thing.
@@ -109,8 +109,7 @@ private:
     void keepPlacesOfUnlit();
     // Whether a reason that leaves the feature out reads the fact.
     bool asksFor(const Feature& feature, Fact fact) const;
-    const std::vector<int>& indices(std::size_t count);
-    void addNeeds(const Expression& expression, std::set<int>& needs) const;
+    void addNeeds(const Expression& expression, std::vector<int>& needs) const;
 
     // link_declarations.cpp: the second pass
 
@@ -135,7 +134,6 @@ private:
     std::vector<Pending> pending_;
     std::map<std::string, std::string> named_;                      // where each name is declared
     std::map<std::pair<package::Role, Place>, std::string> roles_;  // where what has each role is declared
-    std::vector<int> indices_;
     std::ptrdiff_t baseBehaviours_ = 0;
 };
 

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <deque>
+#include <map>
 #include <mutex>
 #include <regex>
 #include <system_error>
@@ -52,9 +53,22 @@ Diagnostic folderError(const std::string& folder, std::string message) {
                      "docs/material_features.md and docs/effects.md describe");
 }
 
+// Returns whether a path has the extension, as std::filesystem does, which is much slower.
+bool hasExtension(const fs::path& path, std::string_view extension) {
+    const std::string_view text = path.native();
+    return text.size() > extension.size() && text.ends_with(extension) &&
+           text[text.size() - extension.size() - 1] != '/';
+}
+
 bool isPackFile(const fs::path& path) {
-    return path.extension() == ".json" || path.extension() == ".glsl" || path.extension() == ".comp" ||
-           path.extension() == ".spv";
+    return hasExtension(path, ".json") || hasExtension(path, ".glsl") || hasExtension(path, ".comp") ||
+           hasExtension(path, ".spv");
+}
+
+// The order of paths, without their components.
+bool isBefore(const fs::path& a, const fs::path& b) {
+    const auto rank = [](char c) { return c == '/' ? 0 : static_cast<unsigned char>(c); };
+    return std::ranges::lexicographical_compare(a.native(), b.native(), {}, rank, rank);
 }
 
 // Adds the files of one folder.
@@ -74,7 +88,7 @@ Status addFolder(const std::string& folder, std::vector<fs::path>& files) {
         return folderError(folder, fmt::format("can't be listed: {}", error.message()));
     }
     const auto begin = files.begin() + static_cast<std::ptrdiff_t>(before);
-    if (std::none_of(begin, files.end(), [](const fs::path& path) { return path.extension() == ".json"; })) {
+    if (std::none_of(begin, files.end(), [](const fs::path& path) { return hasExtension(path, ".json"); })) {
         return folderError(folder, "holds no declaration of a material feature or an effect");
     }
     return okStatus();
@@ -86,10 +100,7 @@ std::array<std::string_view, 8> filesOf(const FeatureCode& code) {
             code.emission, code.coordinates, code.opacity, code.diffuse};
 }
 
-bool isOf(const FeatureCode& code, const ModelSource& source) {
-    const auto files = filesOf(code);
-    return std::ranges::find(files, source.name) != files.end();
-}
+using Sources = std::map<std::string_view, const ModelSource*>;  // by name
 
 // Returns "file:line" of a place in a source.
 std::string lineOf(const ModelSource& source, std::size_t place) {
@@ -97,12 +108,9 @@ std::string lineOf(const ModelSource& source, std::size_t place) {
     return fmt::format("{}:{}", source.name, 1 + std::count(source.text.begin(), end, '\n'));
 }
 
-Status checkCode(const MaterialModel& model) {
-    const auto isThere = [&](const std::string& name) {
-        return std::ranges::find(model.sources, name, &ModelSource::name) != model.sources.end();
-    };
+Status checkCode(const MaterialModel& model, const Sources& sources) {
     const auto check = [&](const std::string& declared, const std::string& file) -> Status {
-        return isThere(file)
+        return sources.contains(file)
                    ? okStatus()
                    : makeError("materials-glsl", file,
                                fmt::format("is named by the declaration of {}, but is not there", declared),
@@ -128,72 +136,119 @@ Status checkCode(const MaterialModel& model) {
 // Refuses a read of a texture in a file that never asks whether the key has it: the record of a material
 // without the texture would give another one.
 Status checkReads(const MaterialModel& model) {
+    static const std::regex kRead(R"(sample(Slot|SlotAt|Point)\s*\(\s*\w+\s*,\s*k([A-Z]\w*))");
     for (const ModelSource& source : model.sources) {
-        for (const MaterialTexture& texture : model.textures) {
-            std::string constant = "k" + texture.name;
-            constant[1] = static_cast<char>(constant[1] - 'a' + 'A');
-            if (source.text.find(constant) == std::string::npos) {
+        // A search for the word is much faster than one for the expression.
+        const std::size_t first = std::min(source.text.find("sample"), source.text.size());
+        const auto begin = source.text.begin() + static_cast<std::ptrdiff_t>(first);
+        for (std::sregex_iterator read(begin, source.text.end(), kRead), end; read != end; ++read) {
+            std::string name = (*read)[2];
+            name[0] = static_cast<char>(name[0] - 'A' + 'a');
+            const int texture = model.findTexture(name);
+            if (texture < 0) {
                 continue;
             }
-            const std::regex read(
-                fmt::format("sample(Slot|SlotAt|Point)\\s*\\(\\s*\\w+\\s*,\\s*{}\\b", constant));
-            const std::string macro = model.features[static_cast<std::size_t>(texture.feature)].macro;
-            const std::string asked = "HAS_" + macro.substr(macro.starts_with("GLINT_PACK_") ? 11 : 6);
-            std::smatch found;
-            if (source.text.find(asked) == std::string::npos && std::regex_search(source.text, found, read)) {
-                return makeError(
-                    "materials-glsl", lineOf(source, static_cast<std::size_t>(found.position())),
-                    fmt::format("reads {}, but the file never asks whether the key has it", constant),
-                    fmt::format("read it where GLINT_{}(features) is true", asked));
+            const int feature = model.textures[static_cast<std::size_t>(texture)].feature;
+            const std::string asked = "HAS_" + model.features[static_cast<std::size_t>(feature)].macroEnd();
+            if (source.text.find(asked) == std::string::npos) {
+                return makeError("materials-glsl",
+                                 lineOf(source, first + static_cast<std::size_t>(read->position())),
+                                 fmt::format("reads k{}, but the file never asks whether the key has it",
+                                             (*read)[2].str()),
+                                 fmt::format("read it where GLINT_{}(features) is true", asked));
             }
         }
     }
     return okStatus();
 }
+
+// A parameter that belongs to no feature, and the texts that read it.
+struct SharedValue {
+    int parameter = 0;
+    std::string byName;
+    std::string byRole;  // empty: it has no role
+};
 
 // Refuses a read of a value of the replaced base that no parameter of the model fills, in the model's GLSL:
 // records of the model have another value in its place.
-Status checkValues(const MaterialModel& model, int owner, const ModelSource& source) {
-    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
-        const Parameter& parameter = model.parameters[i];
-        if (parameter.feature >= 0 || !parameter.inRecord || model.hasParameter(owner, static_cast<int>(i))) {
-            continue;
-        }
-        const std::size_t byRole = parameter.role == package::Role::None
-                                       ? std::string::npos
-                                       : source.text.find(roleMacro(parameter.role) + "(");
+Status checkValues(const MaterialModel& model, std::span<const SharedValue> values, int owner,
+                   const ModelSource& source) {
+    for (const SharedValue& value : values) {
         const std::size_t found =
-            std::min(byRole, source.text.find(fmt::format("GLINT_MATERIAL_{}(", fieldMacro(parameter.name))));
-        if (found != std::string::npos) {
+            std::min(source.text.find(value.byName),
+                     value.byRole.empty() ? std::string::npos : source.text.find(value.byRole));
+        if (found != std::string::npos && !model.hasParameter(owner, value.parameter)) {
+            const std::string& name = model.parameters[static_cast<std::size_t>(value.parameter)].name;
             return makeError("materials-glsl", lineOf(source, found),
-                             fmt::format("reads {}, which the records of {} do not have", parameter.name,
+                             fmt::format("reads {}, which the records of {} do not have", name,
                                          model.models[static_cast<std::size_t>(owner)].name),
-                             fmt::format("declare a parameter with \"is\": \"{}\"", parameter.name));
+                             fmt::format("declare a parameter with \"is\": \"{}\"", name));
         }
     }
     return okStatus();
 }
 
-Status checkValues(const MaterialModel& model) {
+Status checkValues(const MaterialModel& model, const Sources& sources) {
+    std::vector<SharedValue> values;
+    for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+        const Parameter& parameter = model.parameters[i];
+        if (parameter.feature < 0 && parameter.inRecord) {
+            values.push_back({static_cast<int>(i),
+                              fmt::format("GLINT_MATERIAL_{}(", fieldMacro(parameter.name)),
+                              parameter.role == package::Role::None ? "" : roleMacro(parameter.role) + "("});
+        }
+    }
     for (const FeatureCode& code : model.code) {
         const int owner =
             code.feature < 0 ? -1 : model.features[static_cast<std::size_t>(code.feature)].model;
-        for (const ModelSource& source : model.sources) {
-            if (owner >= 0 && isOf(code, source)) {
-                GLINT_TRY_DO(checkValues(model, owner, source));
+        for (const std::string_view file : filesOf(code)) {
+            if (const auto source = sources.find(file); owner >= 0 && source != sources.end()) {
+                GLINT_TRY_DO(checkValues(model, values, owner, *source->second));
             }
         }
     }
     return okStatus();
 }
 
-// Keeps a model for as long as the program runs.
-const MaterialModel& keep(MaterialModel model) {
-    static std::mutex mutex;
-    static std::deque<MaterialModel> models;
-    const std::lock_guard lock(mutex);
-    return models.emplace_back(std::move(model));
+Status checkSources(const MaterialModel& model) {
+    Sources sources;
+    for (const ModelSource& source : model.sources) {
+        sources.emplace(source.name, &source);
+    }
+    GLINT_TRY_DO(checkCode(model, sources));
+    GLINT_TRY_DO(checkReads(model));
+    return checkValues(model, sources);
 }
+
+// Keeps models for as long as the program runs. The last one is the beginning of the next.
+class KeptModels {
+public:
+    // Has the errors of loadMaterialModel() about contents.
+    Result<const MaterialModel*> find(std::span<const DeclarationFile> files,
+                                      std::vector<ModelSource> sources, std::vector<PackFile> read) {
+        const std::lock_guard lock(mutex_);
+        GLINT_TRY(auto parsed, parseDeclarations(files, parsed_));
+        const bool isSame = !models_.empty() && parsed == parsed_;
+        if (isSame && models_.back().sources == sources) {
+            return &models_.back();
+        }
+        Result<MaterialModel> model =
+            isSame ? Result<MaterialModel>(models_.back()) : readDeclarations(parsed);
+        if (!model) {
+            return model.error();
+        }
+        model->sources = std::move(sources);
+        model->files = std::move(read);
+        GLINT_TRY_DO(checkSources(*model));
+        parsed_ = std::move(parsed);
+        return &models_.emplace_back(std::move(*model));
+    }
+
+private:
+    std::mutex mutex_;
+    std::deque<MaterialModel> models_;
+    ParsedDeclarations parsed_;  // the declarations of the last model
+};
 
 }  // namespace
 
@@ -202,7 +257,7 @@ Result<std::vector<fs::path>> packFiles(std::span<const std::string> folders) {
     for (const std::string& folder : folders) {
         GLINT_TRY_DO(addFolder(folder, files));
     }
-    std::ranges::sort(files);
+    std::ranges::sort(files, isBefore);
     files.erase(std::unique(files.begin(), files.end()), files.end());
     return files;
 }
@@ -216,25 +271,23 @@ Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> fold
     std::deque<std::string> texts;
     std::vector<DeclarationFile> declarations;
     std::vector<ModelSource> sources;
+    std::vector<PackFile> read;
     for (const base::BuiltinFile& file : declarationFiles()) {
         declarations.push_back({file.name, file.text});
     }
     for (const fs::path& file : files) {
         GLINT_TRY(const auto bytes, base::readFile(file, kMaxFileBytes));
         std::string text(bytes.begin(), bytes.end());
-        if (file.extension() != ".json") {
+        read.push_back({file.string(), text.size(), base::hashBytes(text)});
+        if (!hasExtension(file, ".json")) {
             sources.push_back({file.generic_string(), std::move(text)});
         } else {
             declarations.push_back(
                 {names.emplace_back(file.generic_string()), texts.emplace_back(std::move(text)), true});
         }
     }
-    GLINT_TRY(auto model, readDeclarations(declarations));
-    model.sources = std::move(sources);
-    GLINT_TRY_DO(checkCode(model));
-    GLINT_TRY_DO(checkReads(model));
-    GLINT_TRY_DO(checkValues(model));
-    return &keep(std::move(model));
+    static KeptModels kept;
+    return kept.find(declarations, std::move(sources), std::move(read));
 }
 
 }  // namespace glint::materials

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <set>
 
 namespace glint::compiler {
@@ -72,22 +73,21 @@ bool mayLeaveOut(const materials::MaterialModel& model, int base) {
 std::vector<RecordUse> recordUses(std::span<const materials::Material> materials,
                                   std::span<const materials::PrimitiveInputs> primitives, const Plan& plan) {
     const materials::MaterialModel& model = *plan.model;
-    std::vector<RecordUse> uses;
-    const auto join = [&uses](RecordUse use) {
-        const auto shares = [&use](const RecordUse& other) {
-            return std::ranges::any_of(other.models, [&](int one) {
-                return std::ranges::find(use.models, one) != use.models.end();
-            });
-        };
-        for (const RecordUse& other : uses) {
-            if (shares(other)) {
-                appendUnique(use.models, other.models);
-                use.used |= other.used;
-                use.masks = use.masks || other.masks;
+    std::map<int, std::shared_ptr<RecordUse>> byModel;
+    const auto join = [&byModel](RecordUse use) {
+        const std::vector<int> joined = use.models;
+        for (const int one : joined) {
+            const auto other = byModel.find(one);
+            if (other != byModel.end()) {
+                appendUnique(use.models, other->second->models);
+                use.used |= other->second->used;
+                use.masks = use.masks || other->second->masks;
             }
         }
-        std::erase_if(uses, shares);
-        uses.push_back(std::move(use));
+        const auto whole = std::make_shared<RecordUse>(std::move(use));
+        for (const int one : whole->models) {
+            byModel[one] = whole;
+        }
     };
     for (std::size_t i = 0; i < primitives.size(); ++i) {
         const materials::Material& material = materials[static_cast<std::size_t>(primitives[i].material)];
@@ -100,10 +100,15 @@ std::vector<RecordUse> recordUses(std::span<const materials::Material> materials
         }
         join(std::move(use));
     }
-    if (uses.empty()) {
-        uses.push_back({{-1}, 0, false});
+    if (byModel.empty()) {
+        return {{{-1}, 0, false}};
     }
-    std::ranges::sort(uses, {}, &RecordUse::models);
+    std::vector<RecordUse> uses;
+    for (const auto& [one, use] : byModel) {
+        if (one == use->models.front()) {
+            uses.push_back(*use);
+        }
+    }
     return uses;
 }
 
@@ -114,14 +119,18 @@ void addFeaturesOfEdits(const Plan& plan, bool fallback, std::vector<RecordUse>&
     const materials::FeatureMask primary = plan.primaryAlways | plan.primarySometimes;
     const materials::FeatureMask dropped = primary & ~(plan.always | plan.sometimes);
     const bool masks = std::ranges::any_of(uses, &RecordUse::masks);
+    std::map<int, std::set<const Case*>> casesOf;  // by the models of their keys
+    for (const Case& shaderCase : plan.cases) {
+        for (const int key : shaderCase.keys) {
+            casesOf[model.modelOf(plan.keys[static_cast<std::size_t>(key)].mask)].insert(&shaderCase);
+        }
+    }
     for (RecordUse& use : uses) {
         materials::FeatureMask more = fallback ? primary : dropped;
-        for (const Case& shaderCase : plan.cases) {
-            const bool isOfUse = std::ranges::any_of(shaderCase.keys, [&](int key) {
-                const int one = model.modelOf(plan.keys[static_cast<std::size_t>(key)].mask);
-                return std::ranges::find(use.models, one) != use.models.end();
-            });
-            more |= isOfUse ? shaderCase.always | shaderCase.sometimes : materials::FeatureMask();
+        for (const int one : use.models) {
+            for (const Case* const shaderCase : casesOf[one]) {
+                more |= shaderCase->always | shaderCase->sometimes;
+            }
         }
         materials::FeatureMask possible = 0;
         for (const int one : use.models) {

@@ -5,8 +5,10 @@
 #include "emit/modules.h"
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace glint::testing {
 
@@ -19,17 +21,22 @@ inline compiler::GlslUnit makeUnit(std::string_view text, std::string_view file,
     return unit;
 }
 
+inline std::shared_ptr<const compiler::PreparedGlsl> makePrepared(compiler::GlslUnit unit) {
+    std::string essential = compiler::essentialText(unit.text());
+    return std::make_shared<const compiler::PreparedGlsl>(std::move(unit), std::move(essential));
+}
+
 // `body` is the body of main(); it can use the buffer data.x. The text after #version begins in line 10.
 inline compiler::ModuleSource makeTinyModule(int shaderId, const std::string& body) {
-    return {
-        {package::roleNamed("ShadeCase"), static_cast<std::uint32_t>(shaderId), 0},
-        compiler::ShaderStage::Compute,
-        "shade_" + std::to_string(shaderId) + ".comp",
-        makeUnit("#version 460\n"
-                 "layout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer Data { uint x; } data;\n"
-                 "void main() {\n" +
-                     body + "\n}\n",
-                 "case.glsl", 9)};
+    return {{package::roleNamed("ShadeCase"), static_cast<std::uint32_t>(shaderId), 0},
+            compiler::ShaderStage::Compute,
+            "shade_" + std::to_string(shaderId) + ".comp",
+            makePrepared(makeUnit(
+                "#version 460\n"
+                "layout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer Data { uint x; } data;\n"
+                "void main() {\n" +
+                    body + "\n}\n",
+                "case.glsl", 9))};
 }
 
 }  // namespace glint::testing

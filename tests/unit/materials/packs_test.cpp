@@ -69,6 +69,44 @@ TEST_F(MaterialPacks, AddFeaturesAfterThoseOfGlint) {
     EXPECT_EQ(model->sources.front().text, "// mud\n");
 }
 
+TEST_F(MaterialPacks, AModelIsTheSameUntilAFileHasAnotherText) {
+    write("mud/mud.json", kMud);
+    write("mud/mud.glsl", "// mud\n");
+    const materials::MaterialModel* const first = must(load());
+    fs::last_write_time(folder_.path() / "mud/mud.json", fs::file_time_type::clock::now());
+    EXPECT_EQ(must(load()), first);
+    ASSERT_EQ(first->files.size(), 2U);
+    EXPECT_EQ(first->files[1].hash, base::hashBytes(kMud));
+
+    write("mud/mud.glsl", "// other\n");
+    const materials::MaterialModel* const other = must(load());
+    EXPECT_EQ(first->sources.front().text, "// mud\n");
+    EXPECT_EQ(other->sources.front().text, "// other\n");
+    EXPECT_EQ(other->files[0].hash, base::hashBytes(std::string_view("// other\n")));
+
+    // An error and its mend, and a declaration that comes and goes.
+    write("mud/mud.json", "{");
+    EXPECT_EQ(mustFail(load()).id, "declaration");
+    std::string declaration(kMud);
+    declaration.replace(declaration.find("\"default\": 0"), 12, "\"default\": 1");
+    write("mud/mud.json", declaration);
+    const materials::MaterialModel* const mended = must(load());
+    const auto fallback = [](const materials::MaterialModel& model) {
+        return model.parameters[static_cast<std::size_t>(model.findParameter("mudAmount"))].fallback;
+    };
+    EXPECT_EQ(fallback(*mended), std::vector<double>{1.0});
+    EXPECT_EQ(fallback(*other), std::vector<double>{0.0});
+    std::string dust(kMud);
+    for (std::size_t place = dust.find("mud"); place != std::string::npos; place = dust.find("mud", place)) {
+        dust.replace(place, 3, "dust");
+    }
+    write("dust/dust.json", dust);
+    write("dust/dust.glsl", "// dust\n");
+    EXPECT_GE(must(load())->findFeature("dust"), 0);
+    fs::remove_all(folder_.path() / "dust");
+    EXPECT_EQ(must(load())->findFeature("dust"), -1);
+}
+
 TEST_F(MaterialPacks, WithoutFoldersTheModelIsThatOfGlint) {
     const materials::MaterialModel* model = must(materials::loadMaterialModel({}));
     EXPECT_EQ(model, &materials::builtinMaterialModel());

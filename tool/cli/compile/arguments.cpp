@@ -188,7 +188,7 @@ std::vector<std::string> mainOutputs(const CompileArguments& arguments) {
     return files;
 }
 
-std::vector<std::filesystem::path> furtherInputs(const CompileArguments& arguments) {
+std::vector<std::filesystem::path> otherInputs(const CompileArguments& arguments) {
     std::vector<std::filesystem::path> files;
     for (const std::string& file : {arguments.settings.profile, arguments.settings.lock.file,
                                     arguments.settingsFile, arguments.settings.calibration}) {
@@ -199,16 +199,22 @@ std::vector<std::filesystem::path> furtherInputs(const CompileArguments& argumen
     if (std::error_code error; std::filesystem::exists(arguments.settings.gpu, error)) {
         files.emplace_back(arguments.settings.gpu);
     }
-    // Where the folders can't be listed, reading them says so.
-    if (const Result<std::vector<std::filesystem::path>> packs =
-            materials::packFiles(arguments.settings.materials);
-        packs) {
-        files.insert(files.end(), packs->begin(), packs->end());
-    }
+    // Where the folder can't be listed, reading it says so.
     if (const Result<std::vector<std::filesystem::path>> host =
             compiler::hostFiles(arguments.settings.compile.host);
         host) {
         files.insert(files.end(), host->begin(), host->end());
+    }
+    return files;
+}
+
+std::vector<std::filesystem::path> furtherInputs(const CompileArguments& arguments) {
+    std::vector<std::filesystem::path> files = otherInputs(arguments);
+    // As above.
+    if (const Result<std::vector<std::filesystem::path>> packs =
+            materials::packFiles(arguments.settings.materials);
+        packs) {
+        files.insert(files.end(), packs->begin(), packs->end());
     }
     return files;
 }

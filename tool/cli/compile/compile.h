@@ -54,7 +54,9 @@ void finishCompile(const CLI::App& command, CompileArguments& arguments);
 
 // Returns the files that stand for the whole output: the manifest, and those of --embed.
 std::vector<std::string> mainOutputs(const CompileArguments& arguments);
-// Returns the files that are read besides scenes.
+// Returns the files that are read besides scenes and packs.
+std::vector<std::filesystem::path> otherInputs(const CompileArguments& arguments);
+// Returns these together with the files of packs.
 std::vector<std::filesystem::path> furtherInputs(const CompileArguments& arguments);
 
 // --- The text that `compile` prints at the end of a run, and again if a run has nothing to do ---

@@ -71,6 +71,34 @@ std::vector<std::string> knownInputs(const CompileArguments& arguments) {
     return paths;
 }
 
+// Returns the folders in which packs and the host may have files, each with the time when an entry came or
+// went last.
+using FolderTimes = std::vector<std::pair<std::string, fs::file_time_type>>;
+
+FolderTimes timesOfFolders(const CompileArguments& arguments) {
+    std::vector<std::string> roots = arguments.settings.materials;
+    roots.push_back(arguments.settings.compile.host);
+    FolderTimes times;
+    std::erase(roots, "");
+    for (const std::string& root : roots) {
+        std::error_code error;
+        times.emplace_back(root, fs::last_write_time(root, error));
+        for (const fs::directory_entry& entry : fs::directory_iterator(root, error)) {
+            if (entry.is_directory(error)) {
+                times.emplace_back(entry.path().string(), entry.last_write_time(error));
+            }
+        }
+    }
+    return times;
+}
+
+// Returns whether entries that come or go now change the times: clocks of file systems may be coarse.
+bool areSettled(const FolderTimes& times) {
+    constexpr std::chrono::seconds kCoarsest(4);
+    const auto latest = fs::file_time_type::clock::now() - kCoarsest;
+    return std::ranges::all_of(times, [&](const auto& folder) { return folder.second < latest; });
+}
+
 // A failed run may have needed a file that comes later.
 std::vector<std::string> sceneFolders(const CompileArguments& arguments) {
     std::vector<std::string> folders;
@@ -134,9 +162,17 @@ private:
 
     // Returns the files of packs and hosts that have come or gone, once that has lasted.
     std::vector<std::string> newOrGone() {
+        // The files themselves are many.
+        FolderTimes times = timesOfFolders(arguments_);
+        std::vector<fs::path> others = otherInputs(arguments_);
+        if (times == times_ && others == others_ && areSettled(times)) {
+            return {};
+        }
         const std::vector<std::string> now = knownInputs(arguments_);
         if (now == listed_) {
             differs_.reset();
+            times_ = std::move(times);
+            others_ = std::move(others);
             return {};
         }
         differs_ = differs_.value_or(base::Clock::now());
@@ -146,9 +182,9 @@ private:
         differs_.reset();
         const std::set<std::string> before(listed_.begin(), listed_.end());
         const std::set<std::string> after(now.begin(), now.end());
-        std::vector<std::string> others;
-        std::ranges::set_symmetric_difference(before, after, std::back_inserter(others));
-        return others;
+        std::vector<std::string> changed;
+        std::ranges::set_symmetric_difference(before, after, std::back_inserter(changed));
+        return changed;
     }
 
     void takeSettings(const std::vector<std::string>& changed) {
@@ -233,8 +269,11 @@ private:
     const CompileOnce& compileOnce_;
     compiler::WarmModules warm_;
     base::InputWatch watch_;
-    std::vector<base::InputFile> inputs_;             // of the last run that knew them
-    std::vector<std::string> listed_;                 // knownInputs() at the last run
+    std::vector<base::InputFile> inputs_;  // of the last run that knew them
+    std::vector<std::string> listed_;      // knownInputs() at the last run
+    // Before listed_ was last found to be complete.
+    FolderTimes times_;
+    std::vector<fs::path> others_;                    // otherInputs()
     std::optional<base::Clock::time_point> differs_;  // since when others are there
     std::optional<Diagnostic> settingsError_;
     int runs_ = 0;

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,7 @@ struct CompiledModule {
     std::string name;  // "uber.comp", "shade_2_BaseTex.comp"; the GLSL file has the same name
     std::string file;  // name within the package: "uber.spv"
     std::vector<std::uint32_t> spirv;
-    GlslUnit glsl;
+    std::shared_ptr<const GlslUnit> glsl;
     SpirvStatistics statistics;
     std::uint64_t hash = 0;
     bool compiled = true;  // in this run; false if it was cached or has the text of another module

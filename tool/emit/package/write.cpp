@@ -1,4 +1,5 @@
 #include "base/files.h"
+#include "base/parallel.h"
 #include "emit/package/compiled_package.h"
 #include "emit/package/manifest.h"
 
@@ -409,18 +410,28 @@ bool holdsBytes(const fs::path& path, const base::Bytes& bytes) {
     return present && *present == bytes;
 }
 
-bool isCurrent(const CompiledPackage& package, const Names& earlier, const fs::path& folder) {
-    const auto unchanged = [&](const PackageFile& file) {
-        return holdsBytes(folder / file.name, file.bytes);
-    };
-    const auto isPart = [&](const std::string& name) {
-        return std::ranges::find(package.files, name, &PackageFile::name) != package.files.end();
-    };
+// Returns the names of the files that the folder already has.
+Names unchangedFiles(const CompiledPackage& package, const fs::path& folder) {
+    std::vector<std::uint8_t> holds(package.files.size());
+    base::runParallel(holds.size(), 0, [&](std::size_t i) {
+        holds[i] = holdsBytes(folder / package.files[i].name, package.files[i].bytes) ? 1 : 0;
+        return true;
+    });
+    Names kept;
+    for (std::size_t i = 0; i < holds.size(); ++i) {
+        if (holds[i] != 0) {
+            kept.insert(package.files[i].name);
+        }
+    }
+    return kept;
+}
+
+bool isCurrent(const CompiledPackage& package, const Names& kept, const Names& earlier,
+               const fs::path& folder) {
     std::error_code error;
-    const auto isGone = [&](const std::string& name) { return !fs::exists(folder / name, error); };
-    return std::ranges::all_of(package.files, unchanged) &&
-           std::ranges::all_of(earlier,
-                               [&](const std::string& name) { return isPart(name) || isGone(name); });
+    return kept.size() == package.files.size() && std::ranges::all_of(earlier, [&](const std::string& name) {
+               return kept.contains(name) || !fs::exists(folder / name, error);
+           });
 }
 
 // Gives the same file a second name, so that it keeps its time stamps. If the file system has no hard links,
@@ -438,15 +449,20 @@ std::error_code keepFile(const fs::path& from, const fs::path& to) {
     return error;
 }
 
-Status stagePackage(const CompiledPackage& package, const fs::path& folder, const fs::path& staging) {
+Status stagePackage(const CompiledPackage& package, const Names& kept, const fs::path& folder,
+                    const fs::path& staging) {
+    fs::path parent = staging;
     for (const PackageFile& file : package.files) {
         const fs::path target = staging / file.name;
         std::error_code error;
-        fs::create_directories(target.parent_path(), error);
+        if (target.parent_path() != parent) {
+            parent = target.parent_path();
+            fs::create_directories(parent, error);
+        }
         if (error) {
             return placeError(target, error.message());
         }
-        if (holdsBytes(folder / file.name, file.bytes) && !keepFile(folder / file.name, target)) {
+        if (kept.contains(file.name) && !keepFile(folder / file.name, target)) {
             continue;
         }
         if (Status status = base::writeStaged(target, file.bytes); !status) {
@@ -500,14 +516,12 @@ bool isWorkingFolder(const fs::path& folder) {
 }
 
 // Has the same effect as a swap, but file by file.
-Status updateFolder(const CompiledPackage& package, const Names& earlier, const fs::path& folder) {
+Status updateFolder(const CompiledPackage& package, const Names& kept, const Names& earlier,
+                    const fs::path& folder) {
     std::vector<const PackageFile*> changed;
     std::vector<std::string> leaving;
-    Names kept;
     for (const PackageFile& file : package.files) {
-        if (holdsBytes(folder / file.name, file.bytes)) {
-            kept.insert(file.name);
-        } else {
+        if (!kept.contains(file.name)) {
             changed.push_back(&file);
         }
     }
@@ -520,10 +534,10 @@ Status updateFolder(const CompiledPackage& package, const Names& earlier, const 
 }
 
 // A mount point can't be swapped, nor can a folder whose parent can't be written.
-Status orInPlace(const CompiledPackage& package, const Names& earlier, const fs::path& folder,
-                 const Diagnostic& swapError) {
+Status orInPlace(const CompiledPackage& package, const Names& kept, const Names& earlier,
+                 const fs::path& folder, const Diagnostic& swapError) {
     std::error_code error;
-    return fs::is_directory(folder, error) ? updateFolder(package, earlier, folder) : Status(swapError);
+    return fs::is_directory(folder, error) ? updateFolder(package, kept, earlier, folder) : Status(swapError);
 }
 
 }  // namespace
@@ -541,23 +555,24 @@ Status writePackage(const CompiledPackage& package, const fs::path& folder) {
     GLINT_TRY(const auto lock, OutputLock::acquire(resolved));
     recoverInterrupted(resolved);
     GLINT_TRY(const auto earlier, inspectFolder(resolved));
-    if (isCurrent(package, earlier, resolved)) {
+    const Names kept = unchangedFiles(package, resolved);
+    if (isCurrent(package, kept, earlier, resolved)) {
         return okStatus();
     }
     if (isWorkingFolder(resolved)) {
-        return updateFolder(package, earlier, resolved);
+        return updateFolder(package, kept, earlier, resolved);
     }
     Result<StagingFolder> staging = StagingFolder::create(resolved);
     if (!staging) {
-        return orInPlace(package, earlier, resolved, staging.error());
+        return orInPlace(package, kept, earlier, resolved, staging.error());
     }
-    GLINT_TRY_DO(stagePackage(package, resolved, staging->path()));
+    GLINT_TRY_DO(stagePackage(package, kept, resolved, staging->path()));
     std::error_code error;
     if (fs::exists(resolved, error)) {
         GLINT_TRY_DO(stageForeign(earlier, resolved, staging->path()));
     }
     Status swapped = staging->swapInto(resolved);
-    return swapped ? swapped : orInPlace(package, earlier, resolved, swapped.error());
+    return swapped ? swapped : orInPlace(package, kept, earlier, resolved, swapped.error());
 }
 
 }  // namespace glint::compiler

@@ -150,6 +150,14 @@ public:
             accessors_[attribute.gltf] =
                 theSphere().ofChannels[static_cast<std::size_t>(attribute.type->channels - 1)];
         }
+        for (const materials::Parameter& parameter : model_.parameters) {
+            parameters_.emplace(parameter.declared, &parameter);
+        }
+        for (const materials::MaterialTexture& texture : model_.textures) {
+            for (const materials::MaterialTexture::Place& place : texture.places) {
+                places_.emplace(place.member, &place);
+            }
+        }
     }
 
     ExpandedMaterials expand(const MaterialSet& list) {
@@ -232,12 +240,12 @@ private:
                            object.name.empty() ? "" : "/", object.name, member);
     }
 
-    // Returns the name of the base in place of the object, or an empty text.
-    std::string replacedBy(int object) const {
+    // Returns whether the material's base stands in place of the object.
+    bool isReplaced(int object) const {
         const bool isOther = base_ >= 0 && model_.objects[static_cast<std::size_t>(base_)].replaces == object;
         const bool isBaseOfOthers =
             base_ != object && model_.objects[static_cast<std::size_t>(object)].replaces >= 0;
-        return isOther || isBaseOfOthers ? baseName_ : std::string();
+        return isOther || isBaseOfOthers;
     }
 
     void readModel(const MaterialDescription& listed, std::size_t index, Json& material) {
@@ -246,14 +254,17 @@ private:
         if (baseName_ == kCoreModel) {
             return;
         }
-        std::vector<std::string> names{std::string(kCoreModel)};
-        for (const materials::Feature& feature : model_.features) {
-            if (feature.stage == materials::Stage::Base && feature.object >= 0) {
-                names.push_back(feature.name);
-            }
-        }
+        const auto isBase = [](const materials::Feature& feature) {
+            return feature.stage == materials::Stage::Base && feature.object >= 0;
+        };
         const int found = model_.findFeature(baseName_);
-        if (found < 0 || std::ranges::find(names, baseName_) == names.end()) {
+        if (found < 0 || !isBase(model_.features[static_cast<std::size_t>(found)])) {
+            std::vector<std::string> names{std::string(kCoreModel)};
+            for (const materials::Feature& feature : model_.features) {
+                if (isBase(feature)) {
+                    names.push_back(feature.name);
+                }
+            }
             fail(fmt::format("/materials/{}/model", index),
                  fmt::format("no declaration of a base is called \"{}\"{}", baseName_,
                              base::suggestion(baseName_, names)));
@@ -291,23 +302,34 @@ private:
     // Returns how well a thing of the object fits a name in a list: 2 if it is of the material's model, 1 if
     // materials with that model may have it, 0 if it is of another base.
     int fitOf(int object) const {
-        return object == base_ && base_ >= 0 ? 2 : replacedBy(object).empty() ? 1 : 0;
+        return object == base_ && base_ >= 0 ? 2 : isReplaced(object) ? 0 : 1;
     }
 
-    // Names of a model stand before those that all models share.
-    const materials::Parameter* parameterNamed(const std::string& name, const Place& place) {
-        const materials::Parameter* found = nullptr;
-        std::vector<std::string> names;
-        for (const materials::Parameter& parameter : model_.parameters) {
-            const bool isBetter = found == nullptr || fitOf(parameter.object) > fitOf(found->object);
-            found = parameter.declared == name && isBetter ? &parameter : found;
-            names.push_back(parameter.declared);
+    // Returns the row of that name that fits best, the first of several, or null. Names of a model stand
+    // before those that all models share.
+    template <typename Row>
+    const Row* bestOf(const std::multimap<std::string_view, const Row*>& rows,
+                      const std::string& name) const {
+        const Row* found = nullptr;
+        const auto [begin, end] = rows.equal_range(name);
+        for (auto row = begin; row != end; ++row) {
+            const bool isBetter = found == nullptr || fitOf(row->second->object) > fitOf(found->object);
+            found = isBetter ? row->second : found;
         }
+        return found;
+    }
+
+    const materials::Parameter* parameterNamed(const std::string& name, const Place& place) {
+        const materials::Parameter* found = bestOf(parameters_, name);
         if (found == nullptr) {
+            std::vector<std::string> names;
+            for (const materials::Parameter& parameter : model_.parameters) {
+                names.push_back(parameter.declared);
+            }
             fail(place, fmt::format("no parameter is called \"{}\"{}", name, base::suggestion(name, names)));
         } else if (fitOf(found->object) == 0) {
-            fail(place, fmt::format("{} is of another base: the model of the material is {}", name,
-                                    replacedBy(found->object)));
+            fail(place,
+                 fmt::format("{} is of another base: the model of the material is {}", name, baseName_));
             found = nullptr;
         }
         return found;
@@ -316,19 +338,16 @@ private:
     void readTextures(const MaterialDescription& listed, std::size_t index, Json& material) {
         for (const auto& [name, texture] : listed.textures) {
             const Place place = fmt::format("/materials/{}/textures/{}", index, name);
-            std::vector<std::string> names;
-            const materials::MaterialTexture::Place* found = nullptr;
-            for (const materials::MaterialTexture& slot : model_.textures) {
-                for (const materials::MaterialTexture::Place& one : slot.places) {
-                    if (fitOf(one.object) == 0) {
-                        continue;
+            const materials::MaterialTexture::Place* const found = bestOf(places_, name);
+            if (found == nullptr || fitOf(found->object) == 0) {
+                std::vector<std::string> names;
+                for (const materials::MaterialTexture& slot : model_.textures) {
+                    for (const materials::MaterialTexture::Place& one : slot.places) {
+                        if (fitOf(one.object) > 0) {
+                            names.push_back(one.member);
+                        }
                     }
-                    names.push_back(one.member);
-                    const bool isBetter = found == nullptr || fitOf(one.object) > fitOf(found->object);
-                    found = one.member == name && isBetter ? &one : found;
                 }
-            }
-            if (found == nullptr) {
                 fail(place, fmt::format("no texture of such a material is called \"{}\"{}", name,
                                         base::suggestion(name, names)));
                 return;
@@ -509,6 +528,8 @@ private:
     std::map<std::string, int> accessors_;  // of the sphere, by attribute
     int base_ = -1;                         // the object of the material's model, or -1
     std::string baseName_;
+    std::multimap<std::string_view, const materials::Parameter*> parameters_;           // by declared name
+    std::multimap<std::string_view, const materials::MaterialTexture::Place*> places_;  // by member
     std::set<std::string> extensions_;
     std::map<std::string, std::size_t> images_;  // by file
     Json imageJson_ = Json::array();

@@ -215,13 +215,16 @@ private:
 
     std::vector<Rule> rulesOfObject(int object) {
         std::vector<Rule> found;
-        for (const materials::Parameter& parameter : model_.parameters) {
-            if (parameter.object == object && parameter.place.find('/') == std::string::npos) {
+        const materials::MaterialObject& owner = model_.objects[static_cast<std::size_t>(object)];
+        for (const int index : owner.parameters) {
+            const materials::Parameter& parameter = model_.parameters[static_cast<std::size_t>(index)];
+            if (parameter.place.find('/') == std::string::npos) {
                 found.push_back(parameterRule(parameter, parameter.place));
             }
         }
-        for (const materials::MaterialTexture& texture : model_.textures) {
-            for (const materials::MaterialTexture::Place& place : texture.places) {
+        for (const int index : owner.textures) {
+            for (const materials::MaterialTexture::Place& place :
+                 model_.textures[static_cast<std::size_t>(index)].places) {
                 if (place.object == object) {
                     found.push_back(rules::object(place.member, keep(infoRules(place))));
                 }
@@ -233,10 +236,11 @@ private:
     std::vector<Rule> infoRules(const materials::MaterialTexture::Place& place) const {
         std::vector<Rule> info{index("index", "/textures", true), integer("texCoord", 0.0, kMaxInt),
                                object("extensions", kTextureInfoExtensions)};
-        for (const materials::Parameter& parameter : model_.parameters) {
+        for (const int number : model_.objects[static_cast<std::size_t>(place.object)].parameters) {
             // A parameter beside a texture: "normalTexture/scale".
+            const materials::Parameter& parameter = model_.parameters[static_cast<std::size_t>(number)];
             const std::string_view where = parameter.place;
-            if (parameter.object == place.object && where.starts_with(place.member + "/")) {
+            if (where.starts_with(place.member + "/")) {
                 info.push_back(parameterRule(parameter, where.substr(place.member.size() + 1)));
             }
         }
