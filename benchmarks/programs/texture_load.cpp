@@ -1,6 +1,7 @@
 // glint_texture_load: measures how much processor time the images of scenes take until a device can have
 // them, and how much memory they take there. Rounds of the scenes alternate. It can also write the images of
 // a scene as PNG, to compare the same picture in two kinds of files.
+#include "gltf/codecs/codecs.h"
 #include "gltf/import.h"
 #include "gltf/texels/levels.h"
 #include "image/image_file.h"
@@ -71,14 +72,14 @@ Result<Round> load(const std::string& file, const Arguments& arguments) {
     Round round;
     round.processorMs = processorMilliseconds() - begin;
     for (const gltf::FittedImage& image : textures->images) {
-        const auto width = static_cast<std::uint32_t>(image.width);
-        const auto height = static_cast<std::uint32_t>(image.height);
         ++round.formats[infoOf(image.format).name];
-        round.texels += std::uint64_t{width} * height;
+        round.texels += pixelCount(image, 0);
         // The device makes the levels that texels lack.
         const int levels =
             isBlockFormat(image.format) ? image.levels : gltf::fullLevels(image.width, image.height);
-        round.bytes += bytesOfLevels(image.format, width, height, static_cast<std::uint32_t>(levels));
+        for (int level = 0; level < levels; ++level) {
+            round.bytes += levelBytes(image, image.format, level);
+        }
     }
     return round;
 }

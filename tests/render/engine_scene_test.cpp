@@ -15,8 +15,10 @@
 #include "scene/scene_store.h"
 #include "support/must.h"
 #include "support/temporary_folder.h"
+#include "unit/gltf/block_files.h"
 
 #include <glint/session/scene_view.h>
+#include <glint/session/textures.h>
 #include <glint/steps.h>
 
 #include <array>
@@ -573,11 +575,11 @@ void probeEmission(Hit hit, Features features, inout vec3 emitted) {
         emitted.r = sampleCubeAt(hit, kProbeScene, hit.position, hit.edges).r;
     }
     if (GLINT_HAS_PROBE_FLAT(features) && GLINT_HAS_PROBE_PAGES(features)) {
-        emitted.g = 0.5 + sampleArray(hit, kProbePages, features, 1.0).g - sampleSlot(hit, kProbeFlat, features).g;
+        emitted.g = 0.5 + sampleArray(hit, kProbePages, features, 1.0).r - sampleSlot(hit, kProbeFlat, features).r;
         emitted.g += sampleArrayLevel(hit, kProbePages, vec2(0.5), 0.0, 1.0).r;
     }
     if (GLINT_HAS_PROBE_FOG(features)) {
-        emitted.b = sampleVolumeLevel(hit, kProbeFog, vec3(0.5, 0.5, 0.75), 1.0).b;
+        emitted.b = sampleVolumeLevel(hit, kProbeFog, vec3(0.5, 0.5, 0.75), 1.0).r;
     }
     uvec2 table = GLINT_MATERIAL_PROBE_TABLE(hit);
     if (table != uvec2(0u)) {
@@ -586,21 +588,33 @@ void probeEmission(Hit hit, Features features, inout vec3 emitted) {
 }
 )";
 
-// Levels of an image in which all texels of a level and a layer are equal: `valueOf` gives their bytes.
+// Levels of an image in which all texels of a level and a layer are equal: `valueOf` gives their red.
 std::vector<std::uint8_t> levelsOf(const ImageView& image,
                                    const std::function<int(std::uint32_t, std::uint32_t)>& valueOf) {
     std::vector<std::uint8_t> pixels;
     for (std::uint32_t level = 0; level < image.levels; ++level) {
         for (std::uint32_t layer = 0; layer < image.layersAt(level); ++layer) {
-            pixels.insert(pixels.end(), bytesOfLevel(image.format, image.width, image.height, level),
-                          static_cast<std::uint8_t>(valueOf(level, layer)));
+            const auto value = static_cast<std::uint8_t>(valueOf(level, layer));
+            // Both ends of a block of BC4 are the value.
+            std::vector<std::uint8_t> block(infoOf(image.format).blockBytes, value);
+            std::fill(block.begin() + 2, block.end(), std::uint8_t{0});
+            for (std::uint64_t i = 0; i < bytesOfLevel(image.format, image.width, image.height, level);
+                 i += block.size()) {
+                pixels.insert(pixels.end(), block.begin(), block.end());
+            }
         }
     }
     return pixels;
 }
 
-// An engine gives a cube, an array, a 3D texture and a buffer by its material alone.
-TEST(EngineSceneContent, MaterialsHaveTexturesOfAllDimensionsAndBuffers) {
+// Who gives the texels of the textures that materials name.
+enum class TexelSource : std::uint8_t { Program, Texels, Blocks };
+
+class TexturesOfAllDimensions : public ::testing::TestWithParam<TexelSource> {};
+
+// An engine gives a cube, an array, a 3D texture and a buffer by its material alone. The textures are the
+// engine's own, or those of KTX2 files that a list of materials names.
+TEST_P(TexturesOfAllDimensions, MaterialsReadThemAndBuffers) {
     const test::TemporaryFolder folder;
     for (const auto& [file, text] : {std::pair{"probe.json", kProbe},
                                      {"probe.glsl", kProbeModel},
@@ -609,27 +623,31 @@ TEST(EngineSceneContent, MaterialsHaveTexturesOfAllDimensionsAndBuffers) {
     }
     gltf::ImportOptions options;
     options.materialModel = must(materials::loadMaterialModel(std::vector{folder.path().string()}));
-    options.decodeImages = true;
-    gltf::MaterialDescription listed{.name = "probe", .model = "probe"};
-    for (const char* const name : {"flat", "fog", "pages", "scene"}) {
-        listed.textures[name] = {};
-    }
-    const gltf::Scene list = must(gltf::importMaterials({"list", {listed}}, options));
-    gltf::Scene scene = sceneWithCamera();
-    scene.images = list.images;
-    scene.textures = list.textures;
-    scene.samplers = list.samplers;
-    addQuad(scene, list.materials[0], {-4, -4, -4}, {8, 0, 0}, {0, 8, 0});
-    compiler::CompileSettings settings = roomSteps();
-    settings.effects = {false, {}};
-    const std::shared_ptr<const Package> package = packageOf(scene, settings);
-
+    const bool isOfFiles = GetParam() != TexelSource::Program;
+    const TexelFormat format = GetParam() == TexelSource::Blocks ? TexelFormat::Bc4 : TexelFormat::Rgba8;
     using Dimension = ImageView::Dimension;
-    std::vector<ImageView> images{
-        {.width = 32, .height = 32, .pixels = {}, .levels = 6},
-        {.width = 4, .height = 4, .pixels = {}, .levels = 2, .dimension = Dimension::Volume, .layers = 4},
-        {.width = 32, .height = 32, .pixels = {}, .levels = 6, .dimension = Dimension::Array, .layers = 2},
-        {.width = 64, .height = 64, .pixels = {}, .levels = 7, .dimension = Dimension::Cube, .layers = 6}};
+    std::vector<ImageView> images{{.width = 32, .height = 32, .pixels = {}, .format = format, .levels = 6},
+                                  {.width = 4,
+                                   .height = 4,
+                                   .pixels = {},
+                                   .format = format,
+                                   .levels = 2,
+                                   .dimension = Dimension::Volume,
+                                   .layers = 4},
+                                  {.width = 32,
+                                   .height = 32,
+                                   .pixels = {},
+                                   .format = format,
+                                   .levels = 6,
+                                   .dimension = Dimension::Array,
+                                   .layers = 2},
+                                  {.width = 64,
+                                   .height = 64,
+                                   .pixels = {},
+                                   .format = format,
+                                   .levels = 7,
+                                   .dimension = Dimension::Cube,
+                                   .layers = 6}};
     const std::function<int(std::uint32_t, std::uint32_t)> values[] = {
         [](std::uint32_t level, std::uint32_t) { return 250 - 40 * static_cast<int>(level); },
         [](std::uint32_t level, std::uint32_t slice) { return static_cast<int>(100 * level + 51 * slice); },
@@ -641,13 +659,47 @@ TEST(EngineSceneContent, MaterialsHaveTexturesOfAllDimensionsAndBuffers) {
         [](std::uint32_t level, std::uint32_t face) {
             return face == 5 ? 40 * static_cast<int>(level) : 255;
         }};
+    gltf::MaterialDescription listed{.name = "probe", .model = "probe"};
     std::vector<std::vector<std::uint8_t>> pixels;
     for (std::size_t i = 0; i < images.size(); ++i) {
+        constexpr const char* kNames[] = {"flat", "fog", "pages", "scene"};
+        constexpr test::Ktx2Layers kLayers[] = {{}, {.depth = 4}, {.layers = 2}, {.faces = 6}};
         pixels.push_back(levelsOf(images[i], values[i]));
         images[i].pixels = pixels.back();
+        gltf::TextureDescription& texture = listed.textures[kNames[i]];
+        if (isOfFiles) {
+            texture.file = std::string(kNames[i]) + ".ktx2";
+            const std::uint32_t vkFormat = format == TexelFormat::Bc4 ? 139 : 37;
+            ASSERT_TRUE(base::writeFile(folder.path() / texture.file,
+                                        test::makeKtx2(vkFormat, format, images[i].width, images[i].height,
+                                                       images[i].levels, pixels.back(), kLayers[i])));
+        }
     }
-    const Content content =
-        contentOf(*package, scene, [&](session::SceneViewData& data) { data.images = images; });
+    options.decodeImages = !isOfFiles;
+    options.keepImageFiles = isOfFiles;
+    const gltf::Scene list =
+        must(gltf::importMaterials({(folder.path() / "list").string(), {listed}}, options));
+    gltf::Scene scene = sceneWithCamera();
+    scene.images = list.images;
+    scene.textures = list.textures;
+    scene.samplers = list.samplers;
+    addQuad(scene, list.materials[0], {-4, -4, -4}, {8, 0, 0}, {0, 8, 0});
+    compiler::CompileSettings settings = roomSteps();
+    settings.effects = {false, {}};
+    const std::shared_ptr<const Package> package = packageOf(scene, settings);
+
+    const auto textures = must(
+        session::loadTextures(scene, {.fit = {.formats = sharedContext().texelFormats()}, .threads = 1}));
+    for (std::size_t i = 0; isOfFiles && i < images.size(); ++i) {
+        EXPECT_EQ(textures->images[i].texels, pixels[i]);
+        EXPECT_EQ(textures->images[i].format, format);
+    }
+    const Content content = contentOf(*package, scene, [&](session::SceneViewData& data) {
+        data.images = images;
+        if (isOfFiles) {
+            session::useTextures(textures, data);
+        }
+    });
 
     // The material of the engine's own has the bytes of a record with its textures and the address.
     TexturedMaterials own(*package, content);
@@ -720,6 +772,14 @@ TEST(EngineSceneContent, MaterialsHaveTexturesOfAllDimensionsAndBuffers) {
         EXPECT_EQ(added ? "" : added.error().id, texture == cube ? "" : "texture-dimension");
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Texels, TexturesOfAllDimensions,
+                         ::testing::Values(TexelSource::Program, TexelSource::Texels, TexelSource::Blocks),
+                         [](const auto& one) {
+                             return one.param == TexelSource::Program  ? "OfTheProgram"
+                                    : one.param == TexelSource::Texels ? "OfFiles"
+                                                                       : "OfFilesInBlocks";
+                         });
 
 // The room with two lamps of two triangles, which are instances of one mesh, and lights with a size.
 gltf::Scene roomWithLamps() {

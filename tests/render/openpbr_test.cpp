@@ -242,6 +242,71 @@ Light filmOnMetal(double cosine, double ior, double thickness, const Light& f0) 
     return film(schlick(between(ior), cosine), inner, isRarer, 2.0 * ior * thickness * within);
 }
 
+// The share of light that white microfacets do not send up at once, by quadrature over their normals.
+double lossOf(double cosine, double alpha) {
+    constexpr int kSteps = 300;
+    const Vector v{std::sqrt(1.0 - cosine * cosine), 0.0, cosine};
+    double reflected = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+        // Steep facets are rare, but lose the most: the steps get narrower towards them.
+        const double t = (i + 0.5) / kSteps;
+        const double steeper = std::pow(t, 4.0);
+        const double slope = alpha * std::sqrt((1.0 - steeper) / steeper);
+        const double z = 1.0 / std::sqrt(1.0 + slope * slope);
+        for (int k = 0; k < kSteps; ++k) {
+            const double azimuth = 2.0 * std::numbers::pi * (k + 0.5) / kSteps;
+            const Vector h{slope * z * std::cos(azimuth), slope * z * std::sin(azimuth), z};
+            const double c = dot(v, h);
+            const Vector l{2.0 * c * h.x - v.x, 2.0 * c * h.y - v.y, 2.0 * c * h.z - v.z};
+            if (c > 0.0 && l.z > 0.0) {
+                reflected += 4.0 * std::pow(t, 3.0) * masking(v, l, {alpha, alpha}) * c / (cosine * z);
+            }
+        }
+    }
+    return 1.0 - reflected / (kSteps * kSteps);
+}
+
+// Light of later bounces between facets, times n·l: Kulla and Conty (2017), "Revisiting Physically Based
+// Shading at Imageworks".
+class LaterBounces {
+public:
+    LaterBounces(double alpha, const std::function<Light(double cosine)>& fresnel) {
+        double meanLoss = 0.0;
+        Light mean{};
+        for (int i = 0; i < kSteps; ++i) {
+            const double cosine = (i + 0.5) / kSteps;
+            const double share = 2.0 * cosine / kSteps;
+            losses_[static_cast<std::size_t>(i)] = lossOf(cosine, alpha);
+            meanLoss += share * losses_[static_cast<std::size_t>(i)];
+            const Light here = fresnel(cosine);
+            for (std::size_t k = 0; k < 3; ++k) {
+                mean[k] += share * here[k];
+            }
+        }
+        for (std::size_t k = 0; k < 3; ++k) {
+            colors_[k] = mean[k] * mean[k] * (1.0 - meanLoss) / (1.0 - mean[k] * meanLoss) / meanLoss;
+        }
+    }
+
+    Light operator()(Vector v, Vector l) const {
+        const double light = lossAt(v.z) * lossAt(l.z) * l.z / std::numbers::pi;
+        return {colors_[0] * light, colors_[1] * light, colors_[2] * light};
+    }
+
+private:
+    static constexpr int kSteps = 64;
+
+    double lossAt(double cosine) const {
+        const double place = std::clamp(cosine * kSteps - 0.5, 0.0, kSteps - 1.0);
+        const auto first = std::min(static_cast<std::size_t>(place), std::size_t{kSteps - 2});
+        const double share = place - static_cast<double>(first);
+        return (1.0 - share) * losses_[first] + share * losses_[first + 1];
+    }
+
+    std::array<double, kSteps> losses_{};  // by cosine
+    Light colors_{};
+};
+
 class QuietObserver final : public measure::Observer {
 public:
     using measure::Observer::report;
@@ -441,18 +506,27 @@ std::vector<LobeCase> lobeCases() {
         anodised["thinFilmWeight"] = 0.75F;
         anodised["thinFilmThickness"] = 0.4F;
         anodised["thinFilmIor"] = 1.6F;
-        cases.push_back({"film on metal", anodised,
-                         [](Vector v, Vector l) {
-                             const auto [lobe, cosine] = reflection(v, l, alphas(0.15F, 0.0));
-                             const Light f0{0.9F, 0.6F, 0.3F};
-                             Light light = filmOnMetal(cosine, 1.6F, 400.0, f0);
-                             for (std::size_t i = 0; i < 3; ++i) {
-                                 const double bare = f0[i] + (1.0 - f0[i]) * std::pow(1.0 - cosine, 5.0);
-                                 light[i] = lobe * (0.25 * bare + 0.75 * light[i]);
-                             }
-                             return light;
-                         },
-                         1e-3, 1.0, LobeCase::AtMirror});
+        const auto fresnel = [](double cosine) {
+            const Light f0{0.9F, 0.6F, 0.3F};
+            Light light = filmOnMetal(cosine, 1.6F, 400.0, f0);
+            for (std::size_t i = 0; i < 3; ++i) {
+                const double bare = f0[i] + (1.0 - f0[i]) * std::pow(1.0 - cosine, 5.0);
+                light[i] = 0.25 * bare + 0.75 * light[i];
+            }
+            return light;
+        };
+        cases.push_back(
+            {"film on metal", anodised,
+             [fresnel, later = LaterBounces(alphas(0.15F, 0.0).first, fresnel)](Vector v, Vector l) {
+                 const auto [lobe, cosine] = reflection(v, l, alphas(0.15F, 0.0));
+                 const Light once = fresnel(cosine);
+                 Light light = later(v, l);
+                 for (std::size_t i = 0; i < 3; ++i) {
+                     light[i] += lobe * once[i];
+                 }
+                 return light;
+             },
+             5e-5, 1.0, LobeCase::AtMirror});
     }
     return cases;
 }

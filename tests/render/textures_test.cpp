@@ -230,7 +230,7 @@ constexpr int kTextureSize = 64;
 // An image with all levels, with colours at random.
 gltf::Texels noise(std::uint32_t seed) {
     std::mt19937 random(seed);
-    gltf::Texels texels{kTextureSize, kTextureSize, gltf::PixelFormat::Rgba8, 1, {}};
+    gltf::Texels texels{{kTextureSize, kTextureSize}, gltf::PixelFormat::Rgba8, {}};
     texels.bytes.resize(std::size_t{4} * kTextureSize * kTextureSize);
     for (std::uint8_t& byte : texels.bytes) {
         byte = static_cast<std::uint8_t>(random());
@@ -304,7 +304,7 @@ TEST(TextureLevels, LevelsOfRoughnessAreNearerToTheFinestLevelThanPlainMeans) {
             }
             return sum / static_cast<double>(picture.size());
         };
-        gltf::Texels plain{image.width, image.height, image.format, 1, image.pixels};
+        gltf::Texels plain{{image.width, image.height}, image.format, image.pixels};
         completeLevels(plain, gltf::filtersOf(gltf::LevelFilter::Data));
         const auto fitted =
             fitImage(scene, image, imageUses(scene)[0], {.formats = sharedContext().texelFormats()});

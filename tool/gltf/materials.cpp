@@ -70,19 +70,24 @@ Status readTexture(const ObjectSource& object, std::string_view member, TextureT
         slots[slot].texCoord = read.texCoord;  // planning says why there is no texture
         return okStatus();
     }
-    const int given = (*json)["index"].get<int>();
-    if (dimension != package::TextureDimension::Flat && !textures.isAtRunTime(given)) {
+    GLINT_TRY(const auto texture, textures.use((*json)["index"].get<int>()));
+    if (texture < 0) {
+        return okStatus();
+    }
+    const Image& image = textures.imageOf(texture);
+    const bool isRead = !image.isAtRunTime && image.width > 0;
+    if (isRead && image.dimension != dimension) {
+        const auto nameOf = [](package::TextureDimension one) {
+            return namesOf(one)[static_cast<std::size_t>(one)].what;
+        };
         return object.document.error(
             "texture-dimension", object.pointerTo(member),
-            fmt::format("the texture is declared as {}, and Glint reads 2D images of files alone",
-                        namesOf(dimension)[static_cast<std::size_t>(dimension)].what),
-            "let the program give it at run time: in a list of materials, leave its file out");
+            fmt::format("the texture is declared as {}, and {} ({}) is {}", nameOf(dimension), image.pointer,
+                        image.name, nameOf(image.dimension)),
+            "give a file with the declared dimension; layers, faces and depths are read of KTX2");
     }
-    GLINT_TRY(const auto texture, textures.use(given));
-    if (texture >= 0) {
-        read.texture = texture;
-        slots[slot] = read;
-    }
+    read.texture = texture;
+    slots[slot] = read;
     return okStatus();
 }
 

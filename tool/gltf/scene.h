@@ -170,16 +170,46 @@ enum class Storage : std::uint8_t {
     Transcoded,  // data of Basis Universal, of which each device gets blocks of its own format
 };
 
-// The pixels are empty unless ImportOptions::decodeImages is set.
-struct Image {
-    std::string name;     // glTF name, else the file's name, else "image N"
-    std::string pointer;  // JSON pointer
+// The size of an image in pixels, and its levels. Each level has half the size of the one before, rounded
+// down.
+struct ImageShape {
     int width = 0;
     int height = 0;
-    PixelFormat format = PixelFormat::Rgba8;  // Rgba16 if the file has 16 bits for each channel
-    // This is above 1 if the file has mips. Each level has half the size of the one before, rounded down.
     int levels = 1;
-    Transfer transfer = Transfer::Unknown;  // only KTX2 files give it; the texture's use decides
+    package::TextureDimension dimension = package::TextureDimension::Flat;
+    // The layers of an array, the faces +X, -X, +Y, -Y, +Z and -Z of a cube, or the slices of a 3D image,
+    // whose number halves from level to level. They follow one another within a level.
+    int layers = 1;
+
+    bool operator==(const ImageShape&) const = default;
+};
+
+constexpr bool isVolume(const ImageShape& shape) {
+    return shape.dimension == package::TextureDimension::Volume;
+}
+
+constexpr int sizeOfLevel(int size, int level) {
+    return size >> level > 1 ? size >> level : 1;
+}
+
+constexpr int layersOfLevel(const ImageShape& shape, int level) {
+    return isVolume(shape) ? sizeOfLevel(shape.layers, level) : shape.layers;
+}
+
+// Returns the pixels of a level with all of its layers.
+constexpr std::uint64_t pixelCount(const ImageShape& shape, int level) {
+    return static_cast<std::uint64_t>(sizeOfLevel(shape.width, level)) *
+           static_cast<std::uint64_t>(sizeOfLevel(shape.height, level)) *
+           static_cast<std::uint64_t>(layersOfLevel(shape, level));
+}
+
+// The pixels are empty unless ImportOptions::decodeImages is set. Images at run time have the dimension and
+// the layers of the slots that show them.
+struct Image : ImageShape {
+    std::string name;                         // glTF name, else the file's name, else "image N"
+    std::string pointer;                      // JSON pointer
+    PixelFormat format = PixelFormat::Rgba8;  // Rgba16 if the file has 16 bits for each channel
+    Transfer transfer = Transfer::Unknown;    // only KTX2 files give it; the texture's use decides
     Storage storage = Storage::Texels;
     // There are byteCount() bytes. Levels start with the largest, and rows with the top one. Values stay as
     // they are stored and are not linearised.
@@ -189,17 +219,7 @@ struct Image {
     // The image that stands for all with the same texels, or -1 if this one does. Textures show that one.
     int sameAs = -1;
     bool isAtRunTime = false;  // a program gives its texels; until then it is white
-    // Images at run time have those of the slots that show them. Layers follow one another within a level.
-    package::TextureDimension dimension = package::TextureDimension::Flat;
-    int layers = 1;
 };
-
-constexpr std::uint64_t pixelCount(const Image& image, int level) {
-    const auto sizeOf = [level](int size) { return static_cast<std::uint64_t>(size >> level); };
-    const std::uint64_t width = sizeOf(image.width);
-    const std::uint64_t height = sizeOf(image.height);
-    return (width == 0 ? 1 : width) * (height == 0 ? 1 : height);
-}
 
 // Returns the number of bytes of all levels.
 constexpr std::uint64_t byteCount(const Image& image) {

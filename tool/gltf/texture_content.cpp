@@ -451,8 +451,7 @@ private:
                 }
                 // Levels are made by an image's use.
                 if (other.sameAs < 0 && works_[i].whole.texelHash == works_[j].whole.texelHash &&
-                    image.width == other.width && image.height == other.height &&
-                    image.format == other.format && image.levels == other.levels &&
+                    static_cast<const ImageShape&>(image) == other && image.format == other.format &&
                     image.storage == other.storage && image.transfer == other.transfer &&
                     haveSameLevels(uses[i], uses[j])) {
                     image.sameAs = static_cast<int>(j);

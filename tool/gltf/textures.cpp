@@ -235,13 +235,13 @@ Diagnostic cantDecode(const Scene& scene, const Image& image, const Codec& codec
 
 Result<Texels> texelsOf(const Scene& scene, const Image& image) {
     if (!image.pixels.empty()) {
-        return Texels{image.width, image.height, image.format, image.levels, image.pixels};
+        return Texels{image, image.format, image.pixels};
     }
     const std::string where = fmt::format("{}#{}", scene.path, image.pointer);
     Image decoded;
     GLINT_TRY(const Codec* const codec, readHeader(image.file, where, decoded));
     GLINT_TRY_DO(decode(image.file, where, *codec, decoded));
-    return Texels{decoded.width, decoded.height, decoded.format, decoded.levels, std::move(decoded.pixels)};
+    return Texels{decoded, decoded.format, std::move(decoded.pixels)};
 }
 
 // ---- Textures and samplers ----
@@ -326,9 +326,9 @@ Result<int> TextureTable::use(int texture) {
     return *known;
 }
 
-bool TextureTable::isAtRunTime(int texture) const {
-    const int image = document_.model().textures[static_cast<std::size_t>(texture)].source;
-    return image >= 0 && find(imageJson(document_, image), kAtRunTime) != nullptr;
+const Image& TextureTable::imageOf(int texture) const {
+    const int image = scene_.textures[static_cast<std::size_t>(texture)].image;
+    return scene_.images[static_cast<std::size_t>(image)];
 }
 
 // Returns the image of the file that the texture shows, or -1 with a warning if it has none in a format that

@@ -25,8 +25,8 @@ public:
     // "texture-basisu" if this build does not decode KTX2, and the texture has no fallback or the file
     // requires the extension.
     Result<int> use(int texture);
-    // Returns whether the program gives the texels of the file's texture.
-    bool isAtRunTime(int texture) const;
+    // Returns the image of scene.textures[texture].
+    const Image& imageOf(int texture) const;
 
 private:
     Result<int> append(int texture);

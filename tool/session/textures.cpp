@@ -64,8 +64,7 @@ std::optional<gltf::FittedImage> unpack(std::string_view bytes, const gltf::Imag
     if (!unpacker.atEnd() || format >= kTexelFormatCount || levels == 0 || levels > 32) {
         return std::nullopt;
     }
-    fitted.width = image.width;
-    fitted.height = image.height;
+    static_cast<gltf::ImageShape&>(fitted) = image;
     fitted.levels = static_cast<int>(levels);
     fitted.format = static_cast<TexelFormat>(format);
     const auto width = static_cast<std::uint32_t>(image.width);

@@ -89,6 +89,10 @@ constexpr const TexelFormatInfo& infoOf(TexelFormat format) {
 constexpr bool isBlockFormat(TexelFormat format) {
     return format != TexelFormat::Rgba8 && format != TexelFormat::Rgba16;
 }
+// Returns whether devices that have the format have 3D images of it: slices of blocks in the case of BC.
+constexpr bool hasVolumes(TexelFormat format) {
+    return format <= TexelFormat::Bc7;
+}
 
 // The size of a level in texels, of one axis.
 constexpr std::uint32_t sizeAtLevel(std::uint32_t size, std::uint32_t level) {
@@ -211,7 +215,8 @@ struct ImageView {
     std::span<const std::uint8_t> decoded{};
     // As the package's textures with the image say (TextureEntry::dimension). Each level has its layers one
     // after the other: 1 of a 2D image; the faces +X, -X, +Y, -Y, +Z and -Z of a cube; the slices of a 3D
-    // image, whose number halves from level to level. 3D images are in no block format.
+    // image, whose number halves from level to level. 3D images are in a format for which hasVolumes() is
+    // true.
     Dimension dimension = Dimension::Flat;
     std::uint32_t layers = 1;
 

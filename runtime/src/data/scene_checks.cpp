@@ -248,9 +248,6 @@ Status checkSize(const ImageView& image, const std::string& where, const ImageLi
     if (isCube && image.width != image.height) {
         return makeError("scene-image", where, "the faces of the cube are not square", "scale the image");
     }
-    if (isVolume && isBlockFormat(image.format)) {
-        return makeError("scene-image", where, "a 3D image is in a block format", "give it in RGBA8");
-    }
     return okStatus();
 }
 
@@ -265,6 +262,11 @@ Status checkImage(const ImageView& image, bool srgb, const std::string& where, c
                          "use values of TexelFormat and TexelChannel");
     }
     const TexelFormatInfo& info = infoOf(image.format);
+    if (image.dimension == package::TextureDimension::Volume && !hasVolumes(image.format)) {
+        return makeError("scene-image", where,
+                         std::string("there are no 3D images in the format ") + info.name,
+                         "give it in RGBA8 or in a BC format");
+    }
     if (isBlockFormat(image.format) && !limits.formats.has(image.format, srgb)) {
         return makeError("scene-image", where,
                          std::string("the device does not read ") + info.name +

@@ -14,12 +14,6 @@
 namespace glint::test {
 namespace {
 
-void setWord(base::Bytes& bytes, std::size_t offset, std::uint32_t value) {
-    for (std::size_t i = 0; i < 4; ++i) {
-        bytes.at(offset + i) = static_cast<std::uint8_t>(value >> 8U * i);
-    }
-}
-
 base::Bytes bc1File() {
     return makeDds(16, 8, 5, "DXT1", 0, randomBlocks(TexelFormat::Bc1, 16, 8, 5));
 }
@@ -77,8 +71,8 @@ TEST(GltfDds, IsRefusedWithTheReason) {
         {[](base::Bytes& b) { setWord(b, 76, 0); }, "header is damaged"},
         {[](base::Bytes& b) { setWord(b, 80, 0x41); }, "without block compression"},
         {[](base::Bytes& b) { setWord(b, 84, 0x54455242); }, "FourCC 0x54455242"},
-        {[](base::Bytes& b) { setWord(b, 112, 0x200); }, "two-dimensional"},
-        {[](base::Bytes& b) { setWord(b, 112, 0x200000); }, "two-dimensional"},
+        {[](base::Bytes& b) { setWord(b, 112, 0x200); }, "depth, layers or faces"},
+        {[](base::Bytes& b) { setWord(b, 112, 0x200000); }, "depth, layers or faces"},
         {[](base::Bytes& b) { setWord(b, 12, 0); }, "16 x 0"},
         {[](base::Bytes& b) { setWord(b, 16, 0x80000000U); }, "2147483648 x 8"},
         {[](base::Bytes& b) { setWord(b, 28, 6); }, "6 levels; 1 to 5"},
@@ -104,7 +98,7 @@ TEST(GltfDds, IsRefusedWithTheReason) {
              setWord(b, 128, 71);
              setWord(b, 132, 4);
          },
-         "two-dimensional"},
+         "depth, layers or faces"},
     };
     for (const Row& row : rows) {
         base::Bytes bytes = bc1File();
@@ -149,8 +143,8 @@ TEST(GltfKtx2Blocks, ReadsEachFormat) {
         EXPECT_EQ(file->deviations.size(), 1U);
         EXPECT_EQ(blocksOf(*file, bytes).value(), blocks);
     }
-    // Signed values, and BC6H.
-    for (const std::uint32_t vkFormat : {140U, 142U, 143U, 154U, 9U}) {
+    // Signed values, BC6H, and floats.
+    for (const std::uint32_t vkFormat : {140U, 142U, 143U, 154U, 97U}) {
         const base::Bytes bytes =
             makeKtx2(vkFormat, TexelFormat::Bc4, 4, 4, 1, randomBlocks(TexelFormat::Bc4, 4, 4, 1));
         expectRefusal(bytes, "VkFormat " + std::to_string(vkFormat));

@@ -16,7 +16,7 @@ namespace glint::test {
 namespace {
 
 gltf::Texels texelsOf(int width, int height, std::vector<std::uint8_t> bytes) {
-    return {width, height, gltf::PixelFormat::Rgba8, 1, std::move(bytes)};
+    return {{width, height}, gltf::PixelFormat::Rgba8, std::move(bytes)};
 }
 
 // The mean of black and white is half of the light, 188 in sRGB.
@@ -58,7 +58,7 @@ TEST(Levels, SixteenBitsStaySixteen) {
     std::vector<std::uint8_t> bytes(16);
     const std::uint16_t values[8] = {1000, 0, 0, 65535, 1003, 65535, 0, 65535};
     std::memcpy(bytes.data(), values, sizeof values);
-    gltf::Texels texels{2, 1, gltf::PixelFormat::Rgba16, 1, bytes};
+    gltf::Texels texels{{2, 1}, gltf::PixelFormat::Rgba16, bytes};
     completeLevels(texels, gltf::filtersOf(gltf::LevelFilter::Data));
     std::uint16_t mean[4]{};
     ASSERT_EQ(texels.bytes.size(), 24U);

@@ -2,6 +2,7 @@
 // texture is used. ktx2/make.py made the files.
 #include "gltf/codecs/codecs.h"
 #include "support/must.h"
+#include "unit/gltf/block_files.h"
 #include "unit/gltf/gltf_builder.h"
 
 #include <gtest/gtest.h>
@@ -32,12 +33,6 @@ GltfBuilder basisuScene(const base::Bytes& bytes) {
     texture["extensions"]["KHR_texture_basisu"]["source"] = 0;
     builder.root["textures"][0] = std::move(texture);
     return builder;
-}
-
-void setWord(base::Bytes& bytes, std::size_t offset, std::uint32_t value) {
-    for (std::size_t i = 0; i < 4; ++i) {
-        bytes.at(offset + i) = static_cast<std::uint8_t>(value >> 8U * i);
-    }
 }
 
 std::size_t wordAt(const base::Bytes& bytes, std::size_t offset) {
@@ -226,9 +221,11 @@ TEST(GltfKtx2Header, IsRefusedWithTheReason) {
         {"etc1s", [](base::Bytes& b) { b.at(descriptor(b) + 12) = 1; }, "colour model 1"},
         {"etc1s", [](base::Bytes& b) { setWord(b, 20, 0); }, "0 x 8"},
         {"etc1s", [](base::Bytes& b) { setWord(b, 24, 0x80000000U); }, "16 x 2147483648"},
-        {"etc1s", [](base::Bytes& b) { setWord(b, 28, 1); }, "two-dimensional"},
-        {"etc1s", [](base::Bytes& b) { setWord(b, 32, 1); }, "two-dimensional"},
-        {"etc1s", [](base::Bytes& b) { setWord(b, 36, 6); }, "two-dimensional"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 28, 1); }, "3D image of Basis Universal"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 32, 1000); }, "global data are damaged"},
+        {"uastc_linear", [](base::Bytes& b) { setWord(b, 32, 2); }, "level 0 is damaged"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 36, 6); }, "faces of the cube are not square"},
+        {"etc1s", [](base::Bytes& b) { setWord(b, 36, 2); }, "a depth of 0, 0 layers and 2 faces"},
         {"etc1s", [](base::Bytes& b) { setWord(b, 40, 0); }, "0 levels"},
         {"etc1s", [](base::Bytes& b) { setWord(b, 40, 6); }, "6 levels; 1 to 5"},
         {"etc1s", [](base::Bytes& b) { setWord(b, 44, 2); }, "scheme is 2"},

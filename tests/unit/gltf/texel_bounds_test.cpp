@@ -29,7 +29,7 @@ constexpr std::array<Wrap, 3> kWraps{Wrap::Repeat, Wrap::ClampToEdge, Wrap::Mirr
 
 gltf::Texels randomTexels(int width, int height, std::mt19937& random, std::size_t bytesPerChannel = 1) {
     gltf::Texels texels{
-        width, height, bytesPerChannel == 2 ? gltf::PixelFormat::Rgba16 : gltf::PixelFormat::Rgba8, 1, {}};
+        {width, height}, bytesPerChannel == 2 ? gltf::PixelFormat::Rgba16 : gltf::PixelFormat::Rgba8, {}};
     texels.bytes.resize(4 * bytesPerChannel * static_cast<std::size_t>(width * height));
     std::ranges::generate(texels.bytes, [&] { return static_cast<std::uint8_t>(random() % 256); });
     return texels;
@@ -310,7 +310,7 @@ TEST(TexelBounds, AreTightOnEveryBoxOfASmallImage) {
 }
 
 TEST(TexelBounds, FindTheTexelThatDecides) {
-    gltf::Texels texels{40, 30, gltf::PixelFormat::Rgba8, 1, std::vector<std::uint8_t>(40 * 30 * 4, 100)};
+    gltf::Texels texels{{40, 30}, gltf::PixelFormat::Rgba8, std::vector<std::uint8_t>(40 * 30 * 4, 100)};
     texels.bytes[4 * (17 * 40 + 23) + 1] = 3;
     const TexelBounds bounds(texels, {});
     const LookupKind kind{.sampler = {.mipmapped = false}};
@@ -410,7 +410,7 @@ TEST(TexelBounds, EncloseLevelsOfBlits) {
 }
 
 TEST(TexelBounds, AnisotropicFiltersReachFurther) {
-    gltf::Texels texels{64, 64, gltf::PixelFormat::Rgba8, 1, std::vector<std::uint8_t>(64 * 64 * 4, 100)};
+    gltf::Texels texels{{64, 64}, gltf::PixelFormat::Rgba8, std::vector<std::uint8_t>(64 * 64 * 4, 100)};
     texels.bytes[4 * (32 * 64 + 42)] = 0;
     const TexelBounds bounds(texels, {});
     const double centre = 32.5 / 64.0;

@@ -44,12 +44,21 @@ public:
         return okStatus();
     }
 
-    // `units` are blocks or pixels.
-    Status level(std::uint32_t level, std::uint8_t* target, std::uint32_t units,
+    // Transcodes all layers of a level. `bytes` is its size in the format, whose units, blocks or pixels,
+    // have `unit` bytes.
+    Status level(const ImageShape& shape, int level, std::span<std::uint8_t> target, std::size_t unit,
                  basist::transcoder_texture_format format, std::uint32_t flags) {
-        return transcoder_.transcode_image_level(level, 0, 0, target, units, format, flags)
-                   ? okStatus()
-                   : imageFault(fmt::format("the data of level {} are damaged", level));
+        const auto layers = static_cast<std::uint32_t>(shape.layers);
+        const bool isCube = shape.dimension == package::TextureDimension::Cube;
+        const std::size_t bytes = target.size() / layers;
+        for (std::uint32_t i = 0; i < layers; ++i) {
+            if (!transcoder_.transcode_image_level(static_cast<std::uint32_t>(level), isCube ? 0 : i,
+                                                   isCube ? i : 0, target.data() + i * bytes,
+                                                   static_cast<std::uint32_t>(bytes / unit), format, flags)) {
+                return imageFault(fmt::format("the data of level {} are damaged", level));
+            }
+        }
+        return okStatus();
     }
 
 private:
@@ -83,12 +92,12 @@ Status decodeBasis(ByteView bytes, Image& image) {
     Transcoder transcoder;
     GLINT_TRY_DO(transcoder.open(bytes));
     base::Bytes texels(byteCount(image));
-    std::uint8_t* target = texels.data();
+    std::span<std::uint8_t> rest(texels);
     for (int level = 0; level < image.levels; ++level) {
-        const auto pixels = static_cast<std::uint32_t>(pixelCount(image, level));
-        GLINT_TRY_DO(transcoder.level(static_cast<std::uint32_t>(level), target, pixels,
+        const auto bytesHere = static_cast<std::size_t>(4 * pixelCount(image, level));
+        GLINT_TRY_DO(transcoder.level(image, level, rest.first(bytesHere), 4,
                                       basist::transcoder_texture_format::cTFRGBA32, 0));
-        target += std::size_t{4} * pixels;
+        rest = rest.subspan(bytesHere);
     }
     image.pixels = std::move(texels);
     return okStatus();
@@ -101,16 +110,12 @@ Result<base::Bytes> transcodeBasis(const BlockFile& file, ByteView bytes, TexelF
     }
     Transcoder transcoder;
     GLINT_TRY_DO(transcoder.open(bytes));
-    const auto width = static_cast<std::uint32_t>(file.width);
-    const auto height = static_cast<std::uint32_t>(file.height);
-    const auto levels = static_cast<std::uint32_t>(file.levels);
-    base::Bytes blocks(static_cast<std::size_t>(bytesOfLevels(format, width, height, levels)));
-    std::uint8_t* place = blocks.data();
-    for (std::uint32_t level = 0; level < levels; ++level) {
-        const std::uint64_t size = bytesOfLevel(format, width, height, level);
-        const auto units = static_cast<std::uint32_t>(size / infoOf(format).blockBytes);
-        GLINT_TRY_DO(transcoder.level(level, place, units, *target, basist::cDecodeFlagsHighQuality));
-        place += size;
+    base::Bytes blocks;
+    for (int level = 0; level < file.levels; ++level) {
+        const std::size_t before = blocks.size();
+        blocks.resize(before + static_cast<std::size_t>(levelBytes(file, format, level)));
+        GLINT_TRY_DO(transcoder.level(file, level, std::span(blocks).subspan(before),
+                                      infoOf(format).blockBytes, *target, basist::cDecodeFlagsHighQuality));
     }
     return blocks;
 }

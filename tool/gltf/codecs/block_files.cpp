@@ -41,16 +41,26 @@ private:
     ByteView bytes_;
 };
 
-// Checks the size and the number of levels of an image.
-Status checkImageShape(std::uint64_t width, std::uint64_t height, std::uint64_t levels) {
+// Checks and sets the size, the layers and the number of levels of an image.
+Status setShape(std::uint64_t width, std::uint64_t height, std::uint64_t layers, std::uint64_t levels,
+                BlockFile& image) {
     constexpr auto kLargest = static_cast<std::uint64_t>(std::numeric_limits<int>::max());
-    if (width == 0 || height == 0 || width > kLargest || height > kLargest) {
+    constexpr std::uint64_t kMostPixels = 1ULL << 56U;  // the bytes of all levels are far below 2^64
+    if (width == 0 || height == 0 || width > kLargest || height > kLargest || width * height > kMostPixels) {
         return imageFault(fmt::format("its size is {} x {} pixels", width, height));
     }
-    const auto most = static_cast<std::uint64_t>(std::bit_width(std::max(width, height)));
+    if (layers > kLargest || layers > kMostPixels / (width * height)) {
+        return imageFault(fmt::format("it has {} layers or slices of {} x {} pixels", layers, width, height));
+    }
+    image.width = static_cast<int>(width);
+    image.height = static_cast<int>(height);
+    image.layers = static_cast<int>(layers);
+    const std::uint64_t depth = isVolume(image) ? layers : 1;
+    const auto most = static_cast<std::uint64_t>(std::bit_width(std::max({width, height, depth})));
     if (levels == 0 || levels > most) {
         return imageFault(fmt::format("it has {} levels; 1 to {} are possible", levels, most));
     }
+    image.levels = static_cast<int>(levels);
     return okStatus();
 }
 
@@ -131,7 +141,7 @@ Status readDx10(const FileReader& reader, BlockFile& file) {
     }
     if (reader.word(kHeaderEnd + 4) != kTexture2d || (reader.word(kHeaderEnd + 8) & kMiscCube) != 0 ||
         reader.word(kHeaderEnd + 12) > 1) {
-        return imageFault("it is no single two-dimensional image, but has a depth, layers or faces");
+        return imageFault("it has a depth, layers or faces, which Glint reads in KTX2 alone");
     }
     if ((reader.word(kHeaderEnd + 16) & kAlphaModeBits) == kAlphaPremultiplied) {
         file.deviations.emplace_back(kPremultipliedText);
@@ -166,7 +176,7 @@ Result<std::uint64_t> readHeader(const FileReader& reader, BlockFile& file) {
         return imageFault("its header is damaged");
     }
     if ((reader.word(112) & (kCubeMap | kVolume)) != 0) {
-        return imageFault("it is no single two-dimensional image, but has a depth, layers or faces");
+        return imageFault("it has a depth, layers or faces, which Glint reads in KTX2 alone");
     }
     const bool isDx10 = (reader.word(80) & kHasFourCc) != 0 && reader.word(84) == kDx10;
     GLINT_TRY_DO(isDx10 ? readDx10(reader, file) : readFourCc(reader, file));
@@ -175,16 +185,10 @@ Result<std::uint64_t> readHeader(const FileReader& reader, BlockFile& file) {
 
 // `data` is where they begin. Levels follow each other, the largest first.
 Status placeLevels(const FileReader& reader, std::uint64_t data, BlockFile& file) {
-    const std::uint32_t height = reader.word(12);
-    const std::uint32_t width = reader.word(16);
     // Files without mips may say 0.
-    const std::uint32_t levels = std::max(reader.word(28), 1U);
-    GLINT_TRY_DO(checkImageShape(width, height, levels));
-    file.width = static_cast<int>(width);
-    file.height = static_cast<int>(height);
-    file.levels = static_cast<int>(levels);
-    for (std::uint32_t level = 0; level < levels; ++level) {
-        const std::uint64_t bytes = bytesOfLevel(*file.format, width, height, level);
+    GLINT_TRY_DO(setShape(reader.word(16), reader.word(12), 1, std::max(reader.word(28), 1U), file));
+    for (int level = 0; level < file.levels; ++level) {
+        const std::uint64_t bytes = levelBytes(file, *file.format, level);
         if (!reader.has(data, bytes)) {
             return imageFault(fmt::format("it ends within its level {}", level));
         }
@@ -194,7 +198,7 @@ Status placeLevels(const FileReader& reader, std::uint64_t data, BlockFile& file
     return okStatus();
 }
 
-// Accepts one two-dimensional image in BC1 to BC5 or BC7 with unsigned values: by the header's FourCC (DXT1
+// Accepts one 2D image in BC1 to BC5 or BC7 with unsigned values: by the header's FourCC (DXT1
 // to DXT5, ATI1, ATI2, BC4U, BC5U) or by a DX10 header. Source: Microsoft, "Programming Guide for DDS".
 Result<BlockFile> readDds(ByteView bytes) {
     BlockFile file;
@@ -254,47 +258,100 @@ constexpr auto kBlockFormats = std::to_array<FormatRow>({
     {181, TexelFormat::Astc12x10}, {183, TexelFormat::Astc12x12},
 });
 
+// Texels without compression. sRGB has the number of the format plus 6.
+struct PlainRow {
+    std::uint32_t linear;
+    TexelFormat format;
+    int channels;
+};
+constexpr auto kPlainFormats = std::to_array<PlainRow>({
+    {9, TexelFormat::Rgba8, 1},
+    {16, TexelFormat::Rgba8, 2},
+    {23, TexelFormat::Rgba8, 3},
+    {37, TexelFormat::Rgba8, 4},
+    {70, TexelFormat::Rgba16, 1},
+    {77, TexelFormat::Rgba16, 2},
+    {84, TexelFormat::Rgba16, 3},
+    {91, TexelFormat::Rgba16, 4},
+});
+
 // The fields of the header that are needed twice.
 struct Header {
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
-    std::uint32_t levels = 0;
     Scheme scheme = Scheme::None;
     Model model = Model::Etc1s;
     bool twoSamples = false;
 };
 
-Status checkShape(const FileReader& file, Header& header, BlockFile& image) {
-    const std::uint32_t format = file.word(12);
-    if (format != 0) {
-        const auto* const row = std::ranges::find_if(kBlockFormats, [format](const FormatRow& one) {
-            return one.linear == format || one.linear + 1 == format;
-        });
-        // Formats of one pair follow each other: linear, then sRGB or signed values.
-        if (row == kBlockFormats.end() || (format != row->linear && !infoOf(row->format).hasSrgb)) {
-            return imageFault(fmt::format(
-                "it holds data of VkFormat {}; Glint reads ETC1S, UASTC, and BC1 to BC5, BC7, ETC2, EAC and "
-                "ASTC with unsigned values",
-                format));
+bool isFlat(const BlockFile& image) {
+    return image.dimension == package::TextureDimension::Flat;
+}
+
+// Finds the format by its number. Returns whether Glint reads it.
+bool findFormat(std::uint32_t format, BlockFile& image) {
+    constexpr std::uint32_t kBc1Opaque = 131;  // VK_FORMAT_BC1_RGB_UNORM_BLOCK
+    // Formats of one pair follow each other: linear, then sRGB or signed values.
+    for (const FormatRow& row : kBlockFormats) {
+        if (format == row.linear || (format == row.linear + 1 && infoOf(row.format).hasSrgb)) {
+            image.format = row.format;
+            image.hasAlpha = row.linear != kBc1Opaque;
+            image.transfer = format == row.linear ? Transfer::Linear : Transfer::Srgb;
         }
-        constexpr std::uint32_t kBc1Opaque = 131;  // VK_FORMAT_BC1_RGB_UNORM_BLOCK
-        image.format = row->format;
-        image.hasAlpha = row->linear != kBc1Opaque;
-        image.transfer = format == row->linear ? Transfer::Linear : Transfer::Srgb;
+    }
+    for (const PlainRow& row : kPlainFormats) {
+        if (format == row.linear || (format == row.linear + 6 && infoOf(row.format).hasSrgb)) {
+            image.format = row.format;
+            image.channels = row.channels;
+            image.transfer = format == row.linear ? Transfer::Linear : Transfer::Srgb;
+        }
+    }
+    return image.format.has_value();
+}
+
+// Reads the dimension by what the file has beside rows and columns, and the size.
+Status readShape(const FileReader& file, BlockFile& image) {
+    using Dimension = package::TextureDimension;
+    const std::uint32_t depth = file.word(28);
+    const std::uint32_t layers = file.word(32);
+    const std::uint32_t faces = file.word(36);
+    const bool isCube = faces == 6;
+    if ((faces != 1 && !isCube) || int{depth > 0} + int{layers > 0} + int{isCube} > 1) {
+        return imageFault(
+            fmt::format("it has a depth of {}, {} layers and {} faces; Glint reads 2D images, arrays of "
+                        "them, cubes and 3D images",
+                        depth, layers, faces));
+    }
+    image.dimension = isCube       ? Dimension::Cube
+                      : layers > 0 ? Dimension::Array
+                      : depth > 0  ? Dimension::Volume
+                                   : Dimension::Flat;
+    GLINT_TRY_DO(
+        setShape(file.word(20), file.word(24), std::max({depth, layers, faces}), file.word(40), image));
+    return isCube && image.width != image.height ? imageFault("the faces of the cube are not square")
+                                                 : okStatus();
+}
+
+Status readKtx2Header(const FileReader& file, Header& header, BlockFile& image) {
+    const std::uint32_t format = file.word(12);
+    if (format != 0 && !findFormat(format, image)) {
+        return imageFault(
+            fmt::format("it holds data of VkFormat {}; Glint reads ETC1S, UASTC, BC1 to BC5, BC7, ETC2, "
+                        "EAC and ASTC, and 1 to 4 channels of 8 or 16 bits, with unsigned values",
+                        format));
+    }
+    GLINT_TRY_DO(readShape(file, image));
+    // The extension is about 2D textures. Other dimensions are those of packs.
+    if (image.format && isFlat(image)) {
         image.deviations.push_back(
             fmt::format("it holds {}, which KHR_texture_basisu does not allow; it is read all the same",
-                        infoOf(row->format).name));
+                        infoOf(*image.format).name));
     }
-    header.width = file.word(20);
-    header.height = file.word(24);
-    if (file.word(28) != 0 || file.word(32) != 0 || file.word(36) != 1) {
-        return imageFault("it is no single two-dimensional image, but has a depth, layers or faces");
+    if (!image.format && isVolume(image)) {
+        return imageFault("it is a 3D image of Basis Universal, which has none");
     }
-    header.levels = file.word(40);
-    GLINT_TRY_DO(checkImageShape(header.width, header.height, header.levels));
     header.scheme = static_cast<Scheme>(file.word(44));
-    return file.has(kHeaderBytes, kLevelBytes * header.levels) ? okStatus()
-                                                               : imageFault("it ends within its header");
+    return file.has(kHeaderBytes, kLevelBytes * static_cast<std::uint64_t>(image.levels))
+               ? okStatus()
+               : imageFault("it ends within its header");
 }
 
 std::string modelName(Model model) {
@@ -321,8 +378,8 @@ void tellDeviations(const FileReader& file, std::uint64_t descriptor, BlockFile&
     }
 }
 
-// Checks the data format descriptor of a block format, which VkFormat has decided.
-Status checkBlockFormat(const FileReader& file, const Header& header, BlockFile& image) {
+// Checks the data format descriptor of a format that VkFormat has decided.
+Status checkVulkanFormat(const FileReader& file, const Header& header, BlockFile& image) {
     const std::uint64_t start = file.word(48);
     const std::uint32_t length = file.word(52);
     if (start < kHeaderBytes || !file.has(start, length) || length < kOneSample ||
@@ -415,9 +472,11 @@ Status checkMetadata(const FileReader& file, BlockFile& image) {
         if (key == "KTXanimData") {
             return imageFault("it is a video");
         }
-        if (key == "KTXorientation" && value != "rd") {
-            image.deviations.emplace_back(
-                "its KTXorientation is not \"rd\"; its first row is taken to be on top all the same");
+        const std::string_view orientation = isVolume(image) ? "rdi" : "rd";
+        if (key == "KTXorientation" && value != orientation) {
+            image.deviations.push_back(fmt::format(
+                "its KTXorientation is not \"{}\"; its first row is taken to be on top all the same",
+                orientation));
         }
         if (key == "KTXswizzle" && value != "rgba") {
             image.deviations.emplace_back(
@@ -429,10 +488,12 @@ Status checkMetadata(const FileReader& file, BlockFile& image) {
 }
 
 // Checks the code books of ETC1S data, and where the data of each level lie in it.
-Status checkGlobalData(const FileReader& file, const Header& header) {
+Status checkGlobalData(const FileReader& file, const Header& header, const BlockFile& image) {
     const std::uint64_t start = file.longWord(64);
     const std::uint64_t length = file.longWord(72);
-    std::uint64_t needed = kEtc1sHeaderBytes + kEtc1sImageBytes * header.levels;
+    const auto layers = static_cast<std::uint64_t>(image.layers);
+    const std::uint64_t images = layers * static_cast<std::uint64_t>(image.levels);
+    std::uint64_t needed = kEtc1sHeaderBytes + kEtc1sImageBytes * images;
     if (start < kHeaderBytes || !file.has(start, length) || length < needed) {
         return imageFault("its global data are damaged");
     }
@@ -442,15 +503,16 @@ Status checkGlobalData(const FileReader& file, const Header& header) {
     if (length < needed) {
         return imageFault("its global data are damaged");
     }
-    for (std::uint32_t level = 0; level < header.levels; ++level) {
-        const std::uint64_t levelBytes = file.longWord(kHeaderBytes + kLevelBytes * level + 8);
-        const std::uint64_t place = start + kEtc1sHeaderBytes + kEtc1sImageBytes * level;
+    for (std::uint64_t i = 0; i < images; ++i) {
+        const std::uint64_t level = i / layers;
+        const std::uint64_t bytesHere = file.longWord(kHeaderBytes + kLevelBytes * level + 8);
+        const std::uint64_t place = start + kEtc1sHeaderBytes + kEtc1sImageBytes * i;
         // The colour comes first, then the alpha.
         for (const std::uint64_t slice : {std::uint64_t{0}, std::uint64_t{1}}) {
             const std::uint64_t offset = file.word(place + 4 + 8 * slice);
             const std::uint64_t bytes = file.word(place + 8 + 8 * slice);
             const bool isNeeded = slice == 0 || header.twoSamples;
-            if (offset + bytes > levelBytes || (isNeeded && bytes == 0)) {
+            if (offset + bytes > bytesHere || (isNeeded && bytes == 0)) {
                 return imageFault(fmt::format("its level {} is damaged", level));
             }
         }
@@ -458,17 +520,22 @@ Status checkGlobalData(const FileReader& file, const Header& header) {
     return okStatus();
 }
 
+// Returns the bytes of a level without supercompression. A block of UASTC is as large as one of BC7.
+std::uint64_t storedBytes(const BlockFile& file, int level) {
+    return levelBytes(file, file.format.value_or(TexelFormat::Bc7), level) / 4 *
+           static_cast<std::uint64_t>(file.channels);
+}
+
 Status checkLevels(const FileReader& file, const Header& header, BlockFile& image) {
-    // A block of UASTC is as large as one of BC7.
-    const TexelFormat format = image.format.value_or(TexelFormat::Bc7);
-    for (std::uint32_t level = 0; level < header.levels; ++level) {
+    const auto levels = static_cast<std::uint64_t>(image.levels);
+    for (std::uint64_t level = 0; level < levels; ++level) {
         const std::uint64_t entry = kHeaderBytes + kLevelBytes * level;
         const std::uint64_t start = file.longWord(entry);
         const std::uint64_t length = file.longWord(entry + 8);
         const std::uint64_t unpacked = file.longWord(entry + 16);
         const std::uint64_t wanted =
-            header.scheme == Scheme::BasisLz ? 0 : bytesOfLevel(format, header.width, header.height, level);
-        if (start < kHeaderBytes + kLevelBytes * header.levels || !file.has(start, length) || length == 0 ||
+            header.scheme == Scheme::BasisLz ? 0 : storedBytes(image, static_cast<int>(level));
+        if (start < kHeaderBytes + kLevelBytes * levels || !file.has(start, length) || length == 0 ||
             unpacked != wanted || (header.scheme == Scheme::None && length != wanted)) {
             return imageFault(fmt::format("its level {} is damaged", level));
         }
@@ -479,13 +546,14 @@ Status checkLevels(const FileReader& file, const Header& header, BlockFile& imag
         }
         image.places.push_back({start, length});
     }
-    return header.scheme == Scheme::BasisLz ? checkGlobalData(file, header) : okStatus();
+    return header.scheme == Scheme::BasisLz ? checkGlobalData(file, header, image) : okStatus();
 }
 
-// Accepts one two-dimensional image: in ETC1S (with BasisLZ) or UASTC, as KHR_texture_basisu wants it, or in
-// BC1 to BC5, BC7, ETC2, EAC or ASTC, which is a deviation. Data other than ETC1S may be compressed by
-// Zstandard. It allocates nothing that depends on the file. Sources: KTX File Format Specification 2.0,
-// sections 3 and 4; Khronos Data Format 1.3, section 5.
+// Accepts a 2D image, an array of them, a cube or a 3D image: in ETC1S (with BasisLZ) or UASTC, which
+// KHR_texture_basisu wants and which have no 3D images; in BC1 to BC5, BC7, ETC2, EAC or ASTC; or in texels
+// without compression. Data other than ETC1S may be compressed by Zstandard. It allocates nothing that
+// depends on the file. Sources: KTX File Format Specification 2.0, sections 3 and 4; Khronos Data Format 1.3,
+// section 5.
 Result<BlockFile> readKtx2(ByteView bytes) {
     const FileReader file(bytes);
     // Every file has at least one level in its index.
@@ -496,15 +564,12 @@ Result<BlockFile> readKtx2(ByteView bytes) {
     }
     Header header;
     BlockFile image;
-    GLINT_TRY_DO(checkShape(file, header, image));
-    GLINT_TRY_DO(image.format ? checkBlockFormat(file, header, image) : checkFormat(file, header, image));
+    GLINT_TRY_DO(readKtx2Header(file, header, image));
+    GLINT_TRY_DO(image.format ? checkVulkanFormat(file, header, image) : checkFormat(file, header, image));
     GLINT_TRY_DO(checkMetadata(file, image));
     GLINT_TRY_DO(checkLevels(file, header, image));
-    image.width = static_cast<int>(header.width);
-    image.height = static_cast<int>(header.height);
-    image.levels = static_cast<int>(header.levels);
     image.isZstandard = header.scheme == Scheme::Zstandard;
-    if (!image.format && (image.width % 4 != 0 || image.height % 4 != 0)) {
+    if (!image.format && isFlat(image) && (image.width % 4 != 0 || image.height % 4 != 0)) {
         image.deviations.emplace_back("its width and height are not multiples of 4; it is read all the same");
     }
     return image;
@@ -517,23 +582,19 @@ Result<BlockFile> readBlockFile(ByteView bytes) {
 }
 
 Result<base::Bytes> blocksOf(const BlockFile& file, ByteView bytes) {
-    const auto width = static_cast<std::uint32_t>(file.width);
-    const auto height = static_cast<std::uint32_t>(file.height);
-    base::Bytes blocks(static_cast<std::size_t>(
-        bytesOfLevels(*file.format, width, height, static_cast<std::uint32_t>(file.levels))));
-    std::span<std::uint8_t> rest(blocks);
-    for (std::uint32_t level = 0; level < file.places.size(); ++level) {
-        const BlockFile::Level& place = file.places[level];
+    base::Bytes blocks;
+    for (int level = 0; level < file.levels; ++level) {
+        const BlockFile::Level& place = file.places[static_cast<std::size_t>(level)];
         const ByteView from =
             bytes.subspan(static_cast<std::size_t>(place.offset), static_cast<std::size_t>(place.bytes));
-        const std::span<std::uint8_t> to =
-            rest.first(static_cast<std::size_t>(bytesOfLevel(*file.format, width, height, level)));
+        const std::size_t before = blocks.size();
+        blocks.resize(before + static_cast<std::size_t>(storedBytes(file, level)));
+        const std::span<std::uint8_t> to = std::span(blocks).subspan(before);
         if (!file.isZstandard) {
             std::ranges::copy(from, to.begin());
         } else if (!unpackZstandard(from, to)) {
             return imageFault(fmt::format("the data of level {} are damaged", level));
         }
-        rest = rest.subspan(to.size());
     }
     return blocks;
 }

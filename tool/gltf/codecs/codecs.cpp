@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 #include <webp/decode.h>
@@ -55,13 +56,29 @@ Status decodeWebp(ByteView bytes, Image& image) {
 
 Status readBlockHeader(ByteView bytes, Image& image) {
     GLINT_TRY(const auto file, readBlockFile(bytes));
-    image.width = file.width;
-    image.height = file.height;
-    image.levels = file.levels;
+    static_cast<ImageShape&>(image) = file;
     image.transfer = file.transfer;
-    image.storage = file.format ? Storage::Blocks : Storage::Transcoded;
-    image.format = PixelFormat::Rgba8;
+    image.storage = !file.format                  ? Storage::Transcoded
+                    : isBlockFormat(*file.format) ? Storage::Blocks
+                                                  : Storage::Texels;
+    image.format = file.format == TexelFormat::Rgba16 ? PixelFormat::Rgba16 : PixelFormat::Rgba8;
     return okStatus();
+}
+
+// Gives texels the channels that the file lacks, as a shader reads them: 0, and 1 for alpha.
+base::Bytes withAllChannels(base::Bytes stored, const BlockFile& file) {
+    if (file.channels == 4) {
+        return stored;
+    }
+    const std::size_t all = infoOf(*file.format).blockBytes;
+    const std::size_t given = all / 4 * static_cast<std::size_t>(file.channels);
+    base::Bytes texels(stored.size() / given * all);
+    for (std::size_t i = 0; i < stored.size() / given; ++i) {
+        const auto texel = texels.begin() + static_cast<std::ptrdiff_t>(i * all);
+        std::copy_n(stored.begin() + static_cast<std::ptrdiff_t>(i * given), given, texel);
+        std::fill_n(texel + static_cast<std::ptrdiff_t>(all / 4 * 3), all / 4, std::uint8_t{255});
+    }
+    return texels;
 }
 
 Status decodeBlockFile(ByteView bytes, Image& image) {
@@ -69,7 +86,11 @@ Status decodeBlockFile(ByteView bytes, Image& image) {
     if (!file.format) {
         return decodeBasis(bytes, image);
     }
-    GLINT_TRY(const auto blocks, blocksOf(file, bytes));
+    GLINT_TRY(auto blocks, blocksOf(file, bytes));
+    if (!isBlockFormat(*file.format)) {
+        image.pixels = withAllChannels(std::move(blocks), file);
+        return okStatus();
+    }
     base::Bytes pixels;
     ByteView rest(blocks);
     for (int i = 0; i < file.levels; ++i) {
@@ -77,13 +98,15 @@ Status decodeBlockFile(ByteView bytes, Image& image) {
         const std::uint32_t width = sizeAtLevel(static_cast<std::uint32_t>(file.width), level);
         const std::uint32_t height = sizeAtLevel(static_cast<std::uint32_t>(file.height), level);
         const auto bytesHere = static_cast<std::size_t>(bytesOfLevel(*file.format, width, height, 0));
-        GLINT_TRY(auto here, decodeBlocks(*file.format, file.transfer == Transfer::Srgb, width, height,
-                                          rest.first(bytesHere)));
-        for (std::size_t k = 3; !file.hasAlpha && k < here.size(); k += 4) {
-            here[k] = 255;
+        for (int layer = 0; layer < layersOfLevel(file, i); ++layer) {
+            GLINT_TRY(auto here, decodeBlocks(*file.format, file.transfer == Transfer::Srgb, width, height,
+                                              rest.first(bytesHere)));
+            for (std::size_t k = 3; !file.hasAlpha && k < here.size(); k += 4) {
+                here[k] = 255;
+            }
+            pixels.insert(pixels.end(), here.begin(), here.end());
+            rest = rest.subspan(bytesHere);
         }
-        pixels.insert(pixels.end(), here.begin(), here.end());
-        rest = rest.subspan(bytesHere);
     }
     image.pixels = std::move(pixels);
     return okStatus();

@@ -46,15 +46,14 @@ const Codec* findCodec(ByteView bytes);
 // Returns the name of the format if Glint recognises it but does not read it, and an empty text otherwise.
 const char* foreignFormat(ByteView bytes);
 
-// ---- Images in block formats, as KTX2 and DDS files hold them ----
+// ---- KTX2 and DDS files ----
 
-// The checked header of a file: every level lies in the file and is as long as its blocks are.
-struct BlockFile {
-    int width = 0;  // all sizes are in pixels
-    int height = 0;
-    int levels = 0;  // from 1 up to the levels of a full pyramid
+// The checked header of a file: every level lies in the file and is as long as its blocks are. DDS files are
+// 2D and hold blocks.
+struct BlockFile : ImageShape {
     Transfer transfer = Transfer::Unknown;
-    std::optional<TexelFormat> format;  // none: data of Basis Universal, in KTX2 alone
+    std::optional<TexelFormat> format;  // none: data of Basis Universal
+    int channels = 4;                   // that each texel has in the file, in Rgba8 and Rgba16
     bool hasAlpha = true;               // false: alpha is 1 whatever the blocks say
     bool isZstandard = false;           // each level is compressed by Zstandard
     struct Level {
@@ -69,7 +68,14 @@ struct BlockFile {
 // Reads a file of the two by its first bytes. Allocates nothing that depends on the file's sizes.
 Result<BlockFile> readBlockFile(ByteView bytes);
 
-// Returns all levels in their block format, one after the other. `file` must have been read from `bytes` and
+// Returns the bytes of a level with all of its layers, each in whole blocks.
+constexpr std::uint64_t levelBytes(const ImageShape& shape, TexelFormat format, int level) {
+    return bytesOfLevel(format, static_cast<std::uint32_t>(shape.width),
+                        static_cast<std::uint32_t>(shape.height), static_cast<std::uint32_t>(level)) *
+           static_cast<std::uint64_t>(layersOfLevel(shape, level));
+}
+
+// Returns all levels as they are stored, one after the other. `file` must have been read from `bytes` and
 // have a format.
 Result<base::Bytes> blocksOf(const BlockFile& file, ByteView bytes);
 

@@ -72,17 +72,19 @@ void packLevel(TexelFormat format, const std::array<int, 2>& channels, std::span
 
 // Packs the levels [first, levels) of RGBA8.
 void packLevels(const Texels& texels, int first, const std::array<int, 2>& channels, FittedImage& fitted) {
-    const auto width = static_cast<std::uint32_t>(texels.width);
-    const auto height = static_cast<std::uint32_t>(texels.height);
     std::size_t offset = 0;
-    for (int i = 0; i < texels.levels; ++i) {
-        const auto level = static_cast<std::uint32_t>(i);
-        const auto bytes = static_cast<std::size_t>(bytesOfLevel(TexelFormat::Rgba8, width, height, level));
-        if (i >= first) {
-            packLevel(fitted.format, channels, std::span(texels.bytes).subspan(offset, bytes),
-                      sizeAtLevel(width, level), sizeAtLevel(height, level), fitted.texels);
+    for (int level = 0; level < texels.levels; ++level) {
+        const int width = sizeOfLevel(texels.width, level);
+        const int height = sizeOfLevel(texels.height, level);
+        const std::size_t bytes = 4 * placeOfTexel(0, height, width);
+        for (int layer = 0; layer < layersOfLevel(texels, level); ++layer) {
+            if (level >= first) {
+                packLevel(fitted.format, channels, std::span(texels.bytes).subspan(offset, bytes),
+                          static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height),
+                          fitted.texels);
+            }
+            offset += bytes;
         }
-        offset += bytes;
     }
     fitted.levels = texels.levels;
 }
@@ -101,9 +103,7 @@ class Fitter {
 public:
     Fitter(const Scene& scene, const Image& image, const ImageUse& use, const FitOptions& options)
         : scene_(scene), image_(image), use_(use), options_(options) {
-        fitted_.width = image.width;
-        fitted_.height = image.height;
-        fitted_.levels = image.levels;
+        static_cast<ImageShape&>(fitted_) = image;
     }
 
     Result<FittedImage> fit() {
@@ -137,7 +137,8 @@ private:
         }
         const TexelFormat format =
             file->format ? *file->format : targetFormat(use_, file->hasAlpha, false, options_.formats);
-        if (!isBlockFormat(format) || !suits(format, use_, options_.formats)) {
+        if (!isBlockFormat(format) || !suits(format, use_, options_.formats) ||
+            (isVolume(image_) && !hasVolumes(format))) {
             return fitTexels();
         }
         // The transcoder knows no channels but red and alpha for these.
@@ -162,7 +163,7 @@ private:
     // Makes the levels that the file lacks.
     Status completeBlocks() {
         const int most = fullLevels(image_.width, image_.height);
-        if (image_.levels == most || !canPack(fitted_.format) || !hasBasisu()) {
+        if (image_.levels >= most || isVolume(image_) || !canPack(fitted_.format) || !hasBasisu()) {
             return okStatus();
         }
         GLINT_TRY_DO(decode());
@@ -173,7 +174,7 @@ private:
 
     Status fitTexels() {
         GLINT_TRY_DO(decode());
-        if (options_.compress && hasBasisu()) {
+        if (options_.compress && hasBasisu() && !isVolume(image_)) {
             const bool hasAlpha = (use_.channels & kAlpha) != 0;
             const TexelFormat format = targetFormat(use_, hasAlpha, true, options_.formats);
             if (isBlockFormat(format)) {
@@ -233,13 +234,6 @@ TexelFormat targetFormat(const ImageUse& use, bool hasAlpha, bool packs, const T
 
 Result<FittedImage> fitImage(const Scene& scene, const Image& image, const ImageUse& use,
                              const FitOptions& options) {
-    if (image.dimension != package::TextureDimension::Flat) {
-        return FittedImage{.width = image.width,
-                           .height = image.height,
-                           .texels = image.pixels,
-                           .dimension = image.dimension,
-                           .layers = image.layers};
-    }
     return Fitter(scene, image, use, options).fit();
 }
 

@@ -20,16 +20,11 @@ struct FitOptions {
 };
 
 // Pixels in a form that ImageView takes.
-struct FittedImage {
-    int width = 0;
-    int height = 0;
-    int levels = 1;
+struct FittedImage : ImageShape {
     TexelFormat format = TexelFormat::Rgba8;
     TexelChannels channels = kChannelsAsStored;
     std::vector<std::uint8_t> texels{};
     std::vector<std::uint8_t> decoded{};  // the first level in RGBA8; empty unless it was asked for
-    package::TextureDimension dimension = package::TextureDimension::Flat;
-    int layers = 1;
 };
 
 // Returns the format that an image should be compressed to, of those that the device has for its use:
@@ -42,12 +37,12 @@ struct FittedImage {
 // Rgba8 stands for none. `packs`: only formats that packBlock() knows.
 TexelFormat targetFormat(const ImageUse& use, bool hasAlpha, bool packs, const TexelFormats& formats);
 
-// Reads an image whose pixels or file the scene has. Images that are not 2D stay as they are. KTX2 of ETC1S
-// and UASTC is transcoded to targetFormat(), or unpacked. KTX2 and DDS in a block format stay as they are
-// where the device has it for the image's use, and are unpacked otherwise. Other images are unpacked, or
-// compressed to targetFormat(). The levels are those of the file. Further ones are made where a format can be
-// packed, and for texels where the device's blits would not be right: for vectors, for roughness, for sides
-// that are no powers of two, and with `allLevels`. Error "image-decode".
+// Reads an image whose pixels or file the scene has, with its layers. KTX2 of ETC1S and UASTC is transcoded
+// to targetFormat(), or unpacked. KTX2 and DDS in a block format stay as they are where the device has it for
+// the image's use, and are unpacked otherwise. Other images are unpacked, or compressed to targetFormat().
+// The levels are those of the file. Further ones are made where a format can be packed, and for texels where
+// the device's blits would not be right: for vectors, for roughness, for sides that are no powers of two, and
+// with `allLevels`. None are made of 3D images, and none of these are compressed. Error "image-decode".
 Result<FittedImage> fitImage(const Scene& scene, const Image& image, const ImageUse& use,
                              const FitOptions& options);
 

@@ -182,26 +182,32 @@ void append(const LinearLevel& level, const Coding& coding, std::vector<std::uin
 template <typename Code>
 void complete(Texels& texels, const LevelFilters& filters) {
     const int most = fullLevels(texels.width, texels.height);
-    if (texels.levels >= most) {
+    if (texels.levels >= most || isVolume(texels)) {
         return;
     }
     const Coding coding(texels.format, filters);
     const int width = sizeOfLevel(texels.width, texels.levels - 1);
     const int height = sizeOfLevel(texels.height, texels.levels - 1);
-    const std::size_t last =
-        texels.bytes.size() - sizeof(std::array<Code, 4>) * placeOfTexel(0, height, width);
-    LinearLevel level = halved(width, height, [&](int x, int y) {
-        std::array<Code, 4> texel{};
-        std::memcpy(texel.data(), &texels.bytes[last + sizeof texel * placeOfTexel(x, y, width)],
-                    sizeof texel);
-        return coding.decode({texel[0], texel[1], texel[2], texel[3]});
-    });
-    append<Code>(level, coding, texels.bytes);
+    const std::size_t layerBytes = sizeof(std::array<Code, 4>) * placeOfTexel(0, height, width);
+    std::size_t place = texels.bytes.size() - layerBytes * static_cast<std::size_t>(texels.layers);
+    std::vector<LinearLevel> layers(static_cast<std::size_t>(texels.layers));
+    for (LinearLevel& layer : layers) {
+        layer = halved(width, height, [&](int x, int y) {
+            std::array<Code, 4> texel{};
+            std::memcpy(texel.data(), &texels.bytes[place + sizeof texel * placeOfTexel(x, y, width)],
+                        sizeof texel);
+            return coding.decode({texel[0], texel[1], texel[2], texel[3]});
+        });
+        append<Code>(layer, coding, texels.bytes);
+        place += layerBytes;
+    }
     while (++texels.levels < most) {
-        const LinearLevel before = std::move(level);
-        level = halved(before.width, before.height,
-                       [&](int x, int y) { return before.values[placeOfTexel(x, y, before.width)]; });
-        append<Code>(level, coding, texels.bytes);
+        for (LinearLevel& layer : layers) {
+            const LinearLevel before = std::move(layer);
+            layer = halved(before.width, before.height,
+                           [&](int x, int y) { return before.values[placeOfTexel(x, y, before.width)]; });
+            append<Code>(layer, coding, texels.bytes);
+        }
     }
 }
 

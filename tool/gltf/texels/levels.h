@@ -34,17 +34,10 @@ constexpr LevelFilters filtersOf(LevelFilter filter) {
 }
 
 // An RGBA image with levels, the largest first.
-struct Texels {
-    int width = 0;
-    int height = 0;
+struct Texels : ImageShape {
     PixelFormat format = PixelFormat::Rgba8;
-    int levels = 1;
     std::vector<std::uint8_t> bytes;
 };
-
-constexpr int sizeOfLevel(int size, int level) {
-    return size >> level > 1 ? size >> level : 1;
-}
 
 constexpr bool isPowerOfTwo(int size) {
     return std::has_single_bit(static_cast<std::uint32_t>(size));
@@ -63,7 +56,7 @@ int fullLevels(int width, int height);
 
 // Appends the levels that a full pyramid has more. A texel is the mean over the area that it covers of the
 // last level that is there, where a size is odd with shares of texels. Levels are not averaged from ones that
-// were rounded.
+// were rounded. Layers and faces are averaged each by itself; 3D images stay as they are.
 void completeLevels(Texels& texels, const LevelFilters& filters);
 
 // ---- What materials read of images ----

@@ -423,8 +423,9 @@ std::array<materials::ValueInterval, 4> valuesOf(const TexelRange& range, PixelF
 }
 
 bool hasKnownTexels(const Image& image) {
-    return image.storage == Storage::Texels ||
-           (image.storage == Storage::Blocks && image.levels == fullLevels(image.width, image.height));
+    return image.dimension == package::TextureDimension::Flat &&
+           (image.storage == Storage::Texels ||
+            (image.storage == Storage::Blocks && image.levels == fullLevels(image.width, image.height)));
 }
 
 LevelRules levelRulesOf(const Image& image, const ImageUse& use) {

@@ -78,8 +78,9 @@ struct LevelRules {
     int tolerance = 0;
 };
 
-// Returns whether all devices read the image's own texels. Data of Basis Universal are transcoded to a format
-// that the device has, and levels that are missing in a block format are packed, both with errors.
+// Returns whether the image is 2D and all devices read its own texels. Data of Basis Universal are transcoded
+// to a format that the device has, and levels that are missing in a block format are packed, both with
+// errors.
 bool hasKnownTexels(const Image& image);
 
 // Returns the rules for such an image, as fitImage() and the runtime make its levels.
