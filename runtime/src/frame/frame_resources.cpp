@@ -169,7 +169,7 @@ struct WantedBuffer {
 };
 
 // Returns all buffers of a frame.
-std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const FrameSize& size) {
+std::vector<WantedBuffer> wantedBuffers(const FrameSize& size) {
     constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     constexpr VkBufferUsageFlags kCleared =
         kStorage | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
@@ -207,7 +207,7 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
     const bool follows = firstShadows > 0 && !size.deferredShadows;
     constexpr MemoryUse kOnDevice = MemoryUse::Device;
     using Frame = FrameResources;
-    return {{
+    return {
         {"constants", &Frame::constants, sizeof(gpu::FrameConstants), kCleared},
         {"shadow rays", &Frame::shadows, shadowBytes, kStorage},
         {"starts of samples", &Frame::sampleStarts, samples * sizeof(gpu::SampleStart), kRead},
@@ -242,14 +242,14 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
         {"counters", &Frame::counters, counterBytes(size), kCleared},
         {"read-back", &Frame::readback, readbackDepth(size, size.paths ? BounceLevels::kSlots : 0),
          VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::Readback},
-    }};
+    };
 }
 
 // Returns the memory of a resource, for others.
 template <typename Resource>
 SharedMemory memoryOf(const Resource& resource) {
-    const Allocation& memory = resource.memory;
-    return {memory, memory.offset, memory.offset + resource.bytes};
+    const VkDeviceSize begin = resource.memory == nullptr ? 0 : resource.memory->offset;
+    return {resource.memory, begin, begin + resource.bytes};
 }
 
 Status createBuffers(Context::State& context, const FrameSize& size, FrameResources& frame) {
@@ -403,7 +403,7 @@ bool haveSameImages(const FrameSize& first, const FrameSize& second) {
 
 Result<NextBuffers> createNextBuffers(Context::State& context, const FrameSize& now, const FrameSize& next) {
     NextBuffers buffers;
-    buffers.pool = std::make_shared<MemoryPool>(context, "frame");
+    MemoryPool pool(context, "frame");
     const auto before = wantedBuffers(now);
     const auto after = wantedBuffers(next);
     bool shadowsMove = false;
@@ -420,23 +420,21 @@ Result<NextBuffers> createNextBuffers(Context::State& context, const FrameSize& 
         Buffer made;
         if (wanted.bytes > 0) {
             SharedMemory* const shared = wanted.followsShadows ? &ofShadows : nullptr;
-            GLINT_TRY(made,
-                      createBuffer(context, *buffers.pool, wanted.bytes, wanted.usage, wanted.use, shared));
+            GLINT_TRY(made, createBuffer(context, pool, wanted.bytes, wanted.usage, wanted.use, shared));
             ++buffers.made;
             if (wanted.member == &FrameResources::shadows) {
                 ofShadows = memoryOf(made);
             }
         }
-        buffers.exchanges.push_back({place, wanted.member, std::move(made)});
+        buffers.exchanges.push_back({wanted.member, std::move(made)});
     }
     return buffers;
 }
 
-EarlierBuffers replaceBuffers(NextBuffers next, FrameResources& frame) {
-    EarlierBuffers earlier;
-    for (NextBuffers::Exchange& exchange : next.exchanges) {
-        earlier.buffers.push_back(std::exchange(frame.*exchange.member, std::move(exchange.buffer)));
-        earlier.pools.push_back(std::exchange(frame.bufferPools[exchange.place], next.pool));
+std::vector<Buffer> replaceBuffers(NextBuffers next, FrameResources& frame) {
+    std::vector<Buffer> earlier;
+    for (auto& [member, buffer] : next.exchanges) {
+        earlier.push_back(std::exchange(frame.*member, std::move(buffer)));
     }
     return earlier;
 }
@@ -450,14 +448,14 @@ std::vector<std::pair<const char*, const Buffer*>> buffersOf(const FrameResource
     return buffers;
 }
 
-VkDeviceSize allocatedBytes(const FrameResources& frame) {
-    std::set<const MemoryPool*> pools{&frame.pool};
-    for (const std::shared_ptr<MemoryPool>& pool : frame.bufferPools) {
-        pools.insert(pool != nullptr ? pool.get() : &frame.pool);
-    }
-    VkDeviceSize bytes = 0;
-    for (const MemoryPool* const pool : pools) {
-        bytes += pool->bytes();
+VkDeviceSize allocatedBytes(const FrameResources& frame, const FrameSize& size) {
+    VkDeviceSize bytes = frame.pool.bytes();
+    std::set<const MemoryBlocks*> others;
+    for (const auto& [name, buffer] : buffersOf(frame, size)) {
+        if (buffer->memory != nullptr && !frame.pool.has(*buffer->memory) &&
+            others.insert(buffer->memory->pool).second) {
+            bytes += buffer->memory->pool->bytes();
+        }
     }
     return bytes;
 }

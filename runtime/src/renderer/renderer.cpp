@@ -392,15 +392,12 @@ std::vector<MemoryItem> Renderer::memory() const {
     // Memory that buffers share with the depth image counts as the buffers' memory, and memory that they
     // share with the shadow rays of first hits as that of these.
     const auto liesIn = [](const Buffer& buffer, const auto& other) {
-        const Allocation& place = buffer.memory;
-        const VkDeviceSize begin = other.memory.offset;
-        return buffer.handle.get() != VK_NULL_HANDLE && &buffer.memory != &other.memory &&
-               place.memory == other.memory.memory && place.offset >= begin &&
-               place.offset < begin + other.bytes;
+        return buffer.memory != nullptr && buffer.memory->lender != nullptr &&
+               buffer.memory->lender == other.memory;
     };
     VkDeviceSize shared = 0;
     for (const auto& [name, buffer] : buffersOf(frame, state_->size)) {
-        shared += liesIn(*buffer, frame.depth) && !liesIn(*buffer, frame.shadows) ? buffer->bytes : 0;
+        shared += liesIn(*buffer, frame.depth) ? buffer->bytes : 0;
     }
     if (frame.depth.handle.get() != VK_NULL_HANDLE) {
         addTo(items, {"depth", MemoryUse::Device, true, 1, frame.depth.bytes - shared});
@@ -429,7 +426,8 @@ Renderer::Footprint Renderer::footprint() const {
         footprint.bytes += item.bytes;
     }
     footprint.allocatedBytes = (state_->history != nullptr ? state_->history->allocatedBytes() : 0) +
-                               glint::allocatedBytes(state_->frame) + state_->pipelines.pool.bytes();
+                               glint::allocatedBytes(state_->frame, state_->size) +
+                               state_->pipelines.pool.bytes();
     return footprint;
 }
 

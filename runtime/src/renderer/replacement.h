@@ -47,7 +47,7 @@ struct NextPackage {
 // Resources that only recordings up to `recording` use. Members are destroyed in reverse order.
 struct Leftovers {
     std::uint64_t recording = 0;
-    EarlierBuffers buffers;
+    std::vector<Buffer> buffers;
     std::shared_ptr<const RetiredLot> scene;  // shared by all who draw the scene
     std::shared_ptr<const Environment::State> environment;
     UniqueDescriptorPool descriptors;  // of a set with that environment

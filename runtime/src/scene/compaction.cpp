@@ -36,15 +36,9 @@ Result<std::vector<Replacement>> makeCopies(GpuScene::State& state, std::span<co
         if (structure == nullptr) {
             continue;  // edits have removed it
         }
-        Result<AccelerationStructure> copy = createStructure(state.context, state.pool, sizes[i],
-                                                             VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR);
-        if (!copy) {
-            for (Replacement& made : replacements) {
-                discard(state.pool, std::move(made.copy));
-            }
-            return copy.error();
-        }
-        replacements.push_back({structure, std::move(*copy)});
+        GLINT_TRY(auto copy, createStructure(state.context, state.pool, sizes[i],
+                                             VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR));
+        replacements.push_back({structure, std::move(copy)});
     }
     return replacements;
 }
@@ -107,7 +101,5 @@ void completeCompaction(GpuScene::State& state, std::uint64_t frame) {
         state.compaction.reset();
     }
 }
-
-// --- Opacity micromaps ---
 
 }  // namespace glint

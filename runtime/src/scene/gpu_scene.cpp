@@ -96,8 +96,7 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
 }
 GLINT_CATCH
 
-GpuScene::State::State(Context::State& contextState)
-    : DrawnScene(contextState), sharedPool(std::make_shared<MemoryPool>(contextState)), pool(*sharedPool) {}
+GpuScene::State::State(Context::State& contextState) : DrawnScene(contextState), pool(contextState) {}
 GpuScene::State::~State() = default;
 
 GpuScene::GpuScene(std::unique_ptr<State> state) : state_(std::move(state)) {}

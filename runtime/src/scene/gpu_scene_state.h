@@ -86,7 +86,6 @@ struct ScenePackage {
     std::vector<Decided> decided;
 };
 
-// Members are destroyed in reverse order: the pool's memory last.
 struct GpuScene::State final : DrawnScene {
     explicit State(Context::State& contextState);
     ~State() override;
@@ -96,9 +95,7 @@ struct GpuScene::State final : DrawnScene {
                                          VkCommandBuffer commands) override;
     bool hasLightTree() const override;
 
-    // Renderers keep it for what a replaced package leaves to them.
-    std::shared_ptr<MemoryPool> sharedPool;
-    MemoryPool& pool;
+    MemoryPool pool;
     std::unique_ptr<Compaction> compaction;             // null if there is nothing more to compact
     std::unique_ptr<SceneUpload> upload;                // null when the device has completed it
     ScenePackage package;                               // the package that draws the scene

@@ -114,17 +114,9 @@ constexpr VkBufferUsageFlags kRecordUsage =
 
 }  // namespace
 
-ArrayUpdate::~ArrayUpdate() {
-    for (std::size_t i = 0; i < made_.size(); ++i) {
-        discard(*pools_[i], std::move(made_[i]));
-    }
-    discard(stagingPool_, std::move(staging_));
-}
-
 Status ArrayUpdate::prepareBuffers(std::span<const RecordArray> arrays) {
     for (const auto& [records, device, capacity, pool, usage] : arrays) {
         made_.emplace_back();
-        pools_.push_back(pool);
         if (capacity == 0 || capacity == records.capacity) {
             continue;
         }

@@ -220,15 +220,11 @@ inline std::uint32_t grownCapacity(std::uint32_t count, std::uint32_t now) {
     return count > now ? std::max(count, 2 * now) : std::max(now, 1U);
 }
 
-// Brings arrays up to date in one recording. Its functions get the same arrays in the same order. Everything
-// that it has made is discarded with it, unless it was recorded.
+// Brings arrays up to date in one recording. Its functions get the same arrays in the same order.
 class ArrayUpdate {
 public:
     // `staging` is the pool of staging memory.
     ArrayUpdate(Context::State& context, MemoryPool& staging) : context_(context), stagingPool_(staging) {}
-    ~ArrayUpdate();
-    ArrayUpdate(const ArrayUpdate&) = delete;
-    ArrayUpdate& operator=(const ArrayUpdate&) = delete;
 
     // Makes the buffers of arrays that get another capacity. Errors: those of buffers.
     Status prepareBuffers(std::span<const RecordArray> arrays);
@@ -248,7 +244,6 @@ private:
     Context::State& context_;
     MemoryPool& stagingPool_;
     std::vector<Buffer> made_;
-    std::vector<MemoryPool*> pools_;  // of these buffers
     Buffer staging_;
 };
 

@@ -400,7 +400,6 @@ Result<RetiredLot> GpuScene::State::recordReplacement(const std::shared_ptr<cons
         exchange(*store, content);
         return status.error();
     }
-    leftovers.keep(sharedPool);
     return leftovers;
 }
 

@@ -26,17 +26,10 @@ constexpr MemoryDependency kDeformToBuild{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT
 constexpr std::size_t kArrays = 10;
 constexpr std::size_t kPoseArray = 7;
 
-// Everything that a recording needs to allocate. Its destructor discards everything that was not handed over.
+// Everything that a recording needs to allocate.
 struct Prepared {
     explicit Prepared(SceneStore& store)
         : kept(store.scene.pool), brief(store.upload != nullptr ? store.upload->pool : store.scene.pool) {}
-    ~Prepared() {
-        discard(brief, std::move(scratch.buffer));
-        discard(kept, std::move(tlas));
-        discard(kept, std::move(tlasScratch.buffer));
-    }
-    Prepared(const Prepared&) = delete;
-    Prepared& operator=(const Prepared&) = delete;
 
     MemoryPool& kept;
     MemoryPool& brief;  // of resources that only this recording needs

@@ -23,8 +23,7 @@ SceneStore::SceneStore(GpuScene::State& owner, const Package& package, const Sce
       buildsTree(package.lightSamples() > 0),
       materials(package.scene(0).materials.recordBytes),
       topLevel(view.moves, leafOrder),
-      emittersDirty(package.emission() != nullptr),
-      retired(owner.pool) {
+      emittersDirty(package.emission() != nullptr) {
     if (leafOrder != nullptr) {
         capacity = orderedCapacity(capacity);
     }

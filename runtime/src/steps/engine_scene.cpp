@@ -611,7 +611,7 @@ Status setMaterial(EngineScene::State& state, std::uint32_t number, OwnMaterial 
 
 EngineScene::State::State(Context::State& contextState)
     : DrawnScene(contextState),
-      pool(std::make_shared<MemoryPool>(contextState, "engine scene")),
+      pool(contextState, "engine scene"),
       arrays{{{RecordStore(sizeof(gpu::GeometryRecord)), {}},
               {RecordStore(sizeof(gpu::InstanceRecord)), {}},
               {RecordStore(sizeof(gpu::InstanceRecord)), {}},
@@ -621,16 +621,15 @@ EngineScene::State::State(Context::State& contextState)
               {RecordStore(sizeof(gpu::PrimitiveMaterials)), {}},
               {RecordStore(sizeof(gpu::LightNode)), {}},
               {RecordStore(sizeof(gpu::EmitterRecord)), {}},
-              {RecordStore(sizeof(std::uint32_t)), {}}}},
-      retired(*pool) {}
+              {RecordStore(sizeof(std::uint32_t)), {}}}} {}
 
 Status EngineScene::State::recordChanges(VkCommandBuffer commands, std::uint64_t frame,
                                          RetiredLot* leftovers) {
     std::vector<RecordArray> now;
     for (auto& [store, device] : arrays) {
-        now.push_back({store, device, grownCapacity(store.count(), store.capacity), pool.get()});
+        now.push_back({store, device, grownCapacity(store.count(), store.capacity), &pool});
     }
-    ArrayUpdate update(context, *pool);
+    ArrayUpdate update(context, pool);
     GLINT_TRY_DO(update.prepareBuffers(now));
     GLINT_TRY_DO(update.prepareStaging(now));
     if (update.hasWork()) {
@@ -680,7 +679,6 @@ Result<RetiredLot> EngineScene::State::recordReplacement(const std::shared_ptr<c
         rebuildLights(*this);
         return status.error();
     }
-    leftovers.keep(pool);
     return leftovers;
 }
 

@@ -26,7 +26,6 @@
 
 namespace glint {
 
-// Members are destroyed in reverse order: the pool's memory last.
 struct EngineScene::State final : DrawnScene {
     explicit State(Context::State& contextState);
 
@@ -67,7 +66,7 @@ struct EngineScene::State final : DrawnScene {
         FirstEmitters,
         Count
     };
-    std::shared_ptr<MemoryPool> pool;
+    MemoryPool pool;
     std::array<Records, Count> arrays;
     Retired retired;
     std::uint64_t lastFrame = 0;
