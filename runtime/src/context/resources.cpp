@@ -120,8 +120,8 @@ Result<MemoryBlocks::Block*> MemoryPool::makeBlock(std::uint32_t type, Tiling ti
                                                    MemoryUse use) {
     if (bytes > context_->limits.maxAllocationBytes) {
         return makeError("memory-size", "",
-                         "a resource of " + std::to_string(bytes) + " bytes is above the device's limit of " +
-                             std::to_string(context_->limits.maxAllocationBytes),
+                         phrase("a resource of ", bytes, " bytes is above the device's limit of ",
+                                context_->limits.maxAllocationBytes),
                          "split the mesh or use smaller textures");
     }
     if (blocks_->all.size() >= context_->limits.core.maxMemoryAllocationCount) {
@@ -266,8 +266,8 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
     buffer.bytes = std::max<VkDeviceSize>(bytes, 1);
     if (buffer.bytes > context.limits.maxBufferBytes) {
         return makeError("buffer-size", "",
-                         "a buffer of " + std::to_string(bytes) + " bytes is above the device's limit of " +
-                             std::to_string(context.limits.maxBufferBytes),
+                         phrase("a buffer of ", bytes, " bytes is above the device's limit of ",
+                                context.limits.maxBufferBytes),
                          "split the mesh or use a smaller image");
     }
     const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
@@ -293,6 +293,13 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
                                       .buffer = handle};
     buffer.address = context.vk.GetBufferDeviceAddress(device, &address);
     return buffer;
+}
+
+Result<AlignedBuffer> createAligned(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,
+                                    VkDeviceSize alignment, VkBufferUsageFlags usage, MemoryUse use) {
+    GLINT_TRY(auto buffer, createBuffer(context, pool, bytes + alignment, usage, use));
+    const VkDeviceAddress address = alignUp(buffer.address, alignment);
+    return AlignedBuffer{std::move(buffer), address};
 }
 
 namespace {

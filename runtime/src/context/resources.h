@@ -156,6 +156,21 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
                             VkBufferUsageFlags usage, MemoryUse use = MemoryUse::Device,
                             SharedMemory* shared = nullptr);
 
+// A buffer with content from an aligned address on. Vulkan aligns the addresses of buffers for their usage
+// only.
+struct AlignedBuffer {
+    Buffer buffer;
+    VkDeviceAddress address = 0;
+
+    VkDeviceSize offset() const {
+        return address - buffer.address;
+    }
+};
+// Creates a buffer with room for `bytes` at a multiple of the alignment.
+Result<AlignedBuffer> createAligned(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,
+                                    VkDeviceSize alignment, VkBufferUsageFlags usage,
+                                    MemoryUse use = MemoryUse::Device);
+
 struct DeviceImage {
     Memory memory;
     UniqueImage handle;

@@ -1,5 +1,6 @@
 // Compaction: copies of the BLASes, and the TLAS over them.
 #include "context/commands.h"
+#include "context/parallel.h"
 #include "context/vulkan_table.h"
 #include "scene/scene_store.h"
 
@@ -79,7 +80,8 @@ void exchange(GpuScene::State& state, std::vector<Replacement>& replacements) {
 
 }  // namespace
 
-Result<bool> recordCompaction(GpuScene::State& state, VkCommandBuffer commands, std::uint64_t frame) {
+Result<bool> GpuScene::recordCompaction(VkCommandBuffer commands, std::uint64_t frame) try {
+    State& state = *state_;
     if (!state.compaction || state.upload || state.compaction->frame) {
         return false;
     }
@@ -95,6 +97,7 @@ Result<bool> recordCompaction(GpuScene::State& state, VkCommandBuffer commands, 
     state.compaction->frame = frame;
     return true;
 }
+GLINT_CATCH
 
 void completeCompaction(GpuScene::State& state, std::uint64_t frame) {
     if (state.compaction && state.compaction->frame && *state.compaction->frame <= frame) {

@@ -4,9 +4,7 @@
 #include "context/device_objects.h"
 #include "context/resources.h"
 #include "data/acceleration.h"
-#include "data/emitters.h"
 #include "data/geometry.h"
-#include "data/light_tree.h"
 #include "data/materials.h"
 #include "interop/frame.h"
 #include "scene/drawn_scene.h"
@@ -102,20 +100,6 @@ struct GpuScene::State final : DrawnScene {
     std::array<double, 3> origin{};                     // SceneView::origin, or that of the last MotionView
     std::map<std::uint32_t, DeviceMicromap> micromaps;  // by index into SceneView::primitives
     AccelerationStructure tlas;
-    Buffer geometries;
-    Buffer instances;
-    Buffer materials;
-    Buffer lights;
-    std::uint32_t lightCount = 0;
-    // The hierarchy of lights, in packages that choose lights by one.
-    LightTree lightTree;
-    Buffer lightNodes;
-    // The emissive triangles, in packages with emissive lights. The triangles of a scene that neither moves
-    // nor is edited are on the device alone.
-    Emitters emitters;
-    std::uint32_t emitterCount = 0;
-    Buffer emitterRecords;
-    Buffer firstEmitters;
     std::vector<DeviceImage> textures;
     std::vector<UniqueSampler> samplers;
     // The number of textures and samplers that the set's layout has; 0: as many as there are.
@@ -143,6 +127,8 @@ std::vector<GeometryPositions> geometryPositions(const GpuScene::State& state);
 // Returns nothing if no instance has the record.
 std::optional<GeometryPlace> placeOf(const GpuScene::State& state, std::uint32_t geometry);
 
+// Returns the records of instances on the device.
+const Buffer& instanceRecords(const GpuScene::State& state);
 // Sets the addresses and numbers of the scene's records.
 void fillScene(const GpuScene::State& state, gpu::FrameConstants& constants);
 

@@ -418,7 +418,7 @@ void takeShape(SceneStore& store, std::uint32_t index, StoredInstance& instance,
     instance.shape = std::move(shape);
     store.shaped.insert(index);
     store.reshaped.insert(index);
-    writeDeforms(store, index, store.poseBuffer.address);
+    writeDeforms(store, index, store.poses.device.address);
 }
 
 gpu::GeometryRecord recordAt(const SceneStore& store, const StoredInstance& instance, std::uint32_t index,
