@@ -108,7 +108,7 @@ struct Engine::State {
     std::vector<Buffer> indices;
     std::vector<AccelerationStructure> blases;  // of each mesh
     std::vector<std::uint32_t> firstRecords;    // of each instance, in the order of the TLAS
-    std::vector<glint::EngineSceneView::Geometry> records;
+    std::vector<glint::EngineScene::View::Geometry> records;
     std::vector<std::uint32_t> recordIndexCounts;
     std::vector<Image> textures;
     std::vector<VkSampler> samplers;

@@ -143,7 +143,7 @@ void Engine::State::record(std::uint32_t number, const std::vector<std::array<fl
     vkCmdPushConstants(commands, layout, kStages, 0, 12, &pushed);
     primary->record(commands, {settings.width, settings.height});
 
-    glint::RayBatch batch;
+    glint::RaySteps::Batch batch;
     batch.rays = rays.address;
     batch.countAddress = rayCount.address;
     batch.answers = answers.address;

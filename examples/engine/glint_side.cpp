@@ -21,27 +21,27 @@ void Engine::State::startGlint() {
     handles.tracers = gpu.tracers;
     context = expect(glint::Context::adopt(handles));
     const glint::PackageScene known = package.scene(0);
-    std::vector<glint::EngineSceneView::Texture> images;
+    std::vector<glint::EngineScene::View::Texture> images;
     for (std::uint32_t i = 0; i < known.textures.size(); ++i) {
         const Texture& texture = world.textures[known.textures[i].image];
         images.push_back({i, texture.width, texture.height});
     }
-    std::vector<glint::EngineSceneView::Sampler> filters;
+    std::vector<glint::EngineScene::View::Sampler> filters;
     for (std::uint32_t i = 0; i < known.samplers.size(); ++i) {
         filters.push_back({i, gpu.anisotropy});
     }
     const std::vector<std::array<float, 12>> stored = restTransforms(world);
-    glint::EngineSceneView view;
+    glint::EngineScene::View view;
     view.geometries = records;
     view.instances = stored;
     view.textures = images;
     view.samplers = filters;
     const std::vector<glint::LightView> shining = lights();
     view.lights = shining;
-    view.recordsBy = glint::EngineSceneView::RecordsBy::InstanceTable;
+    view.recordsBy = glint::EngineScene::View::RecordsBy::InstanceTable;
     view.firstRecords = firstRecords;
     scene = expect(glint::EngineScene::create(*context, package, view));
-    glint::RayStepsOptions options;
+    glint::RaySteps::Options options;
     options.strategy = settings.strategy;
     options.tracer = settings.tracer;
     options.maxRays = settings.width * settings.height;

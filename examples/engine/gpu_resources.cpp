@@ -65,18 +65,18 @@ void Engine::State::placeInstances() {
             const Geometry& geometry = mesh.geometries[g];
             const std::size_t place = firstOfMesh[world.instances[i].mesh] + g;
             const VkDeviceAddress address = vertices[place].address;
-            glint::EngineSceneView::Geometry view{geometry.mesh,
-                                                  geometry.primitive,
-                                                  i,
-                                                  indices[place].address,
-                                                  address,
-                                                  address,
-                                                  address,
-                                                  address,
-                                                  address,
-                                                  address,
-                                                  0,
-                                                  0};
+            glint::EngineScene::View::Geometry view{geometry.mesh,
+                                                    geometry.primitive,
+                                                    i,
+                                                    indices[place].address,
+                                                    address,
+                                                    address,
+                                                    address,
+                                                    address,
+                                                    address,
+                                                    address,
+                                                    0,
+                                                    0};
             view.hostFlags = world.format == Format::Compact ? 1 : 0;
             const glint::package::PrimitiveEntry* const entry =
                 known.findPrimitive(geometry.mesh, geometry.primitive);
@@ -124,9 +124,9 @@ void Engine::State::makeBuffers() {
     }
     suns = gpu.upload(bytesOf(data));
     const VkDeviceSize pixels = VkDeviceSize{settings.width} * settings.height;
-    rays = gpu.buffer(pixels * sizeof(glint::EngineRay), false);
+    rays = gpu.buffer(pixels * sizeof(glint::RaySteps::Ray), false);
     rayCount = gpu.buffer(sizeof(std::uint32_t), false);
-    answers = gpu.buffer(pixels * sizeof(glint::EngineRadiance), false);
+    answers = gpu.buffer(pixels * sizeof(glint::RaySteps::Radiance), false);
     weights = gpu.buffer(pixels * 16, false);
     colors = gpu.buffer(pixels * 16, false);
     const VkExtent2D extent{settings.width, settings.height};

@@ -46,8 +46,8 @@ struct GlintSide {
 
         // The package has one material. Each object has values of its own.
         std::vector<glint::scene_materials::MaterialRecord> records(objects.size());
-        std::vector<glint::EngineSceneView::Material> values;
-        std::vector<glint::EngineSceneView::Geometry> geometries(objects.size());
+        std::vector<glint::EngineScene::View::Material> values;
+        std::vector<glint::EngineScene::View::Geometry> geometries(objects.size());
         for (std::uint32_t i = 0; i < objects.size(); ++i) {
             const Object& object = objects[i];
             std::memcpy(&records[i], package.scene(0).materials.bytes.data(), sizeof records[i]);
@@ -60,7 +60,7 @@ struct GlintSide {
             geometries[i].positions = object.positions;
             geometries[i].normals = object.normals;
         }
-        glint::EngineSceneView view;
+        glint::EngineScene::View view;
         view.geometries = geometries;
         view.instances = places;
         view.lights = {&sun, 1};
@@ -84,7 +84,8 @@ struct GlintSide {
         vkDestroyPipelineLayout(engine.getVkDevice(), options.layout, nullptr);
     }
     // Leaves a pipeline bound that the engine does not know of. So it must bind another than its last one.
-    void record(lvk::ICommandBuffer& commands, std::span<const Place> places, const glint::RayBatch& batch) {
+    void record(lvk::ICommandBuffer& commands, std::span<const Place> places,
+                const glint::RaySteps::Batch& batch) {
         expect(scene->update(lvk::getVkCommandBuffer(commands), places, {&sun, 1}, ++frame));
         expect(steps->record(lvk::getVkCommandBuffer(commands), batch));
     }
@@ -99,7 +100,7 @@ struct GlintSide {
     glint::LightView sun;
     glint::Package package = expect(glint::Package::load(std::filesystem::path(GLINT_PACKAGE_MATERIALS)));
     std::unique_ptr<glint::Context> context;
-    glint::RayStepsOptions options;
+    glint::RaySteps::Options options;
     std::unique_ptr<glint::EngineScene> scene;
     std::unique_ptr<glint::RaySteps> steps;
     std::deque<lvk::SubmitHandle> inFlight;  // of the last frames

@@ -89,9 +89,9 @@ void draw(lvk::VulkanContext& engine, const char* path, std::uint32_t width, std
     const std::uint32_t pixels = width * height, rayCount = 2 * pixels;
     const Buffer frameData = makeBuffer(engine, std::vector<Frame>(1));
     const Buffer objectData = makeBuffer(engine, objects), instanceData = makeBuffer(engine, instances);
-    const Buffer rays = makeBuffer(engine, std::vector<glint::EngineRay>(rayCount));
+    const Buffer rays = makeBuffer(engine, std::vector<glint::RaySteps::Ray>(rayCount));
     const Buffer weights = makeBuffer(engine, std::vector<glm::vec4>(rayCount));
-    const Buffer answers = makeBuffer(engine, std::vector<glint::EngineRadiance>(rayCount));
+    const Buffer answers = makeBuffer(engine, std::vector<glint::RaySteps::Radiance>(rayCount));
     const Buffer sums = makeBuffer(engine, std::vector<glm::vec4>(pixels));
     const Buffer picture = makeBuffer(engine, std::vector<std::uint32_t>(pixels));
     lvk::AccelStructDesc top{lvk::AccelStructType_TLAS, lvk::AccelStructGeomType_Instances};
@@ -125,7 +125,7 @@ void draw(lvk::VulkanContext& engine, const char* path, std::uint32_t width, std
     const glm::mat4 camera = glm::perspectiveFov(0.66F, 1.0F * width, 1.0F * height, 0.1F, 50.0F) *
                              glm::lookAt(eye, vec3(-0.2F, 0.95F, -0.6F), vec3(0, 1, 0));
     const glint::LightView sun{.intensity = {3, 3, 3}, .direction = {-toSun.x, -toSun.y, -toSun.z}};
-    glint::RayBatch batch;
+    glint::RaySteps::Batch batch;
     batch.rays = engine.gpuAddress(rays);
     batch.rayCount = rayCount;
     batch.answers = engine.gpuAddress(answers);

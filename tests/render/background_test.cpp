@@ -4,6 +4,7 @@
 #include "render/harness.h"
 #include "render/light_pictures.h"
 #include "renderer/renderer.h"
+#include "scene/scene_store.h"
 #include "support/must.h"
 
 #include <gtest/gtest.h>
@@ -260,7 +261,7 @@ void forgetCases(GpuScene::State& scene) {
     std::memcpy(bytes.data(), &kUnknown, sizeof kUnknown);
     for (std::size_t i = 0; i < scene.shaderIds.size(); ++i) {
         const std::size_t place = i * sizeof(gpu::GeometryRecord) + offsetof(gpu::GeometryRecord, shaderId);
-        ASSERT_TRUE(uploader.copyToBuffer(bytes, scene.geometries, place));
+        ASSERT_TRUE(uploader.copyToBuffer(bytes, scene.store->geometries.device, place));
         scene.shaderIds[i] = kUnknown;
     }
     ASSERT_TRUE(uploader.finish());

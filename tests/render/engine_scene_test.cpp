@@ -64,14 +64,14 @@ gltf::Scene texturedRoom() {
 // A scene that Glint has uploaded, and the same as an engine would have it.
 struct Content {
     std::unique_ptr<GpuScene> gpu;
-    std::vector<EngineSceneView::Geometry> geometries;
+    std::vector<EngineScene::View::Geometry> geometries;
     std::vector<std::array<float, 12>> instances;
     std::vector<LightView> lights;
-    std::vector<EngineSceneView::Texture> textures;
-    std::vector<EngineSceneView::Sampler> samplers;
+    std::vector<EngineScene::View::Texture> textures;
+    std::vector<EngineScene::View::Sampler> samplers;
 
-    EngineSceneView view() const {
-        EngineSceneView view;
+    EngineScene::View view() const {
+        EngineScene::View view;
         view.geometries = geometries;
         view.instances = instances;
         view.lights = lights;
@@ -121,18 +121,18 @@ public:
         const VkDescriptorSetLayout set = like.descriptorSetLayout();
         layout_ =
             must(createPipelineLayout(context_, std::span(&set, 1), {kStages, 0, RaySteps::kPushBytes}));
-        rays_ = make(kRays * sizeof(EngineRay), MemoryUse::Upload);
+        rays_ = make(kRays * sizeof(RaySteps::Ray), MemoryUse::Upload);
         for (std::uint32_t i = 0; i < kRays; ++i) {
             const float x = (static_cast<float>(i % kColumns) + 0.5F) / kColumns - 0.5F;
             const float y = (static_cast<float>(i / kColumns) + 0.5F) / kRays * kColumns - 0.5F;
             const float length = std::sqrt(x * x + y * y + 1.0F);
-            const EngineRay ray{{0, 0, 0}, i, {x / length, y / length, -1.0F / length}, 0.0F, 0.05F};
+            const RaySteps::Ray ray{{0, 0, 0}, i, {x / length, y / length, -1.0F / length}, 0.0F, 0.05F};
             std::memcpy(rays_.mapped + i * sizeof ray, &ray, sizeof ray);
         }
     }
     std::unique_ptr<RaySteps> makeSteps(const Package& package, EngineScene& scene,
                                         package::Strategy strategy) {
-        RayStepsOptions options;
+        RaySteps::Options options;
         options.strategy = strategy;
         options.tracer = strategy == package::kStrategyUber ? tracerOfDevice() : package::kTracerRayPipeline;
         options.maxRays = kRays;
@@ -156,8 +156,8 @@ public:
              {VK_PIPELINE_BIND_POINT_COMPUTE, VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR}) {
             context_.vk.CmdBindDescriptorSets(commands_, point, layout_.get(), 0, 1, &set, 0, nullptr);
         }
-        answers_.push_back(make(kRays * sizeof(EngineRadiance), MemoryUse::Readback));
-        RayBatch batch;
+        answers_.push_back(make(kRays * sizeof(RaySteps::Radiance), MemoryUse::Readback));
+        RaySteps::Batch batch;
         batch.rays = rays_.address;
         batch.rayCount = kRays;
         batch.answers = answers_.back().address;
@@ -179,7 +179,7 @@ public:
         frames_.drain();
     }
     std::vector<float> answers(std::size_t number) const {
-        std::vector<float> values(kRays * sizeof(EngineRadiance) / sizeof(float));
+        std::vector<float> values(kRays * sizeof(RaySteps::Radiance) / sizeof(float));
         std::memcpy(values.data(), answers_[number].mapped, values.size() * sizeof(float));
         return values;
     }
@@ -318,18 +318,18 @@ TEST(EngineSceneContent, MaterialsHaveTheHostsValues) {
     const Content otherWanted = contentOf(*otherRepainted, repaint(changed), keepAll);
     ASSERT_TRUE(content.gpu != nullptr && wanted.gpu != nullptr && otherWanted.gpu != nullptr);
     const std::span<const std::uint8_t> record = repainted->scene(0).materials.part(kGlossy, 1).bytes;
-    using Material = EngineSceneView::Material;
+    using Material = EngineScene::View::Material;
     const Material values[] = {{0, repainted->scene(0).materials.part(0, 1).bytes}, {kGlossy, record}};
-    std::vector<EngineSceneView::Geometry> geometries = content.geometries;
+    std::vector<EngineScene::View::Geometry> geometries = content.geometries;
     std::size_t named = 0;
-    for (EngineSceneView::Geometry& geometry : geometries) {
+    for (EngineScene::View::Geometry& geometry : geometries) {
         if (original->scene(0).findPrimitive(geometry.mesh, geometry.primitive)->materialIndex == kGlossy) {
             geometry.material = 1;
             ++named;
         }
     }
     ASSERT_GT(named, 0U);
-    EngineSceneView view = content.view();
+    EngineScene::View view = content.view();
     view.geometries = geometries;
     view.materials = values;
 
@@ -380,7 +380,7 @@ struct TexturedMaterials {
             }
         }
     }
-    void set(std::uint32_t material, std::uint32_t slot, std::span<const EngineSceneView::Texture> textures,
+    void set(std::uint32_t material, std::uint32_t slot, std::span<const EngineScene::View::Texture> textures,
              std::uint32_t texture) {
         gpu::TextureRecord record = textureAt(known.materials, material, slot);
         record.textureIndex = textures[texture].index;
@@ -389,7 +389,7 @@ struct TexturedMaterials {
         record.anisotropy = sharedContext().state().limits.samplerAnisotropy;
         std::memcpy(&records[material][placeOfTexture(known.materials, 0, slot)], &record, sizeof record);
     }
-    EngineSceneView::Material of(std::uint32_t material) const {
+    EngineScene::View::Material of(std::uint32_t material) const {
         return {material, records[material], true};
     }
 
@@ -421,15 +421,15 @@ TEST(EngineSceneContent, MaterialsHaveTheHostsTextures) {
     const std::vector<float> otherAfter = engine.expected(*other, *otherSwapped.gpu, kUber);
     expectOthers(before, after);
 
-    EngineSceneView view = content.view();
-    std::vector<EngineSceneView::Geometry> geometries = content.geometries;
-    for (EngineSceneView::Geometry& geometry : geometries) {
+    EngineScene::View view = content.view();
+    std::vector<EngineScene::View::Geometry> geometries = content.geometries;
+    for (EngineScene::View::Geometry& geometry : geometries) {
         const std::uint32_t material =
             package->scene(0).findPrimitive(geometry.mesh, geometry.primitive)->materialIndex;
         geometry.material = material + 1 >= last ? 7 + last - material : geometry.material;
     }
     view.geometries = geometries;
-    std::vector<EngineSceneView::Material> materials(9);
+    std::vector<EngineScene::View::Material> materials(9);
     materials[7] = own.of(last);
     materials[8] = own.of(last - 1);
     view.materials = materials;
@@ -442,7 +442,7 @@ TEST(EngineSceneContent, MaterialsHaveTheHostsTextures) {
     own.set(last, slot, content.textures, textureAt(own.known.materials, last - 1, slot).textureIndex);
     own.set(last - 1, slot, content.textures, textureAt(own.known.materials, last, slot).textureIndex);
     must(scene->updateMaterial(commands, 7, own.of(last), engine.frame()));
-    EXPECT_TRUE(scene->state().arrays[EngineScene::State::Materials].store.dirty().empty());
+    EXPECT_TRUE(scene->state().materials.dirty().empty());
     must(scene->updateMaterial(commands, 8, own.of(last - 1), engine.frame()));
     ASSERT_TRUE(engine.ask(*steps, *content.gpu));
     ASSERT_TRUE(steps->replacePackage(other));
@@ -452,9 +452,9 @@ TEST(EngineSceneContent, MaterialsHaveTheHostsTextures) {
     // Materials that no geometry names come and go.
     must(scene->updateMaterial(commands, 20, own.of(0), engine.frame()));
     must(scene->updateMaterial(commands, 20, own.of(1), engine.frame()));
-    EXPECT_EQ(scene->state().arrays[EngineScene::State::Materials].store.count(), last + 1 + 21);
+    EXPECT_EQ(scene->state().materials.count(), last + 1 + 21);
     must(scene->updateMaterial(commands, 20, {}, engine.frame()));
-    EXPECT_EQ(scene->state().arrays[EngineScene::State::Materials].store.count(), last + 1 + 9);
+    EXPECT_EQ(scene->state().materials.count(), last + 1 + 9);
     ASSERT_TRUE(engine.ask(*steps, *content.gpu));
     engine.submit();
     engine.drain();
@@ -464,13 +464,13 @@ TEST(EngineSceneContent, MaterialsHaveTheHostsTextures) {
     EXPECT_EQ(engine.answers(3), after);
     EXPECT_EQ(engine.answers(4), after);
 
-    const auto refusal = [&](std::uint32_t number, const EngineSceneView::Material& material) {
+    const auto refusal = [&](std::uint32_t number, const EngineScene::View::Material& material) {
         return mustFail(scene->updateMaterial(VK_NULL_HANDLE, number, material, engine.frame())).id;
     };
     EXPECT_EQ(refusal(7, {}), "engine-scene") << "a geometry names it";
     EXPECT_EQ(refusal(7, own.of(0)), "engine-scene") << "its geometry has another case";
     EXPECT_EQ(refusal(3, {99, own.records[0], true}), "scene-material");
-    const EngineSceneView::Texture empty[] = {{0, 0, 0}};
+    const EngineScene::View::Texture empty[] = {{0, 0, 0}};
     own.set(last, slot, empty, 0);
     EXPECT_EQ(refusal(7, own.of(last)), "scene-material") << "a texture without texels";
     gltf::Scene trusted = room;
@@ -490,7 +490,7 @@ TEST(EngineSceneContent, TrianglesHaveMaterialsOfTheirOwn) {
     const std::shared_ptr<const Package> repainted = packageOf(painted, roomSteps());
     const Content content = contentOf(*package, room, keepAll);
     const Content wanted = contentOf(*repainted, painted, keepAll);
-    const EngineSceneView::Material materials[] = {
+    const EngineScene::View::Material materials[] = {
         {kGlossy, package->scene(0).materials.part(kGlossy, 1).bytes},
         {kGlossy, repainted->scene(0).materials.part(kGlossy, 1).bytes}};
     for (const package::Strategy strategy : strategiesOfDevice()) {
@@ -507,14 +507,14 @@ TEST(EngineSceneContent, TrianglesHaveMaterialsOfTheirOwn) {
         std::unique_ptr<EngineScene> scene;
         std::unique_ptr<RaySteps> steps;
         for (std::uint32_t batch = 0; batch < std::size(kBatches); ++batch) {
-            std::vector<EngineSceneView::Geometry> geometries = content.geometries;
-            for (EngineSceneView::Geometry& geometry : geometries) {
+            std::vector<EngineScene::View::Geometry> geometries = content.geometries;
+            for (EngineScene::View::Geometry& geometry : geometries) {
                 const auto* const entry = package->scene(0).findPrimitive(geometry.mesh, geometry.primitive);
                 if (entry->materialIndex == kGlossy) {
                     geometry.primitiveMaterials = lists.address + batch * sizeof kBatches[0];
                 }
             }
-            EngineSceneView view = content.view();
+            EngineScene::View view = content.view();
             view.geometries = geometries;
             view.materials = materials;
             const VkCommandBuffer commands = engine.begin();
@@ -711,10 +711,10 @@ TEST_P(TexturesOfAllDimensions, MaterialsReadThemAndBuffers) {
     const RecordFields fields = recordFields(*package, own.known);
     const RecordField* const field = fields.find("probeTable", fields.modelOf(0));
     ASSERT_TRUE(field != nullptr && field->bytes == sizeof table.address);
-    EngineSceneView::Geometry geometry = content.geometries.at(0);
+    EngineScene::View::Geometry geometry = content.geometries.at(0);
     geometry.material = 0;
-    EngineSceneView::Material material = own.of(0);
-    EngineSceneView view = content.view();
+    EngineScene::View::Material material = own.of(0);
+    EngineScene::View view = content.view();
     view.geometries = {&geometry, 1};
     view.materials = {&material, 1};
     VkCommandBuffer commands = engine.begin();
@@ -821,11 +821,11 @@ void addSizedLights(session::SceneViewData& data) {
 // Gives the corners of the lamps' triangles, as makeQuad() has them.
 void giveCorners(Content& content, const Package& package, const gltf::Scene& scene,
                  std::vector<std::array<float, 3>>& corners) {
-    const auto isLamp = [&](const EngineSceneView::Geometry& geometry) {
+    const auto isLamp = [&](const EngineScene::View::Geometry& geometry) {
         const auto* const entry = package.scene(0).findPrimitive(geometry.mesh, geometry.primitive);
         return (entry->geometryFlags & gpu::kGeometryEmitter) != 0;
     };
-    for (EngineSceneView::Geometry& geometry : content.geometries) {
+    for (EngineScene::View::Geometry& geometry : content.geometries) {
         if (!isLamp(geometry)) {
             continue;
         }
@@ -876,15 +876,15 @@ TEST(EngineSceneLights, AreThoseOfGlintsOwnScene) {
         expectOthers(second, third);
 
         std::vector<std::array<float, 3>> corners;
-        EngineSceneView view = content.view();
+        EngineScene::View view = content.view();
         VkCommandBuffer commands = engine.begin();
         auto scene = must(EngineScene::record(sharedContext(), *package, view, commands, engine.frame()));
         const auto steps = engine.makeSteps(*package, *scene, kUber);
         ASSERT_TRUE(engine.ask(*steps, *content.gpu));  // 0: without corners
         giveCorners(content, *package, room, corners);
-        const EngineSceneView::Material own{static_cast<std::uint32_t>(lamp),
-                                            package->scene(0).materials.part(lamp, 1).bytes};
-        for (EngineSceneView::Geometry& geometry : content.geometries) {
+        const EngineScene::View::Material own{static_cast<std::uint32_t>(lamp),
+                                              package->scene(0).materials.part(lamp, 1).bytes};
+        for (EngineScene::View::Geometry& geometry : content.geometries) {
             geometry.material = geometry.lightCorners.empty() ? geometry.material : 0;
         }
         view = content.view();
@@ -923,7 +923,7 @@ TEST(EngineSceneLights, AreThoseOfGlintsOwnScene) {
             EXPECT_NEAR(meanOfAnswers(engine.answers(3)) / meanOfAnswers(third), 1.0, 0.1);
         }
         corners.pop_back();
-        for (EngineSceneView::Geometry& geometry : content.geometries) {
+        for (EngineScene::View::Geometry& geometry : content.geometries) {
             geometry.lightCorners = geometry.lightCorners.empty() ? geometry.lightCorners : corners;
         }
         view.geometries = content.geometries;
@@ -942,7 +942,7 @@ TEST(EngineSceneLights, DisksNeedAPackageThatKnowsThem) {
     const Content content = contentOf(*package, room, keepAll);
     std::vector<LightView> disks = content.lights;
     disks.emplace_back().type = LightView::Type::Disk;
-    EngineSceneView view = content.view();
+    EngineScene::View view = content.view();
     Engine engine(*content.gpu);
     const std::vector<float> wanted = engine.expected(*package, *content.gpu, package::kStrategyUber);
     VkCommandBuffer commands = engine.begin();

@@ -60,11 +60,11 @@ public:
     }
 
     std::uint32_t emitters() {
-        return edited.gpuScene().state().emitterCount;
+        return edited.gpuScene().state().store->counts.emitters;
     }
     // The triangles that the hierarchy has.
     std::size_t shining() {
-        const std::vector<gpu::LightNode>& nodes = edited.gpuScene().state().lightTree.nodes;
+        const std::vector<gpu::LightNode>& nodes = edited.gpuScene().state().store->lightTree.nodes;
         return static_cast<std::size_t>(std::ranges::count_if(nodes, [](const gpu::LightNode& node) {
             return (node.next & gpu::kLightLeaf) != 0 && (node.next & gpu::kLightEmitter) != 0;
         }));
@@ -261,8 +261,8 @@ TEST(LiveEditLampKeys, AnEmptySceneGetsALamp) {
     view.packageScene = kNoPackageScene;
     const auto empty = uploadScene(loaded.package(), view);
     ASSERT_NE(empty, nullptr);
-    EXPECT_EQ(empty->state().emitterCount, 0U);
-    EXPECT_NE(empty->state().emitterRecords.address, 0U);
+    EXPECT_EQ(empty->state().store->counts.emitters, 0U);
+    EXPECT_NE(empty->state().store->emitterRecords.device.address, 0U);
 }
 
 }  // namespace

@@ -411,7 +411,7 @@ TEST(Motion, NothingOfItIsThereInScenesThatStay) {
     const Moving still(rigidScene(), false);
     EXPECT_FALSE(hasDeformModule(still.package()));
     EXPECT_FALSE(still.gpuScene->state().store->deformPass);
-    EXPECT_EQ(still.gpuScene->state().store->placedBuffer.address, 0U);
+    EXPECT_EQ(still.gpuScene->state().store->topLevel.records().device.address, 0U);
     // Nodes that move need no deforming pass.
     const Moving rigid(rigidScene());
     EXPECT_FALSE(hasDeformModule(rigid.package()));
@@ -421,7 +421,7 @@ TEST(Motion, NothingOfItIsThereInScenesThatStay) {
     // A picture of a single pose is deformed once, and built as if it had no other pose.
     const Moving posed(skinnedScene(0.3), false);
     EXPECT_TRUE(hasDeformModule(posed.package()));
-    EXPECT_EQ(posed.gpuScene->state().store->poseBuffer.address, 0U);
+    EXPECT_EQ(posed.gpuScene->state().store->poses.device.address, 0U);
     EXPECT_EQ(posed.gpuScene->statistics().blasCount, 2U);
 }
 

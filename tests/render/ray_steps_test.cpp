@@ -28,9 +28,9 @@ using namespace glint::testing;
 
 // Rays of a Renderer with their hits, and the light that it found for them, by slot.
 struct KnownRays {
-    std::vector<EngineRay> rays;
-    std::vector<EngineHit> hits;
-    std::vector<EngineRadiance> answers;
+    std::vector<RaySteps::Ray> rays;
+    std::vector<RaySteps::Hit> hits;
+    std::vector<RaySteps::Radiance> answers;
 };
 
 template <typename T>
@@ -71,7 +71,7 @@ KnownRays knownRays(const gltf::Scene& scene, const RenderSetup& setup, std::uin
     const auto hits = readFrameBuffer(state, *runner, state.frame.hits);
     const auto radiance = readFrameBuffer(deeper->state(), *runner, deeper->state().frame.radiance);
     EXPECT_TRUE(rays && hits && radiance);
-    known.hits = arrayOf<EngineHit>(*hits, rays->size());
+    known.hits = arrayOf<RaySteps::Hit>(*hits, rays->size());
     for (const gpu::RayRecord& ray : *rays) {
         known.rays.push_back({{ray.origin.x, ray.origin.y, ray.origin.z},
                               ray.target,
@@ -80,9 +80,9 @@ KnownRays knownRays(const gltf::Scene& scene, const RenderSetup& setup, std::uin
                               ray.coneSpread});
     }
     // Samples without a ray have no radiance.
-    const auto answers = arrayOf<EngineRadiance>(*radiance, std::size_t{setup.width} * setup.height);
+    const auto answers = arrayOf<RaySteps::Radiance>(*radiance, std::size_t{setup.width} * setup.height);
     known.answers.resize(answers.size());
-    for (const EngineRay& ray : known.rays) {
+    for (const RaySteps::Ray& ray : known.rays) {
         known.answers[ray.slot] = answers[ray.slot];
     }
     return known;
@@ -100,24 +100,24 @@ struct Asked {
 // its answers. For a package without textures that takes its structure by address, the layout has no set.
 class Host {
 public:
-    Host(const LoadedScene& loaded, const std::vector<EngineRay>& rays, std::size_t slots,
+    Host(const LoadedScene& loaded, const std::vector<RaySteps::Ray>& rays, std::size_t slots,
          std::size_t answerBytes)
         : Host(loaded, slots, answerBytes) {
         list_ = upload(rays);
         count(rays.size());
     }
     // A host that asks for visibility, with a float or more for each slot.
-    Host(const LoadedScene& loaded, const std::vector<EngineVisibilityRay>& rays, std::size_t answerBytes)
+    Host(const LoadedScene& loaded, const std::vector<RaySteps::VisibilityRay>& rays, std::size_t answerBytes)
         : Host(loaded, rays.size(), answerBytes) {
         list_ = upload(rays);
         count(rays.size());
     }
 
-    void give(const std::vector<EngineHit>& hits) {
+    void give(const std::vector<RaySteps::Hit>& hits) {
         hits_ = upload(hits);
     }
 
-    std::unique_ptr<RaySteps> makeSteps(RayStepsOptions options) {
+    std::unique_ptr<RaySteps> makeSteps(RaySteps::Options options) {
         scene_ = must(EngineScene::share(sharedContext(), loaded_.gpuScene()));
         options.layout = layout_.get();
         options.pushStages = kStages;
@@ -128,7 +128,7 @@ public:
     // Records the steps and waits.
     template <typename Answer>
     std::vector<Answer> ask(RaySteps& steps, const FrameOptions& frame, const Asked& asked) {
-        RayBatch batch = batchOf(frame, asked);
+        RaySteps::Batch batch = batchOf(frame, asked);
         Result<CommandRunner> runner = CommandRunner::create(context_);
         const Result<VkCommandBuffer> commands = runner->begin();
         const VkDescriptorSet set = loaded_.gpuScene().descriptorSet();
@@ -159,12 +159,12 @@ public:
 
     // Does so with steps of its own.
     template <typename Answer>
-    std::vector<Answer> answers(const RayStepsOptions& options, const FrameOptions& frame) {
+    std::vector<Answer> answers(const RaySteps::Options& options, const FrameOptions& frame) {
         return ask<Answer>(*makeSteps(options), frame, {});
     }
 
-    RayBatch batchOf(const FrameOptions& frame, const Asked& asked) const {
-        RayBatch batch;
+    RaySteps::Batch batchOf(const FrameOptions& frame, const Asked& asked) const {
+        RaySteps::Batch batch;
         batch.rays = list_.address;
         batch.hits = asked.givesHits ? hits_.address : 0;
         batch.visibility = asked.visibility;
@@ -278,11 +278,12 @@ std::vector<Way> ways() {
 }
 
 // Returns how many answers differ from those of a renderer.
-std::size_t countFar(const KnownRays& known, const std::vector<EngineRadiance>& answers, float tolerance) {
+std::size_t countFar(const KnownRays& known, const std::vector<RaySteps::Radiance>& answers,
+                     float tolerance) {
     std::size_t far = 0;
-    for (const EngineRay& ray : known.rays) {
-        const EngineRadiance& mine = answers.at(ray.slot);
-        const EngineRadiance& renderer = known.answers[ray.slot];
+    for (const RaySteps::Ray& ray : known.rays) {
+        const RaySteps::Radiance& mine = answers.at(ray.slot);
+        const RaySteps::Radiance& renderer = known.answers[ray.slot];
         bool near = mine.path == renderer.path;
         for (std::size_t i = 0; i < 3; ++i) {
             near = near && std::abs(mine.radiance[i] - renderer.radiance[i]) <=
@@ -303,7 +304,7 @@ TEST(RaySteps, AnswerAHostsRaysAndHitsAsARendererDoes) {
         compiler::CompileSettings settings = stepSettings();
         settings.hitRecord = record;
         const LoadedScene loaded(scene, settings);
-        Host host(loaded, known.rays, known.answers.size(), sizeof(EngineRadiance));
+        Host host(loaded, known.rays, known.answers.size(), sizeof(RaySteps::Radiance));
         host.give(known.hits);
         for (const Way& way : ways()) {
             const bool packed = record == package::HitRecordFormat::Packed;
@@ -311,7 +312,7 @@ TEST(RaySteps, AnswerAHostsRaysAndHitsAsARendererDoes) {
                 continue;
             }
             SCOPED_TRACE(std::string(nameOf(way.strategy)) + ", " + std::string(nameOf(way.tracer)));
-            RayStepsOptions options;
+            RaySteps::Options options;
             options.strategy = way.strategy;
             options.tracer = way.tracer;
             options.checkOrder = true;
@@ -323,7 +324,7 @@ TEST(RaySteps, AnswerAHostsRaysAndHitsAsARendererDoes) {
                               "ray-steps");
                     continue;
                 }
-                const auto answers = host.ask<EngineRadiance>(*steps, setup.frame, asked);
+                const auto answers = host.ask<RaySteps::Radiance>(*steps, setup.frame, asked);
                 const RaySteps::Counters counters = must(steps->counters());
                 EXPECT_EQ(counters.rays, known.rays.size());
                 EXPECT_EQ(counters.furtherRays, 0U);
@@ -346,14 +347,14 @@ TEST(RaySteps, TraceNoRayWhoseHitIsGiven) {
     compiler::CompileSettings settings = stepSettings();
     settings.strategies = package::kStrategyUber | package::kStrategyVisibility;
     const LoadedScene loaded(scene, settings);
-    Host host(loaded, known.rays, known.answers.size(), sizeof(EngineRadiance));
-    host.give(std::vector<EngineHit>(known.rays.size()));
+    Host host(loaded, known.rays, known.answers.size(), sizeof(RaySteps::Radiance));
+    host.give(std::vector<RaySteps::Hit>(known.rays.size()));
     for (const package::Strategy strategy : {package::kStrategyUber, package::kStrategyVisibility}) {
-        RayStepsOptions options;
+        RaySteps::Options options;
         options.strategy = strategy;
         const auto steps = host.makeSteps(options);
-        const auto answers = host.ask<EngineRadiance>(*steps, setup.frame, {.givesHits = true});
-        for (const EngineRay& ray : known.rays) {
+        const auto answers = host.ask<RaySteps::Radiance>(*steps, setup.frame, {.givesHits = true});
+        for (const RaySteps::Ray& ray : known.rays) {
             EXPECT_EQ(answers[ray.slot].path, 3.0F);
         }
     }
@@ -371,7 +372,7 @@ TEST(RaySteps, FollowPathsAsARendererDoes) {
     settings.maxBounces = 3;
     settings.shadows = package::ShadowPlacement::Deferred;
     const LoadedScene loaded(scene, settings);
-    Host host(loaded, known.rays, known.answers.size(), sizeof(EngineRadiance));
+    Host host(loaded, known.rays, known.answers.size(), sizeof(RaySteps::Radiance));
     host.give(known.hits);
     for (const Way& way : ways()) {
         const bool isSorted = way.strategy == package::kStrategySortedUber;
@@ -379,11 +380,11 @@ TEST(RaySteps, FollowPathsAsARendererDoes) {
             continue;  // the shading passes are those of ray queries
         }
         SCOPED_TRACE(std::string(nameOf(way.strategy)) + ", " + std::string(nameOf(way.tracer)));
-        RayStepsOptions options;
+        RaySteps::Options options;
         options.strategy = way.strategy;
         options.tracer = way.tracer;
         const auto steps = host.makeSteps(options);
-        const auto answers = host.ask<EngineRadiance>(*steps, setup.frame, {.givesHits = isSorted});
+        const auto answers = host.ask<RaySteps::Radiance>(*steps, setup.frame, {.givesHits = isSorted});
         EXPECT_EQ(countFar(known, answers, 1e-4F), 0U);
         const RaySteps::Counters counters = must(steps->counters());
         EXPECT_EQ(counters.rays, known.rays.size());
@@ -397,10 +398,10 @@ TEST(RaySteps, FollowPathsAsARendererDoes) {
         }
         if (isSorted) {
             host.changeLayout(*steps);
-            EXPECT_EQ(countFar(known, host.ask<EngineRadiance>(*steps, setup.frame, {}), 1e-4F), 0U);
+            EXPECT_EQ(countFar(known, host.ask<RaySteps::Radiance>(*steps, setup.frame, {}), 1e-4F), 0U);
         }
         if (way.strategy == package::kStrategyUber) {
-            const auto direct = host.ask<EngineRadiance>(*steps, setup.frame, {.bounces = 1});
+            const auto direct = host.ask<RaySteps::Radiance>(*steps, setup.frame, {.bounces = 1});
             EXPECT_EQ(must(steps->counters()).furtherRays, 0U);
             EXPECT_GT(countFar(first, answers, 1e-4F), 0U);
             EXPECT_EQ(countFar(first, direct, 1e-4F), 0U);
@@ -432,18 +433,18 @@ TEST(RaySteps, AnswerWithSurfaces) {
     settings.plan.merge = compiler::MergePolicy::None;
     const LoadedScene loaded(scene, settings);
     const float tilt = 1.0F / std::sqrt(17.0F);
-    const std::vector<EngineRay> rays{{{0.5F, 0.25F, 0.0F}, 2, {0.0F, 0.0F, -1.0F}, 0.0F, 0.0F},
-                                      {{3.0F, 0.0F, 0.0F}, 0, {tilt, 0.0F, -4.0F * tilt}, 0.0F, 0.0F},
-                                      {{0.0F, 0.0F, 0.0F}, 1, {0.0F, 1.0F, 0.0F}, 0.0F, 0.0F}};
-    Host host(loaded, rays, 3, sizeof(EngineSurface));
+    const std::vector<RaySteps::Ray> rays{{{0.5F, 0.25F, 0.0F}, 2, {0.0F, 0.0F, -1.0F}, 0.0F, 0.0F},
+                                          {{3.0F, 0.0F, 0.0F}, 0, {tilt, 0.0F, -4.0F * tilt}, 0.0F, 0.0F},
+                                          {{0.0F, 0.0F, 0.0F}, 1, {0.0F, 1.0F, 0.0F}, 0.0F, 0.0F}};
+    Host host(loaded, rays, 3, sizeof(RaySteps::Surface));
     for (const Way& way : ways()) {
         SCOPED_TRACE(std::string(nameOf(way.strategy)));
-        RayStepsOptions options;
+        RaySteps::Options options;
         options.strategy = way.strategy;
         options.tracer = way.tracer;
-        const auto answers = host.answers<EngineSurface>(options, {});
+        const auto answers = host.answers<RaySteps::Surface>(options, {});
         ASSERT_EQ(answers.size(), 3U);
-        const EngineSurface& wall = answers[2];
+        const RaySteps::Surface& wall = answers[2];
         const auto expectVector = [](const std::array<float, 3>& v, const std::array<float, 3>& truth) {
             for (std::size_t i = 0; i < 3; ++i) {
                 EXPECT_NEAR(v[i], truth[i], 1e-5F);
@@ -466,7 +467,7 @@ TEST(RaySteps, AnswerWithSurfaces) {
         expectVector(answers[0].albedo, {0, 0, 0});
         EXPECT_NE(answers[0].shaderId, wall.shaderId);
         EXPECT_EQ(answers[0].material, 1U);
-        EXPECT_EQ(answers[1].shaderId, EngineSurface::kMiss);
+        EXPECT_EQ(answers[1].shaderId, RaySteps::Surface::kMiss);
         expectVector(answers[1].position, {0, 1, 0});
     }
 }
@@ -488,11 +489,11 @@ TEST(RaySteps, PointsOfDeformingMeshesHaveMotionOfTheirOwn) {
     settings.answer = package::HitAnswer::Surface;
     settings.host = folder.path().string();
     const LoadedScene loaded(wallAndLamp(), settings);
-    const std::vector<EngineRay> rays{{{0.5F, 0.25F, 0.0F}, 0, {0.0F, 0.0F, -1.0F}}};
-    Host host(loaded, rays, 1, sizeof(EngineSurface));
-    RayStepsOptions options;
+    const std::vector<RaySteps::Ray> rays{{{0.5F, 0.25F, 0.0F}, 0, {0.0F, 0.0F, -1.0F}}};
+    Host host(loaded, rays, 1, sizeof(RaySteps::Surface));
+    RaySteps::Options options;
     options.strategy = package::kStrategyUber;
-    const auto answers = host.answers<EngineSurface>(options, {});
+    const auto answers = host.answers<RaySteps::Surface>(options, {});
     ASSERT_EQ(answers.size(), 1U);
     EXPECT_NEAR(answers[0].motion[0], 0.25F, 1e-6F);
     EXPECT_NEAR(answers[0].motion[1], 0.5F, 1e-6F);
@@ -503,7 +504,7 @@ TEST(RaySteps, PointsOfDeformingMeshesHaveMotionOfTheirOwn) {
 // gives.
 TEST(RaySteps, TakeAStructureByItsAddress) {
     const gltf::Scene scene = wallAndLamp();
-    std::vector<EngineRay> rays;
+    std::vector<RaySteps::Ray> rays;
     for (std::uint32_t slot = 0; slot < 64; ++slot) {
         const std::array<float, 3> to{-2.0F + 1.1F * static_cast<float>(slot % 8),
                                       -1.5F + 0.4F * static_cast<float>(slot / 8), -4.0F};
@@ -514,8 +515,8 @@ TEST(RaySteps, TakeAStructureByItsAddress) {
     compiler::CompileSettings settings = stepSettings();
     settings.bindings.tlas = package::Bindings::kByAddress;
     const LoadedScene addressed(scene, settings);
-    Host withSet(described, rays, rays.size(), sizeof(EngineRadiance));
-    Host without(addressed, rays, rays.size(), sizeof(EngineRadiance));
+    Host withSet(described, rays, rays.size(), sizeof(RaySteps::Radiance));
+    Host without(addressed, rays, rays.size(), sizeof(RaySteps::Radiance));
     for (const Way& way : ways()) {
         // One way for each form of the shaders that trace: all ways trace by the same functions.
         const bool byQuery = way.tracer == package::kTracerRayQuery;
@@ -524,11 +525,11 @@ TEST(RaySteps, TakeAStructureByItsAddress) {
             continue;
         }
         SCOPED_TRACE(std::string(nameOf(way.strategy)) + ", " + std::string(nameOf(way.tracer)));
-        RayStepsOptions options;
+        RaySteps::Options options;
         options.strategy = way.strategy;
         options.tracer = way.tracer;
-        const auto truth = withSet.answers<EngineRadiance>(options, {});
-        const auto found = without.answers<EngineRadiance>(options, {});
+        const auto truth = withSet.answers<RaySteps::Radiance>(options, {});
+        const auto found = without.answers<RaySteps::Radiance>(options, {});
         ASSERT_EQ(found.size(), truth.size());
         std::array<std::size_t, 4> paths{};
         for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -543,16 +544,16 @@ TEST(RaySteps, TakeAStructureByItsAddress) {
         EXPECT_GT(paths[3], 10U);
     }
     const auto shared = EngineScene::share(sharedContext(), addressed.gpuScene());
-    RayStepsOptions options;
+    RaySteps::Options options;
     options.strategy = package::kStrategyUber;
     options.maxRays = 1;
     options.layout = without.layout();
     options.pushStages = Host::kStages;
     const auto steps = must(RaySteps::create(sharedContext(), addressed.package(), **shared, options));
-    RayBatch batch;
+    RaySteps::Batch batch;
     batch.rays = batch.answers = 64;
     const Diagnostic refused = mustFail(steps->begin(VK_NULL_HANDLE, batch));
-    EXPECT_NE(toString(refused).find("RayBatch::tlas is 0"), std::string::npos);
+    EXPECT_NE(toString(refused).find("RaySteps::Batch::tlas is 0"), std::string::npos);
 }
 
 // A white wall, before it a tinted pane on the right, a mask that lets everything through above, and one that
@@ -580,11 +581,11 @@ gltf::Scene wallBehindPanes() {
 TEST(RaySteps, AskForVisibility) {
     const auto ray = [](std::uint32_t slot, float x, float y, float distance, float from = 0.0F) {
         const float z = from < -1.0F ? 1.0F : -1.0F;
-        return EngineVisibilityRay{{x, y, from}, slot, {0, 0, z}, distance};
+        return RaySteps::VisibilityRay{{x, y, from}, slot, {0, 0, z}, distance};
     };
-    const std::vector<EngineVisibilityRay> rays{ray(3, -2, 0, 3.9F),   ray(0, -2, 0, 4.1F),
-                                                ray(1, 2.3F, 0.1F, 3), ray(2, 0, 1.5F, 3),
-                                                ray(5, 0, -1.5F, 3),   ray(4, -2, 0, 9, -8)};
+    const std::vector<RaySteps::VisibilityRay> rays{ray(3, -2, 0, 3.9F),   ray(0, -2, 0, 4.1F),
+                                                    ray(1, 2.3F, 0.1F, 3), ray(2, 0, 1.5F, 3),
+                                                    ray(5, 0, -1.5F, 3),   ray(4, -2, 0, 9, -8)};
     const std::vector<float> shares{0, 0, 1, 1, 0, 0};  // by slot
     for (const auto through : {package::ShadowThrough::Alpha, package::ShadowThrough::Glass}) {
         const bool isGlass = through == package::ShadowThrough::Glass;
@@ -599,7 +600,7 @@ TEST(RaySteps, AskForVisibility) {
                 continue;  // the pass is that of uber
             }
             SCOPED_TRACE(std::string(nameOf(way.strategy)) + ", " + std::string(nameOf(way.tracer)));
-            RayStepsOptions options;
+            RaySteps::Options options;
             options.strategy = way.strategy;
             options.tracer = way.tracer;
             const auto steps = host.makeSteps(options);
@@ -621,17 +622,17 @@ TEST(RaySteps, AskForVisibility) {
 }
 
 // Rays that all go the same way.
-std::vector<EngineRay> alike(std::uint32_t count, const std::array<float, 3>& origin) {
-    std::vector<EngineRay> rays;
+std::vector<RaySteps::Ray> alike(std::uint32_t count, const std::array<float, 3>& origin) {
+    std::vector<RaySteps::Ray> rays;
     for (std::uint32_t slot = 0; slot < count; ++slot) {
         rays.push_back({origin, slot, {0, 0, -1}});
     }
     return rays;
 }
 
-double meanRed(const std::vector<EngineRadiance>& answers) {
+double meanRed(const std::vector<RaySteps::Radiance>& answers) {
     double sum = 0.0;
-    for (const EngineRadiance& answer : answers) {
+    for (const RaySteps::Radiance& answer : answers) {
         sum += static_cast<double>(answer.radiance[0]);
     }
     return sum / static_cast<double>(answers.size());
@@ -664,10 +665,10 @@ TEST(RaySteps, ADiskLightsByLambertsLaw) {
             light.direction = {0, 0, front};
             light.size = radius;
         });
-        Host host(loaded, alike(kSlots, {x, 0, 0}), kSlots, sizeof(EngineRadiance));
-        RayStepsOptions options;
+        Host host(loaded, alike(kSlots, {x, 0, 0}), kSlots, sizeof(RaySteps::Radiance));
+        RaySteps::Options options;
         options.strategy = package::kStrategyUber;
-        const double mean = meanRed(host.answers<EngineRadiance>(options, blackSky()));
+        const double mean = meanRed(host.answers<RaySteps::Radiance>(options, blackSky()));
         const double squared = 4.0 + static_cast<double>(x * x);
         const double facing = 4.0 / squared;
         const double irradiance = 3.0 * facing / (squared + static_cast<double>(radius * radius));
@@ -700,17 +701,18 @@ TEST(RaySteps, AnEmissiveQuadLightsByItsFormFactor) {
             bounces > 1 ? package::ShadowPlacement::Deferred : package::ShadowPlacement::Inline;
         const LoadedScene loaded(scene, settings, noLights);
         ASSERT_NE(loaded.package().emission(), nullptr);
-        RayStepsOptions options;
+        RaySteps::Options options;
         options.strategy = package::kStrategyUber;
-        Host below(loaded, alike(kSlots, {0, 0, -3.5F}), kSlots, sizeof(EngineRadiance));
+        Host below(loaded, alike(kSlots, {0, 0, -3.5F}), kSlots, sizeof(RaySteps::Radiance));
         const double expected = 0.5 * kRadiance * factor;
-        EXPECT_NEAR(meanRed(below.answers<EngineRadiance>(options, blackSky())), expected, 0.03 * expected);
-        std::vector<EngineRay> up = alike(8, {0, 0, -3.5F});
-        for (EngineRay& ray : up) {
+        EXPECT_NEAR(meanRed(below.answers<RaySteps::Radiance>(options, blackSky())), expected,
+                    0.03 * expected);
+        std::vector<RaySteps::Ray> up = alike(8, {0, 0, -3.5F});
+        for (RaySteps::Ray& ray : up) {
             ray.direction = {0, 0, 1};
         }
-        Host seen(loaded, up, up.size(), sizeof(EngineRadiance));
-        EXPECT_NEAR(meanRed(seen.answers<EngineRadiance>(options, blackSky())), kRadiance, 1e-4);
+        Host seen(loaded, up, up.size(), sizeof(RaySteps::Radiance));
+        EXPECT_NEAR(meanRed(seen.answers<RaySteps::Radiance>(options, blackSky())), kRadiance, 1e-4);
     }
 }
 
@@ -739,12 +741,12 @@ TEST(RaySteps, MirrorsShowSizedLights) {
                 data.lights.at(1).type = LightView::Type::Disk;
                 data.lights.at(1).direction = {0, 0, -1};
             });
-            std::vector<EngineRay> rays = alike(2, {0, 0, -3});
+            std::vector<RaySteps::Ray> rays = alike(2, {0, 0, -3});
             rays[1].origin[0] = 3.0F;
-            Host host(loaded, rays, rays.size(), sizeof(EngineRadiance));
-            RayStepsOptions options;
+            Host host(loaded, rays, rays.size(), sizeof(RaySteps::Radiance));
+            RaySteps::Options options;
             options.strategy = package::kStrategyUber;
-            for (const EngineRadiance& answer : host.answers<EngineRadiance>(options, blackSky())) {
+            for (const RaySteps::Radiance& answer : host.answers<RaySteps::Radiance>(options, blackSky())) {
                 EXPECT_NEAR(answer.radiance[0], finds ? expected : 0.0, 0.01 * expected) << lights;
             }
         }
@@ -762,7 +764,7 @@ TEST(RaySteps, RefuseWhatTheyCannotDo) {
     const LoadedScene stepPackage(scene, settings);
     const auto shared = EngineScene::share(sharedContext(), stepPackage.gpuScene());
     ASSERT_TRUE(shared);
-    RayStepsOptions options;
+    RaySteps::Options options;
     options.strategy = package::kStrategyUber;
     options.maxRays = 16;
     const auto idOf = [](const auto& result) { return result ? std::string() : result.error().id; };
@@ -788,12 +790,12 @@ TEST(EngineScene, NamesWhatIsWrong) {
     const LoadedScene loaded(roomWithFence(), settings);
     const PackageScene known = loaded.package().scene(0);
     const std::vector<std::array<float, 12>> instances{{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}};
-    const std::vector<EngineSceneView::Texture> textures(known.textures.size(), {0, 4, 4});
-    const std::vector<EngineSceneView::Sampler> samplers(known.samplers.size());
-    const auto create = [&](const EngineSceneView::Geometry& geometry,
-                            std::span<const EngineSceneView::Texture> images,
+    const std::vector<EngineScene::View::Texture> textures(known.textures.size(), {0, 4, 4});
+    const std::vector<EngineScene::View::Sampler> samplers(known.samplers.size());
+    const auto create = [&](const EngineScene::View::Geometry& geometry,
+                            std::span<const EngineScene::View::Texture> images,
                             std::span<const std::uint32_t> firstRecords) {
-        EngineSceneView view;
+        EngineScene::View view;
         view.geometries = {&geometry, 1};
         view.instances = instances;
         view.textures = images;
@@ -803,7 +805,7 @@ TEST(EngineScene, NamesWhatIsWrong) {
         return scene ? std::string() : toString(scene.error());
     };
     const package::PrimitiveEntry& entry = known.primitives.front();
-    EngineSceneView::Geometry geometry{entry.mesh, entry.primitive, 0, 64, 64, 64, 64, 64, 64, 64};
+    EngineScene::View::Geometry geometry{entry.mesh, entry.primitive, 0, 64, 64, 64, 64, 64, 64, 64};
     EXPECT_EQ(create(geometry, textures, {}), "");
     const std::uint32_t far[] = {5};
     EXPECT_NE(create(geometry, textures, far).find("entry 0 of firstRecords"), std::string::npos);

@@ -312,7 +312,7 @@ TEST(RecordedEngineScene, NothingWaitsAndStagingMemoryReturns) {
     TwoFrames frames(sharedContext());
     {
         const std::array<std::array<float, 12>, 1> instances{{{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}}};
-        EngineSceneView view;
+        EngineScene::View view;
         view.instances = instances;
         auto scene = must(EngineScene::record(sharedContext(), source.loaded->package(), view, frames.begin(),
                                               frames.frame()));
@@ -332,15 +332,12 @@ TEST(RecordedEngineScene, PreviousTransformsFollowTheOrigin) {
     TwoFrames frames(sharedContext());
     const std::array<std::array<float, 12>, 1> here{{{1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, 0}}};
     const std::array<std::array<float, 12>, 1> there{{{1, 0, 0, 4, 0, 1, 0, 0, 0, 0, 1, 0}}};
-    EngineSceneView view;
+    EngineScene::View view;
     view.instances = here;
     auto scene = must(
         EngineScene::record(sharedContext(), source.loaded->package(), view, frames.begin(), frames.frame()));
     frames.submit();
-    using State = EngineScene::State;
-    const auto previous = [&] {
-        return scene->state().arrays[State::PreviousInstances].store.read<gpu::InstanceRecord>(0);
-    };
+    const auto previous = [&] { return scene->state().previousInstances.read<gpu::InstanceRecord>(0); };
     EXPECT_TRUE(scene->update(frames.begin(), there, {}, frames.frame()));
     frames.submit();
     EXPECT_EQ(previous().objectToWorld[0].w, 3.0F);

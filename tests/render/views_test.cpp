@@ -5,7 +5,7 @@
 #include "render/layered_scene.h"
 #include "render/scene_builder.h"
 #include "render/ways.h"
-#include "scene/gpu_scene_state.h"
+#include "scene/scene_store.h"
 #include "support/must.h"
 
 #include <glint/measure/views.h>
@@ -227,7 +227,7 @@ TEST(Views, FindHitsWithoutACase) {
     const VkCommandBuffer commands = frames.begin();
     const Context::State& context = sharedContext().state();
     const VkDeviceSize record = static_cast<VkDeviceSize>(place) * sizeof(gpu::GeometryRecord);
-    context.vk.CmdFillBuffer(commands, state.geometries.handle.get(),
+    context.vk.CmdFillBuffer(commands, state.store->geometries.device.handle.get(),
                              record + offsetof(gpu::GeometryRecord, shaderId), sizeof kUnknown, kUnknown);
     frames.submit();
     frames.drain();

@@ -26,15 +26,15 @@ struct EngineSun {
 };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Suns { EngineSun data[]; };
 
-// Glint's EngineRay and EngineRadiance.
-struct EngineRay {
+// Glint's RaySteps::Ray and RaySteps::Radiance.
+struct RaySteps::Ray {
     vec3 origin;
     uint slot;
     vec3 direction;
     float coneWidth;
     float coneSpread;
 };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Rays { EngineRay data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Rays { RaySteps::Ray data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Count { uint value; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Colors { vec4 data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer TextureSizes { uvec2 data[]; };
@@ -60,7 +60,7 @@ struct EngineFrame {
     Suns suns;
     Rays rays;
     Count rayCount;
-    Colors answers;   // EngineRadiance
+    Colors answers;   // RaySteps::Radiance
     Colors weights;   // of the ray of each pixel
     Colors colors;    // the picture
     TextureSizes textureSizes;

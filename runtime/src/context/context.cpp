@@ -147,8 +147,7 @@ Status checkQueueFamily(Context::State& state) {
         queueFamilies(state.instance, state.handles.physicalDevice);
     const std::uint32_t family = state.handles.queueFamily;
     if (family >= families.size() || !isSuitable(families[family])) {
-        return makeError("context-queue", "",
-                         "queue family " + std::to_string(family) + " has no graphics and compute",
+        return makeError("context-queue", "", phrase("queue family ", family, " has no graphics and compute"),
                          "pass a queue of a family with VK_QUEUE_GRAPHICS_BIT and VK_QUEUE_COMPUTE_BIT");
     }
     state.limits.timestampValidBits = families[family].timestampValidBits;

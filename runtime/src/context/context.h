@@ -19,6 +19,7 @@
 #include <mutex>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -184,6 +185,21 @@ bool isSuitable(const VkQueueFamilyProperties& family);
 
 // Fills `report` by asking `device`. Error "vulkan-call".
 Status queryDevice(const InstanceTable& table, VkPhysicalDevice device, DeviceReport& report);
+
+// Joins the parts of a message: texts and whole numbers.
+template <typename... Parts>
+std::string phrase(const Parts&... parts) {
+    std::string text;
+    const auto add = [&](const auto& part) {
+        if constexpr (std::is_integral_v<std::remove_cvref_t<decltype(part)>>) {
+            text += std::to_string(part);
+        } else {
+            text += part;
+        }
+    };
+    (add(parts), ...);
+    return text;
+}
 
 // Returns a list such as "a, b and c".
 std::string joinNames(const std::vector<std::string>& names);

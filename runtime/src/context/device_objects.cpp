@@ -68,6 +68,17 @@ Result<DescriptorSet> createSet(Context::State& context, VkDescriptorSetLayout l
     return made;
 }
 
+void writeImages(const Context::State& context, VkDescriptorSet set, std::uint32_t binding,
+                 VkDescriptorType type, std::span<const VkDescriptorImageInfo> images) {
+    const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                     .dstSet = set,
+                                     .dstBinding = binding,
+                                     .descriptorCount = static_cast<std::uint32_t>(images.size()),
+                                     .descriptorType = type,
+                                     .pImageInfo = images.data()};
+    context.vk.UpdateDescriptorSets(context.handles.device, 1, &write, 0, nullptr);
+}
+
 Result<UniquePipelineLayout> createPipelineLayout(Context::State& context,
                                                   std::span<const VkDescriptorSetLayout> sets,
                                                   const VkPushConstantRange& range) {

@@ -113,6 +113,10 @@ struct DescriptorSet {
 Result<DescriptorSet> createSet(Context::State& context, VkDescriptorSetLayout layout,
                                 std::span<const VkDescriptorSetLayoutBinding> bindings, bool updates);
 
+// Writes the images or samplers of a binding, from its first element on.
+void writeImages(const Context::State& context, VkDescriptorSet set, std::uint32_t binding,
+                 VkDescriptorType type, std::span<const VkDescriptorImageInfo> images);
+
 // Errors: "vulkan-call".
 Result<UniquePipelineLayout> createPipelineLayout(Context::State& context,
                                                   std::span<const VkDescriptorSetLayout> sets,

@@ -118,8 +118,7 @@ std::string tracerChoices() {
 }
 
 std::string versionName(std::uint32_t version) {
-    return std::to_string(VK_API_VERSION_MAJOR(version)) + "." +
-           std::to_string(VK_API_VERSION_MINOR(version));
+    return phrase(VK_API_VERSION_MAJOR(version), ".", VK_API_VERSION_MINOR(version));
 }
 
 // Numbers of the Vulkan registry, for headers that lack the names.
@@ -249,7 +248,7 @@ std::vector<std::string> missingFrom(const DeviceReport& report) {
         missing.push_back(std::to_string(sizeof(gpu::PushConstants)) + " bytes of push constants");
     }
     if (report.maxWorkgroupThreads < gpu::kScanGroupSize) {
-        missing.push_back("workgroups of " + std::to_string(gpu::kScanGroupSize) + " threads");
+        missing.push_back(phrase("workgroups of ", gpu::kScanGroupSize, " threads"));
     }
     if (!report.hasQueue) {
         missing.emplace_back("a queue family with graphics and compute");

@@ -67,23 +67,19 @@ DeviceMemory::~DeviceMemory() {
     }
 }
 
-bool SharedMemory::take(const VkMemoryRequirements& requirements, Allocation& taken) {
+Memory SharedMemory::take(const VkMemoryRequirements& requirements) {
     const VkDeviceSize offset = alignUp(begin, requirements.alignment);
-    if (memory.memory == VK_NULL_HANDLE || (requirements.memoryTypeBits >> memory.type & 1U) == 0 ||
+    if (memory == nullptr || (requirements.memoryTypeBits >> memory->type & 1U) == 0 ||
         offset + requirements.size > end) {
-        return false;
+        return nullptr;
     }
-    // The pool has already handed out this memory, so there is nothing to give back.
-    taken = Allocation{};
-    taken.memory = memory.memory;
-    taken.offset = offset;
-    taken.type = memory.type;
     begin = offset + requirements.size;
-    return true;
+    return std::make_shared<const Allocation>(
+        Allocation{memory->memory, offset, nullptr, memory->type, memory->pool, memory});
 }
 
-Result<MemoryPool::Block*> MemoryPool::addBlock(const HostServices::MemoryRange& range, Tiling tiling,
-                                                VkDeviceSize bytes, MemoryUse use) {
+Result<MemoryBlocks::Block*> MemoryPool::addBlock(const HostServices::MemoryRange& range, Tiling tiling,
+                                                  VkDeviceSize bytes, MemoryUse use) {
     Block block;
     block.memory = DeviceMemory(*context_, range);
     block.tiling = tiling;
@@ -98,12 +94,12 @@ Result<MemoryPool::Block*> MemoryPool::addBlock(const HostServices::MemoryRange&
                                                                  VK_WHOLE_SIZE, 0, &mapped)));
         block.mapped = static_cast<std::uint8_t*>(mapped);
     }
-    blocks_.push_back(std::move(block));
-    return &blocks_.back();
+    blocks_->all.push_back(std::move(block));
+    return &blocks_->all.back();
 }
 
-Result<MemoryPool::Block*> MemoryPool::askHost(const VkMemoryRequirements& requirements, MemoryUse use,
-                                               Tiling tiling) {
+Result<MemoryBlocks::Block*> MemoryPool::askHost(const VkMemoryRequirements& requirements, MemoryUse use,
+                                                 Tiling tiling) {
     const std::string name = context_->services.namePrefix + name_;
     // The depth image shares its memory with buffers, which have addresses.
     const HostServices::MemoryRequest request{
@@ -120,15 +116,15 @@ Result<MemoryPool::Block*> MemoryPool::askHost(const VkMemoryRequirements& requi
     return addBlock(range, tiling, requirements.size, use);
 }
 
-Result<MemoryPool::Block*> MemoryPool::makeBlock(std::uint32_t type, Tiling tiling, VkDeviceSize bytes,
-                                                 MemoryUse use) {
+Result<MemoryBlocks::Block*> MemoryPool::makeBlock(std::uint32_t type, Tiling tiling, VkDeviceSize bytes,
+                                                   MemoryUse use) {
     if (bytes > context_->limits.maxAllocationBytes) {
         return makeError("memory-size", "",
-                         "a resource of " + std::to_string(bytes) + " bytes is above the device's limit of " +
-                             std::to_string(context_->limits.maxAllocationBytes),
+                         phrase("a resource of ", bytes, " bytes is above the device's limit of ",
+                                context_->limits.maxAllocationBytes),
                          "split the mesh or use smaller textures");
     }
-    if (blocks_.size() >= context_->limits.core.maxMemoryAllocationCount) {
+    if (blocks_->all.size() >= context_->limits.core.maxMemoryAllocationCount) {
         return makeError("memory-count", "", "the scene needs more memory allocations than the device has",
                          "use a smaller scene");
     }
@@ -148,22 +144,23 @@ Result<MemoryPool::Block*> MemoryPool::makeBlock(std::uint32_t type, Tiling tili
     return addBlock(range, tiling, bytes, use);
 }
 
-Result<MemoryPool::Block*> MemoryPool::findBlock(std::uint32_t type, const VkMemoryRequirements& requirements,
-                                                 MemoryUse use, Tiling tiling) {
+Result<MemoryBlocks::Block*> MemoryPool::findBlock(std::uint32_t type,
+                                                   const VkMemoryRequirements& requirements, MemoryUse use,
+                                                   Tiling tiling) {
     // Linear and optimal resources never share a block, which satisfies bufferImageGranularity.
-    const auto block = std::ranges::find_if(blocks_, [&](Block& candidate) {
+    const auto block = std::ranges::find_if(blocks_->all, [&](Block& candidate) {
         const bool reachable = use == MemoryUse::Device || candidate.mapped != nullptr;
         return candidate.memory.range().type == type && candidate.tiling == tiling && reachable &&
                candidate.findRoom(requirements) != candidate.free.end();
     });
-    if (block != blocks_.end()) {
+    if (block != blocks_->all.end()) {
         return &*block;
     }
     // A block takes at most an eighth of the heap, so that one block does not fill a small heap.
     const VkPhysicalDeviceMemoryProperties& memory = context_->limits.memory;
     const VkDeviceSize heap = memory.memoryHeaps[memory.memoryTypes[type].heapIndex].size;
     VkDeviceSize taken = kFirstBlockBytes;
-    for (const Block& other : blocks_) {
+    for (const Block& other : blocks_->all) {
         taken += other.memory.range().type == type && other.tiling == tiling ? other.bytes : 0;
     }
     // Few resources share memory, so these blocks are no larger than they need to be.
@@ -175,8 +172,7 @@ Result<MemoryPool::Block*> MemoryPool::findBlock(std::uint32_t type, const VkMem
     return made;
 }
 
-Result<Allocation> MemoryPool::allocate(const VkMemoryRequirements& requirements, MemoryUse use,
-                                        Tiling tiling) {
+Result<Memory> MemoryPool::allocate(const VkMemoryRequirements& requirements, MemoryUse use, Tiling tiling) {
     Result<Block*> found =
         makeError("memory-type", "", "the device has no memory of the kind that a resource needs",
                   "update the driver or use another device");
@@ -207,57 +203,58 @@ Result<Allocation> MemoryPool::allocate(const VkMemoryRequirements& requirements
     }
     Block& block = **found;
     const HostServices::MemoryRange& range = block.memory.range();
-    Allocation allocation;
-    allocation.memory = range.memory;
-    allocation.type = range.type;
     const auto room = block.findRoom(requirements);
     const VkDeviceSize inBlock = alignUp(room->begin, requirements.alignment);
-    allocation.begin = room->begin;
-    allocation.offset = range.offset + inBlock;
-    allocation.bytes = inBlock + requirements.size - allocation.begin;
-    allocation.mapped = block.mapped == nullptr ? nullptr : block.mapped + inBlock;
-    room->begin += allocation.bytes;
+    // The range that is given back includes the gap before the resource.
+    const MemoryBlocks::Range taken{room->begin, inBlock + requirements.size};
+    room->begin = taken.end;
     if (room->begin == room->end) {
         block.free.erase(room);
     }
-    return allocation;
+    const auto give = [blocks = blocks_, taken](const Allocation* place) {
+        blocks->release(*place, taken);
+        delete place;
+    };
+    return Memory(new Allocation{range.memory,
+                                 range.offset + inBlock,
+                                 block.mapped == nullptr ? nullptr : block.mapped + inBlock,
+                                 range.type,
+                                 blocks_.get(),
+                                 {}},
+                  give);
 }
 
-std::vector<MemoryPool::Range>::iterator MemoryPool::Block::findRoom(
+std::vector<MemoryBlocks::Range>::iterator MemoryBlocks::Block::findRoom(
     const VkMemoryRequirements& requirements) {
     return std::ranges::find_if(free, [&](const Range& range) {
         return alignUp(range.begin, requirements.alignment) + requirements.size <= range.end;
     });
 }
 
-void MemoryPool::release(const Allocation& allocation) {
-    const auto block = std::ranges::find_if(blocks_, [&](const Block& candidate) {
-        const HostServices::MemoryRange& range = candidate.memory.range();
-        return range.memory == allocation.memory && allocation.offset >= range.offset &&
-               allocation.offset < range.offset + candidate.bytes;
+void MemoryBlocks::release(const Allocation& place, const Range& range) {
+    const auto block = std::ranges::find_if(all, [&](const Block& candidate) {
+        const HostServices::MemoryRange& whole = candidate.memory.range();
+        return whole.memory == place.memory && place.offset >= whole.offset &&
+               place.offset < whole.offset + candidate.bytes;
     });
-    if (block == blocks_.end() || allocation.bytes == 0) {
-        return;
-    }
     std::vector<Range>& free = block->free;
-    auto place = std::ranges::lower_bound(free, allocation.begin, {}, &Range::begin);
-    place = free.insert(place, {allocation.begin, allocation.begin + allocation.bytes});
-    if (const auto next = place + 1; next != free.end() && next->begin == place->end) {
-        place->end = next->end;
+    auto added = free.insert(std::ranges::lower_bound(free, range.begin, {}, &Range::begin), range);
+    if (const auto next = added + 1; next != free.end() && next->begin == added->end) {
+        added->end = next->end;
         free.erase(next);
     }
-    if (place != free.begin() && (place - 1)->end == place->begin) {
-        (place - 1)->end = place->end;
-        free.erase(place);
+    if (added != free.begin() && (added - 1)->end == added->begin) {
+        (added - 1)->end = added->end;
+        free.erase(added);
     }
     if (free.front().begin == 0 && free.front().end == block->bytes) {
-        blocks_.erase(block);
+        all.erase(block);
     }
 }
 
-VkDeviceSize MemoryPool::bytes() const {
+VkDeviceSize MemoryBlocks::bytes() const {
     VkDeviceSize sum = 0;
-    for (const Block& block : blocks_) {
+    for (const Block& block : all) {
         sum += block.bytes;
     }
     return sum;
@@ -269,8 +266,8 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
     buffer.bytes = std::max<VkDeviceSize>(bytes, 1);
     if (buffer.bytes > context.limits.maxBufferBytes) {
         return makeError("buffer-size", "",
-                         "a buffer of " + std::to_string(bytes) + " bytes is above the device's limit of " +
-                             std::to_string(context.limits.maxBufferBytes),
+                         phrase("a buffer of ", bytes, " bytes is above the device's limit of ",
+                                context.limits.maxBufferBytes),
                          "split the mesh or use a smaller image");
     }
     const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
@@ -283,22 +280,26 @@ Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceS
     const VkBuffer handle = buffer.handle.get();
     VkMemoryRequirements requirements{};
     context.vk.GetBufferMemoryRequirements(device, handle, &requirements);
-    Result<Allocation> memory = Allocation{};
-    if (shared == nullptr || !shared->take(requirements, *memory)) {
-        memory = pool.allocate(requirements, use, Tiling::Linear);
+    buffer.memory = shared != nullptr ? shared->take(requirements) : nullptr;
+    if (buffer.memory == nullptr) {
+        GLINT_TRY(buffer.memory, pool.allocate(requirements, use, Tiling::Linear));
     }
-    if (!memory) {
-        return memory.error();
-    }
-    GLINT_TRY_DO(statusOf("vkBindBufferMemory",
-                          context.vk.BindBufferMemory(device, handle, memory->memory, memory->offset)));
-    buffer.memory = *memory;
-    buffer.mapped = memory->mapped;
+    GLINT_TRY_DO(
+        statusOf("vkBindBufferMemory",
+                 context.vk.BindBufferMemory(device, handle, buffer.memory->memory, buffer.memory->offset)));
+    buffer.mapped = buffer.memory->mapped;
     buffer.use = use;
     VkBufferDeviceAddressInfo address{.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO,
                                       .buffer = handle};
     buffer.address = context.vk.GetBufferDeviceAddress(device, &address);
     return buffer;
+}
+
+Result<AlignedBuffer> createAligned(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,
+                                    VkDeviceSize alignment, VkBufferUsageFlags usage, MemoryUse use) {
+    GLINT_TRY(auto buffer, createBuffer(context, pool, bytes + alignment, usage, use));
+    const VkDeviceAddress address = alignUp(buffer.address, alignment);
+    return AlignedBuffer{std::move(buffer), address};
 }
 
 namespace {
@@ -359,10 +360,10 @@ Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const
     VkMemoryRequirements requirements{};
     context.vk.GetImageMemoryRequirements(device, handle, &requirements);
     image.bytes = requirements.size;
-    GLINT_TRY(auto memory, pool.allocate(requirements, MemoryUse::Device, tiling));
-    GLINT_TRY_DO(statusOf("vkBindImageMemory",
-                          context.vk.BindImageMemory(device, handle, memory.memory, memory.offset)));
-    image.memory = memory;
+    GLINT_TRY(image.memory, pool.allocate(requirements, MemoryUse::Device, tiling));
+    GLINT_TRY_DO(
+        statusOf("vkBindImageMemory",
+                 context.vk.BindImageMemory(device, handle, image.memory->memory, image.memory->offset)));
     GLINT_TRY(image.view, createImageView(context, handle, info, 0));
     return image;
 }

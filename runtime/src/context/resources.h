@@ -8,6 +8,7 @@
 #include <glint/package_shape.h>
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,15 +19,18 @@ inline VkDeviceSize alignUp(VkDeviceSize value, VkDeviceSize alignment) {
     return (value + alignment - 1) / alignment * alignment;
 }
 
-// The place of a resource in memory. `mapped` is null for memory that the host can't see.
+struct Allocation;
+// The place of a resource in memory. It returns to its pool when no resource has it any more.
+using Memory = std::shared_ptr<const Allocation>;
+struct MemoryBlocks;
+
 struct Allocation {
     VkDeviceMemory memory = VK_NULL_HANDLE;
     VkDeviceSize offset = 0;
-    std::uint8_t* mapped = nullptr;
-    // The range that MemoryPool::release() gives back. It includes the gap before `offset`.
-    VkDeviceSize begin = 0;
-    VkDeviceSize bytes = 0;
-    std::uint32_t type = 0;  // of the memory
+    std::uint8_t* mapped = nullptr;  // null for memory that the host can't see
+    std::uint32_t type = 0;          // of the memory
+    const MemoryBlocks* pool = nullptr;
+    Memory lender{};  // of a resource whose memory this one shares; null: none
 };
 
 // Tiling of a resource; buffers are linear. Shared memory holds an image, and at other times buffers.
@@ -34,12 +38,12 @@ enum class Tiling { Linear, Optimal, Shared };
 
 // Memory that buffers share with an image: the rest of an allocation for Tiling::Shared.
 struct SharedMemory {
-    Allocation memory;       // without memory: there is none to share
-    VkDeviceSize begin = 0;  // in `memory`
+    Memory memory;           // null: there is none to share
+    VkDeviceSize begin = 0;  // in the VkDeviceMemory
     VkDeviceSize end = 0;
 
-    // Takes memory for a buffer. Returns false if the rest is too small or has an unsuitable type.
-    bool take(const VkMemoryRequirements& requirements, Allocation& taken);
+    // Takes memory for a buffer, or returns null if the rest is too small or has an unsuitable type.
+    Memory take(const VkMemoryRequirements& requirements);
 
     // Returns whether that many bytes may still fit.
     bool holds(VkDeviceSize bytes) const {
@@ -73,36 +77,8 @@ private:
     HostServices::MemoryRange range_;
 };
 
-// Hands out memory, and frees all of it when it is destroyed. The resources that live in it must be destroyed
-// before.
-class MemoryPool {
-public:
-    // `name` is that of its resources for debuggers, and must outlive it.
-    explicit MemoryPool(Context::State& context, const char* name = "scene")
-        : context_(&context), name_(name) {}
-    MemoryPool(MemoryPool&&) noexcept = default;
-    MemoryPool& operator=(MemoryPool&&) noexcept = default;
-    ~MemoryPool() = default;
-    MemoryPool(const MemoryPool&) = delete;
-    MemoryPool& operator=(const MemoryPool&) = delete;
-
-    // Takes memory of the preferred kind, or if there is none left, of any kind that fits. Errors:
-    // "memory-type", "memory-size" (above the device's limit), "memory-count", "vulkan-call"; nothing has
-    // changed then.
-    Result<Allocation> allocate(const VkMemoryRequirements& requirements, MemoryUse use, Tiling tiling);
-
-    // Takes back memory that no resource uses any more. A block without a resource is freed. An allocation
-    // without memory changes nothing.
-    void release(const Allocation& allocation);
-
-    // Returns the size of all allocations, including memory that was not handed out.
-    VkDeviceSize bytes() const;
-
-    const char* name() const {
-        return name_;
-    }
-
-private:
+// The memory of a pool, which lives as long as the pool or one of its resources.
+struct MemoryBlocks {
     struct Range {
         VkDeviceSize begin = 0;
         VkDeviceSize end = 0;
@@ -117,6 +93,40 @@ private:
         // Returns the first free range that has room, or none.
         std::vector<Range>::iterator findRoom(const VkMemoryRequirements& requirements);
     };
+    std::vector<Block> all;
+
+    // Takes back a range of the block that holds `place`. A block without a resource is freed.
+    void release(const Allocation& place, const Range& range);
+    // Returns the size of all blocks, including memory that was not handed out.
+    VkDeviceSize bytes() const;
+};
+
+// Hands out memory. The Context must outlive the resources that live in it, which are destroyed on the thread
+// that uses the pool.
+class MemoryPool {
+public:
+    // `name` is that of its resources for debuggers, and must outlive it.
+    explicit MemoryPool(Context::State& context, const char* name = "scene")
+        : context_(&context), name_(name) {}
+
+    // Takes memory of the preferred kind, or if there is none left, of any kind that fits. Errors:
+    // "memory-type", "memory-size" (above the device's limit), "memory-count", "vulkan-call"; nothing has
+    // changed then.
+    Result<Memory> allocate(const VkMemoryRequirements& requirements, MemoryUse use, Tiling tiling);
+
+    // Returns the size of all allocations, including memory that was not handed out.
+    VkDeviceSize bytes() const {
+        return blocks_->bytes();
+    }
+    const char* name() const {
+        return name_;
+    }
+    bool has(const Allocation& place) const {
+        return place.pool == blocks_.get();
+    }
+
+private:
+    using Block = MemoryBlocks::Block;
     // Returns a block with room for the resource, which is there or is made, in memory of the type.
     Result<Block*> findBlock(std::uint32_t type, const VkMemoryRequirements& requirements, MemoryUse use,
                              Tiling tiling);
@@ -128,25 +138,41 @@ private:
 
     Context::State* context_;
     const char* name_;
-    std::vector<Block> blocks_;
+    std::shared_ptr<MemoryBlocks> blocks_ = std::make_shared<MemoryBlocks>();
 };
 
 struct Buffer {
+    Memory memory;
     UniqueBuffer handle;
-    Allocation memory;
     VkDeviceSize bytes = 0;
     VkDeviceAddress address = 0;
     std::uint8_t* mapped = nullptr;  // null for MemoryUse::Device
     MemoryUse use = MemoryUse::Device;
 };
 
-// Creates a buffer of at least one byte, with a device address. `pool` must outlive it. A buffer for which
-// `shared` has room lies there, whatever `use` is.
+// Creates a buffer of at least one byte, with a device address. A buffer for which `shared` has room lies
+// there, whatever `use` is.
 Result<Buffer> createBuffer(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,
                             VkBufferUsageFlags usage, MemoryUse use = MemoryUse::Device,
                             SharedMemory* shared = nullptr);
 
+// A buffer with content from an aligned address on. Vulkan aligns the addresses of buffers for their usage
+// only.
+struct AlignedBuffer {
+    Buffer buffer;
+    VkDeviceAddress address = 0;
+
+    VkDeviceSize offset() const {
+        return address - buffer.address;
+    }
+};
+// Creates a buffer with room for `bytes` at a multiple of the alignment.
+Result<AlignedBuffer> createAligned(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,
+                                    VkDeviceSize alignment, VkBufferUsageFlags usage,
+                                    MemoryUse use = MemoryUse::Device);
+
 struct DeviceImage {
+    Memory memory;
     UniqueImage handle;
     UniqueImageView view;  // view of all mips, unless it says otherwise
     VkFormat format = VK_FORMAT_UNDEFINED;
@@ -156,7 +182,6 @@ struct DeviceImage {
     package::TextureDimension dimension = package::TextureDimension::Flat;
     std::uint32_t layers = 1;  // or faces, or slices
     VkDeviceSize bytes = 0;    // size in memory
-    Allocation memory;
 };
 
 struct ImageInfo {
@@ -174,8 +199,7 @@ struct ImageInfo {
 Result<UniqueImageView> createImageView(Context::State& context, VkImage image, const ImageInfo& info,
                                         std::uint32_t firstMip);
 
-// Creates an image on the device, in an undefined layout. `pool` must outlive it. With
-// Tiling::Shared buffers may share its memory.
+// Creates an image on the device, in an undefined layout. With Tiling::Shared buffers may share its memory.
 Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const ImageInfo& info,
                                 Tiling tiling = Tiling::Optimal);
 

@@ -136,15 +136,4 @@ std::span<const std::uint8_t> bytesOf(std::span<const T> elements) {
     return {reinterpret_cast<const std::uint8_t*>(elements.data()), elements.size_bytes()};
 }
 
-// Makes a storage buffer for records that shaders reach by address, and queues the copy. The buffer is never
-// empty, so that its address is valid.
-template <typename T>
-Status uploadRecords(Context::State& context, MemoryPool& pool, Uploader& uploader,
-                     std::span<const T> records, Buffer& target, VkBufferUsageFlags usage = 0) {
-    GLINT_TRY(target,
-              createBuffer(context, pool, std::max(records.size_bytes(), sizeof(T)),
-                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT | usage));
-    return uploader.copyToBuffer(bytesOf(records), target);
-}
-
 }  // namespace glint

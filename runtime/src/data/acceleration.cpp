@@ -29,15 +29,10 @@ Result<AccelerationStructure> createStructure(Context::State& context, MemoryPoo
     return structure;
 }
 
-Result<Scratch> createScratch(Context::State& context, MemoryPool& pool, VkDeviceSize bytes) {
-    const VkDeviceSize alignment =
-        context.limits.accelerationStructure.minAccelerationStructureScratchOffsetAlignment;
-    GLINT_TRY(auto buffer,
-              createBuffer(context, pool, bytes + alignment, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
-    Scratch scratch;
-    scratch.buffer = std::move(buffer);
-    scratch.address = alignUp(scratch.buffer.address, alignment);
-    return scratch;
+Result<AlignedBuffer> createScratch(Context::State& context, MemoryPool& pool, VkDeviceSize bytes) {
+    return createAligned(context, pool, bytes,
+                         context.limits.accelerationStructure.minAccelerationStructureScratchOffsetAlignment,
+                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
 }
 
 namespace {
@@ -58,8 +53,7 @@ Result<TlasBuild> describeTlas(const Context::State& context, std::size_t count,
     const std::uint64_t limit = context.limits.accelerationStructure.maxInstanceCount;
     if (count > limit) {
         return makeError("tlas-limit", "",
-                         "the scene has " + std::to_string(count) + " instances, the device takes " +
-                             std::to_string(limit),
+                         phrase("the scene has ", count, " instances, the device takes ", limit),
                          "use a smaller scene");
     }
     const VkAccelerationStructureGeometryKHR geometry = describeInstances(0);

@@ -66,12 +66,8 @@ Result<TlasBuild> describeTlas(const Context::State& context, std::size_t count,
 // Creates a structure of `bytes` that is not built yet, for BLASes and TLASes.
 Result<AccelerationStructure> createStructure(Context::State& context, MemoryPool& pool, VkDeviceSize bytes,
                                               VkAccelerationStructureTypeKHR type);
-// A scratch buffer. `address` has the alignment that the device asks for.
-struct Scratch {
-    Buffer buffer;
-    VkDeviceAddress address = 0;
-};
-Result<Scratch> createScratch(Context::State& context, MemoryPool& pool, VkDeviceSize bytes);
+// Creates scratch memory with the alignment that the device asks for.
+Result<AlignedBuffer> createScratch(Context::State& context, MemoryPool& pool, VkDeviceSize bytes);
 
 // The input of a build of a TLAS: an array of VkAccelerationStructureInstanceKHR, and scratch memory.
 struct TlasInput {

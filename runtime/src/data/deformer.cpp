@@ -66,10 +66,12 @@ Result<DeformSource> uploadDeformSource(Context::State& context, MemoryPool& poo
     const std::vector<float> weights(view.jointWeights.begin(), view.jointWeights.end());
     const VkDeviceSize offsets[] = {packing.add(positions), packing.add(normals), packing.add(tangents),
                                     packing.add(joints), packing.add(weights)};
-    GLINT_TRY(source.buffer,
-              createBuffer(context, pool, packing.bytes().size() + kAlignment,
-                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT));
-    const VkDeviceAddress begin = alignUp(source.buffer.address, kAlignment);
+    GLINT_TRY(auto made,
+              createAligned(context, pool, packing.bytes().size(), kAlignment,
+                            VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT));
+    const VkDeviceAddress begin = made.address;
+    const VkDeviceSize offset = made.offset();
+    source.buffer = std::move(made.buffer);
     source.targetPositions = positions.empty() ? 0 : begin + offsets[0];
     source.targetNormals = normals.empty() ? 0 : begin + offsets[1];
     source.targetTangents = tangents.empty() ? 0 : begin + offsets[2];
@@ -79,7 +81,7 @@ Result<DeformSource> uploadDeformSource(Context::State& context, MemoryPool& poo
     source.targets = static_cast<std::uint32_t>(view.targets.size());
     source.jointCount = joints.empty() ? 0 : *std::ranges::max_element(joints) + 1;
     if (!packing.bytes().empty()) {
-        GLINT_TRY_DO(uploader.copyToBuffer(packing.bytes(), source.buffer, begin - source.buffer.address));
+        GLINT_TRY_DO(uploader.copyToBuffer(packing.bytes(), source.buffer, offset));
     }
     return source;
 }
@@ -89,15 +91,13 @@ Result<DeformedVertices> createDeformedVertices(Context::State& context, MemoryP
     const VkDeviceSize vectors = alignUp(VkDeviceSize{3 * sizeof(float)} * primitive.vertexCount, kAlignment);
     const VkDeviceSize tangents =
         alignUp(VkDeviceSize{4 * sizeof(float)} * primitive.vertexCount, kAlignment);
-    DeformedVertices made;
-    GLINT_TRY(made.buffer,
-              createBuffer(context, pool, 2 * vectors + tangents + kAlignment,
-                           VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
-                               VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT));
-    made.positions = alignUp(made.buffer.address, kAlignment);
-    made.normals = primitive.normals == 0 ? 0 : made.positions + vectors;
-    made.tangents = primitive.tangents == 0 ? 0 : made.positions + 2 * vectors;
-    return made;
+    GLINT_TRY(auto made,
+              createAligned(context, pool, 2 * vectors + tangents, kAlignment,
+                            VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
+                                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT));
+    return DeformedVertices{std::move(made.buffer), made.address,
+                            primitive.normals == 0 ? 0 : made.address + vectors,
+                            primitive.tangents == 0 ? 0 : made.address + 2 * vectors};
 }
 
 gpu::DeformRecord makeDeformRecord(const GpuPrimitive& primitive, const DeformSource& source,

@@ -97,15 +97,12 @@ std::span<const std::uint8_t> texelsOfLevel(const ImageView& image, std::uint32_
 Result<DeviceImage> uploadTexture(Context::State& context, MemoryPool& pool, Uploader& uploader,
                                   const ImageView& image, bool srgb) {
     const StoredImage stored = storedImage(context, image, srgb);
-    Result<DeviceImage> texture = createImage(context, pool, textureInfo(stored.view, stored.srgb));
-    if (!texture) {
-        return texture.error();
-    }
+    GLINT_TRY(auto texture, createImage(context, pool, textureInfo(stored.view, stored.srgb)));
     std::vector<std::span<const std::uint8_t>> mips;
     for (std::uint32_t level = 0; level < stored.view.levels; ++level) {
         mips.push_back(texelsOfLevel(stored.view, level));
     }
-    GLINT_TRY_DO(uploader.copyToImage(mips, blockOf(stored.view.format), *texture));
+    GLINT_TRY_DO(uploader.copyToImage(mips, blockOf(stored.view.format), texture));
     return texture;
 }
 
@@ -153,10 +150,10 @@ Result<UniqueSampler> createSampler(Context::State& context, const package::Samp
 
 Status checkTextureCount(const Context::State& context, std::size_t count) {
     if (count > context.limits.maxTextures) {
-        return makeError("scene-textures", "",
-                         "the scene has " + std::to_string(count) + " textures, the device takes " +
-                             std::to_string(context.limits.maxTextures),
-                         "use a smaller scene");
+        return makeError(
+            "scene-textures", "",
+            phrase("the scene has ", count, " textures, the device takes ", context.limits.maxTextures),
+            "use a smaller scene");
     }
     return okStatus();
 }
@@ -207,8 +204,7 @@ Result<std::vector<UniqueSampler>> createSamplers(Context::State& context,
         std::min(context.limits.maxSamplers, context.limits.core.maxSamplerAllocationCount);
     if (samplers.size() > limit) {
         return makeError("scene-samplers", "",
-                         "the scene has " + std::to_string(samplers.size()) + " samplers, the device takes " +
-                             std::to_string(limit),
+                         phrase("the scene has ", samplers.size(), " samplers, the device takes ", limit),
                          "use fewer kinds of samplers");
     }
     constexpr package::SamplerEntry kDefault{0, 0, 1, 1, 1, 1};
@@ -307,8 +303,8 @@ Status takeMaterials(std::span<const MaterialView> views, const MaterialTable& t
                      std::span<ChangingMaterial> changing) {
     if (views.size() != changing.size()) {
         return makeError("scene-material", "",
-                         "the update has " + std::to_string(views.size()) +
-                             " materials, the scene was uploaded with " + std::to_string(changing.size()),
+                         phrase("the update has ", views.size(), " materials, the scene was uploaded with ",
+                                changing.size()),
                          "give records of the same materials at each update");
     }
     for (std::size_t i = 0; i < views.size(); ++i) {

@@ -7,44 +7,35 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace glint {
 
-// Destroys the resource and gives its memory back. A resource without a handle changes nothing.
-void discard(MemoryPool& pool, Buffer&& buffer);
-void discard(MemoryPool& pool, DeviceImage&& image);
-void discard(MemoryPool& pool, AccelerationStructure&& structure);
-
-// Resources that are freed together, with the object. Their pool must outlive it, unless it keeps the pool.
+// Resources that are freed together, with the object.
 class RetiredLot {
 public:
-    RetiredLot() = default;
-    explicit RetiredLot(MemoryPool& pool) : pool_(&pool) {}
-    RetiredLot(RetiredLot&& other) noexcept = default;
-    RetiredLot& operator=(RetiredLot&& other) noexcept;
-    RetiredLot(const RetiredLot&) = delete;
-    RetiredLot& operator=(const RetiredLot&) = delete;
-    ~RetiredLot();
-
-    // Takes a resource of one of the kinds below. One without a handle changes nothing.
+    // Takes a handle, or what has one in its member `handle`. One without a handle changes nothing.
     template <typename Resource>
     void add(Resource&& resource) {
+        static_assert(!std::is_reference_v<Resource>, "the lot takes the resource");
+        const std::uint64_t bytes = bytesOf(resource);
         if (isThere(resource)) {
-            std::get<std::vector<std::remove_cvref_t<Resource>>>(kinds_).push_back(
-                std::forward<Resource>(resource));
+            bytes_ += bytes;
+            count_ += bytes > 0 ? 1 : 0;
+            resources_.push_back(std::make_shared<Resource>(std::move(resource)));
         }
     }
-    // Lets the lot outlive everything else that uses its pool.
-    void keep(std::shared_ptr<MemoryPool> pool) {
-        owner_ = std::move(pool);
+    bool isEmpty() const {
+        return resources_.empty();
     }
-    bool isEmpty() const;
-    std::uint64_t bytes() const;
-    std::uint32_t count() const;  // of buffers and images
+    std::uint64_t bytes() const {
+        return bytes_;
+    }
+    std::uint32_t count() const {  // of buffers and images
+        return count_;
+    }
 
 private:
     template <typename Resource>
@@ -56,39 +47,60 @@ private:
         }
     }
     template <typename Resource>
-    const std::vector<Resource>& all() const {
-        return std::get<std::vector<Resource>>(kinds_);
+    static std::uint64_t bytesOf(const Resource& resource) {
+        if constexpr (requires { resource.bytes; }) {
+            return resource.bytes;
+        } else if constexpr (requires { resource.buffer; }) {
+            return resource.buffer.bytes;
+        } else {
+            return 0;
+        }
     }
-    void free();
 
-    std::shared_ptr<MemoryPool> owner_;  // may be null; destroyed last
-    MemoryPool* pool_ = nullptr;
-    // In the order in which they are destroyed.
-    std::tuple<std::vector<UniqueImageView>, std::vector<UniqueDescriptorPool>,
-               std::vector<AccelerationStructure>, std::vector<Buffer>, std::vector<DeviceImage>>
-        kinds_;
+    std::vector<std::shared_ptr<void>> resources_;
+    std::uint64_t bytes_ = 0;
+    std::uint32_t count_ = 0;
 };
 
 // A retired resource waits for the next recording, whose commands may still use it, and then for its frame.
 class Retired {
 public:
-    explicit Retired(MemoryPool& pool) : pool_(pool), open_(pool) {}
-
     template <typename Resource>
     void add(Resource&& resource) {
         open_.add(std::forward<Resource>(resource));
     }
     // Assigns the resources that were added since the last call to this frame.
-    void close(std::uint64_t frame);
+    void close(std::uint64_t frame) {
+        if (!open_.isEmpty()) {
+            closed_.emplace_back(frame, take());
+        }
+    }
     // Returns them instead, to whom knows when the recording is complete.
-    RetiredLot take();
+    RetiredLot take() {
+        return std::exchange(open_, {});
+    }
     // Frees the resources of frames up to `frame`.
-    void complete(std::uint64_t frame);
-    std::uint64_t bytes() const;
-    std::uint32_t count() const;
+    void complete(std::uint64_t frame) {
+        while (!closed_.empty() && closed_.front().first <= frame) {
+            closed_.pop_front();
+        }
+    }
+    std::uint64_t bytes() const {
+        std::uint64_t sum = open_.bytes();
+        for (const auto& [frame, lot] : closed_) {
+            sum += lot.bytes();
+        }
+        return sum;
+    }
+    std::uint32_t count() const {
+        std::uint32_t sum = open_.count();
+        for (const auto& [frame, lot] : closed_) {
+            sum += lot.count();
+        }
+        return sum;
+    }
 
 private:
-    MemoryPool& pool_;
     RetiredLot open_;
     std::deque<std::pair<std::uint64_t, RetiredLot>> closed_;  // by ascending frame
 };

@@ -19,7 +19,7 @@ namespace {
 constexpr const char* kSameScene = "compile the package from the scene that is rendered";
 
 std::string placeOf(std::uint32_t mesh, std::uint32_t primitive) {
-    return "mesh " + std::to_string(mesh) + ", primitive " + std::to_string(primitive);
+    return phrase("mesh ", mesh, ", primitive ", primitive);
 }
 
 // An attribute span of a primitive by name, and the role of the feature whose keys need it.
@@ -40,8 +40,8 @@ std::array<Attribute, 5> namedAttributes(const PrimitiveView& view) {
 
 Diagnostic wrongCount(const Attribute& attribute, const PrimitiveView& view, const std::string& where) {
     return makeError("scene-attribute", where,
-                     std::string(attribute.name) + " has " + std::to_string(attribute.count) +
-                         " elements for " + std::to_string(view.positions.size()) + " positions",
+                     phrase(attribute.name, " has ", attribute.count, " elements for ", view.positions.size(),
+                            " positions"),
                      "leave the span empty or make it as long as positions");
 }
 
@@ -76,12 +76,11 @@ Status checkDeclared(const Package& package, const PrimitiveView& view, const pa
             continue;
         }
         if (given->channels != row.channels || given->values.size() != view.positions.size() * row.channels) {
-            return makeError("scene-attribute", where,
-                             name + " has " + std::to_string(given->values.size()) + " values in " +
-                                 std::to_string(given->channels) + " channels for " +
-                                 std::to_string(view.positions.size()) + " positions; the package reads " +
-                                 std::to_string(row.channels) + " channels",
-                             "give as many values as the positions have, times the package's channels");
+            return makeError(
+                "scene-attribute", where,
+                phrase(name, " has ", given->values.size(), " values in ", given->channels, " channels for ",
+                       view.positions.size(), " positions; the package reads ", row.channels, " channels"),
+                "give as many values as the positions have, times the package's channels");
         }
     }
     return okStatus();
@@ -102,9 +101,8 @@ Status checkIndices(const PrimitiveView& view, const std::string& where) {
         view.indices, [&](std::uint32_t index) { return index >= view.positions.size(); });
     if (outside != view.indices.end()) {
         return makeError("scene-index", where,
-                         "index " + std::to_string(outside - view.indices.begin()) + " is " +
-                             std::to_string(*outside) + ", there are " +
-                             std::to_string(view.positions.size()) + " positions",
+                         phrase("index ", outside - view.indices.begin(), " is ", *outside, ", there are ",
+                                view.positions.size(), " positions"),
                          "repair the primitive's indices");
     }
     return okStatus();
@@ -229,9 +227,8 @@ Status checkSize(const ImageView& image, const std::string& where, const ImageLi
                                                                     : limits.maxSize;
     if (image.width == 0 || image.height == 0 || image.width > most || image.height > most) {
         return makeError("scene-image", where,
-                         "the image is " + std::to_string(image.width) + " x " +
-                             std::to_string(image.height) + " pixels, the device takes 1 to " +
-                             std::to_string(most),
+                         phrase("the image is ", image.width, " x ", image.height,
+                                " pixels, the device takes 1 to ", most),
                          "scale the image");
     }
     const std::uint32_t mostLayers = image.dimension == Dimension::Flat    ? 1
@@ -241,8 +238,8 @@ Status checkSize(const ImageView& image, const std::string& where, const ImageLi
     const bool isCube = image.dimension == Dimension::Cube;
     if (image.layers == 0 || image.layers > mostLayers || (isCube && image.layers != mostLayers)) {
         return makeError("scene-image", where,
-                         "the image has " + std::to_string(image.layers) + " layers, it takes " +
-                             (isCube || mostLayers == 1 ? "" : "1 to ") + std::to_string(mostLayers),
+                         phrase("the image has ", image.layers, " layers, it takes ",
+                                (isCube || mostLayers == 1 ? "" : "1 to "), mostLayers),
                          "give ImageView::dimension and ImageView::layers as they are");
     }
     if (isCube && image.width != image.height) {
@@ -276,16 +273,14 @@ Status checkImage(const ImageView& image, bool srgb, const std::string& where, c
     const std::uint32_t most = image.mostLevels();
     if (image.levels == 0 || image.levels > most) {
         return makeError("scene-image", where,
-                         "the image has " + std::to_string(image.levels) + " levels, its size takes 1 to " +
-                             std::to_string(most),
+                         phrase("the image has ", image.levels, " levels, its size takes 1 to ", most),
                          "give the levels that there are");
     }
     if (image.pixels.size() != image.byteCount(image.levels)) {
         return makeError("scene-image", where,
-                         std::to_string(image.pixels.size()) + " bytes do not make " +
-                             std::to_string(image.levels) + " levels of " + std::to_string(image.width) +
-                             " x " + std::to_string(image.height) + " pixels in " + info.name +
-                             ", which take " + std::to_string(image.byteCount(image.levels)),
+                         phrase(image.pixels.size(), " bytes do not make ", image.levels, " levels of ",
+                                image.width, " x ", image.height, " pixels in ", info.name, ", which take ",
+                                image.byteCount(image.levels)),
                          "give all of the levels");
     }
     return okStatus();
@@ -359,9 +354,8 @@ namespace {
 constexpr const char* kGiveAll = "give as many as at upload, in the same order";
 
 Diagnostic attributeError(const PrimitiveView& view, const std::string& what, const char* hint) {
-    return makeError("scene-attribute",
-                     "mesh " + std::to_string(view.mesh) + ", primitive " + std::to_string(view.primitive),
-                     what, hint);
+    return makeError("scene-attribute", phrase("mesh ", view.mesh, ", primitive ", view.primitive), what,
+                     hint);
 }
 
 Status checkTargets(const PrimitiveView& view) {
@@ -375,9 +369,8 @@ Status checkTargets(const PrimitiveView& view) {
                                      Member{target.tangents.size(), view.tangents.size()}}) {
             if (member.count != 0 && member.count != member.base) {
                 return attributeError(view,
-                                      "a morph target has " + std::to_string(member.count) +
-                                          " differences to an attribute of " + std::to_string(member.base) +
-                                          " elements",
+                                      phrase("a morph target has ", member.count,
+                                             " differences to an attribute of ", member.base, " elements"),
                                       "give a difference for each element, or none");
             }
         }
@@ -423,9 +416,7 @@ Status checkFinite(const InstanceView& instance, const std::string& where) {
 Diagnostic otherCount(const std::string& where, const std::string& what, std::size_t count,
                       std::size_t expected) {
     return makeError("scene-motion", where,
-                     "there are " + std::to_string(count) + " " + what + ", at upload there were " +
-                         std::to_string(expected),
-                     kGiveAll);
+                     phrase("there are ", count, " ", what, ", at upload there were ", expected), kGiveAll);
 }
 
 }  // namespace
@@ -435,15 +426,14 @@ Status checkPose(const InstanceView& pose, std::size_t joints, std::size_t targe
     GLINT_TRY_DO(checkFinite(pose, where));
     if (!pose.joints.empty() && joints > pose.joints.size()) {
         return makeError("scene-index", where,
-                         "a vertex follows joint " + std::to_string(joints - 1) + ", there are " +
-                             std::to_string(pose.joints.size()),
+                         phrase("a vertex follows joint ", joints - 1, ", there are ", pose.joints.size()),
                          "give every joint that the mesh follows");
     }
     if (pose.morphWeights.size() > targets) {
-        return makeError("scene-motion", where,
-                         "there are " + std::to_string(pose.morphWeights.size()) + " weights for " +
-                             std::to_string(targets) + " morph targets",
-                         "give one weight for each target");
+        return makeError(
+            "scene-motion", where,
+            phrase("there are ", pose.morphWeights.size(), " weights for ", targets, " morph targets"),
+            "give one weight for each target");
     }
     return okStatus();
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <limits>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -64,15 +65,15 @@ Status checkFrameSize(const Context::State& context, const FrameSize& size) {
     const std::size_t images = gpu::kFrameImageCount + size.layers.size();
     if (images > std::min(limits.maxPerStageDescriptorStorageImages, limits.maxDescriptorSetStorageImages)) {
         return makeError("device-layers", "",
-                         "the package has " + std::to_string(size.layers.size()) +
-                             " layers, and shaders of the device can write no more than " +
-                             std::to_string(limits.maxPerStageDescriptorStorageImages) + " images",
+                         phrase("the package has ", size.layers.size(),
+                                " layers, and shaders of the device can write no more than ",
+                                limits.maxPerStageDescriptorStorageImages, " images"),
                          "compile the package with fewer --layers");
     }
-    const std::string asked = std::to_string(size.width) + " x " + std::to_string(size.height);
+    const std::string asked = phrase(size.width, " x ", size.height);
     if (size.width == 0 || size.height == 0 || size.width > maxWidth || size.height > maxHeight) {
         return makeError("render-size", "", "an image of " + asked + " pixels cannot be rendered",
-                         "use 1 x 1 to " + std::to_string(maxWidth) + " x " + std::to_string(maxHeight));
+                         phrase("use 1 x 1 to ", maxWidth, " x ", maxHeight));
     }
     const std::uint64_t samples = std::uint64_t{size.width} * size.height * std::max(size.sampleCount, 1U);
     // There is a sample for every pixel and effect, and 32 bits number the samples.
@@ -83,11 +84,11 @@ Status checkFrameSize(const Context::State& context, const FrameSize& size) {
                          "render a smaller image");
     }
     if (size.rayPipeline && listSlots(size) > maxRayDispatch(context.limits)) {
-        return makeError("render-size", "",
-                         "the rays of " + asked + " pixels are more than one dispatch of the device's ray " +
-                             "tracing pipelines holds, which is " +
-                             std::to_string(maxRayDispatch(context.limits)),
-                         "render a smaller image, or use the tracer ray-query");
+        return makeError(
+            "render-size", "",
+            phrase("the rays of ", asked, " pixels are more than one dispatch of the device's ray ",
+                   "tracing pipelines holds, which is ", maxRayDispatch(context.limits)),
+            "render a smaller image, or use the tracer ray-query");
     }
     return okStatus();
 }
@@ -114,35 +115,27 @@ bool hasImage(const FrameSize& size, std::uint32_t binding) {
 }
 
 Status createImages(Context::State& context, const FrameSize& size, FrameResources& frame) {
+    constexpr VkImageUsageFlags kStored =
+        VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    ImageInfo info{.extent = {size.width, size.height}};
     for (std::uint32_t binding = 0; binding < gpu::kFrameImageCount; ++binding) {
-        ImageInfo info;
-        info.extent = {size.width, size.height};
         if (!hasImage(size, binding)) {
             continue;
         }
         const bool surface = binding == gpu::kBindingSurface;
         info.format = surface ? kSurfaceFormat : size.halfPicture ? kHalfLightFormat : kLightFormat;
-        info.usage =
-            VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-        if (surface) {
-            info.usage |= VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-        }
+        info.usage = kStored | (surface ? VkImageUsageFlags{VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT} : 0U);
         if (binding == gpu::kBindingAccumulated) {
             info.usage |= VK_IMAGE_USAGE_SAMPLED_BIT;  // the caller can draw it
         }
         GLINT_TRY(frame.images[binding], createImage(context, frame.pool, info));
     }
     for (const package::PackageLayer& layer : size.layers) {
-        ImageInfo info;
-        info.extent = {size.width, size.height};
         info.format = vulkanFormat(layer.info->format);
-        info.usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
-                     VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+        info.usage = kStored | VK_IMAGE_USAGE_SAMPLED_BIT;
         GLINT_TRY(auto image, createImage(context, frame.pool, info));
         frame.layers.push_back(std::move(image));
     }
-    ImageInfo info;
-    info.extent = {size.width, size.height};
     info.format = kDepthFormat;
     info.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
     info.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
@@ -169,7 +162,7 @@ struct WantedBuffer {
 };
 
 // Returns all buffers of a frame.
-std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const FrameSize& size) {
+std::vector<WantedBuffer> wantedBuffers(const FrameSize& size) {
     constexpr VkBufferUsageFlags kStorage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     constexpr VkBufferUsageFlags kCleared =
         kStorage | VK_BUFFER_USAGE_TRANSFER_DST_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
@@ -207,7 +200,7 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
     const bool follows = firstShadows > 0 && !size.deferredShadows;
     constexpr MemoryUse kOnDevice = MemoryUse::Device;
     using Frame = FrameResources;
-    return {{
+    return {
         {"constants", &Frame::constants, sizeof(gpu::FrameConstants), kCleared},
         {"shadow rays", &Frame::shadows, shadowBytes, kStorage},
         {"starts of samples", &Frame::sampleStarts, samples * sizeof(gpu::SampleStart), kRead},
@@ -242,14 +235,14 @@ std::array<WantedBuffer, FrameResources::kBufferCount> wantedBuffers(const Frame
         {"counters", &Frame::counters, counterBytes(size), kCleared},
         {"read-back", &Frame::readback, readbackDepth(size, size.paths ? BounceLevels::kSlots : 0),
          VK_BUFFER_USAGE_TRANSFER_DST_BIT, MemoryUse::Readback},
-    }};
+    };
 }
 
 // Returns the memory of a resource, for others.
 template <typename Resource>
 SharedMemory memoryOf(const Resource& resource) {
-    const Allocation& memory = resource.memory;
-    return {memory, memory.offset, memory.offset + resource.bytes};
+    const VkDeviceSize begin = resource.memory == nullptr ? 0 : resource.memory->offset;
+    return {resource.memory, begin, begin + resource.bytes};
 }
 
 Status createBuffers(Context::State& context, const FrameSize& size, FrameResources& frame) {
@@ -403,7 +396,7 @@ bool haveSameImages(const FrameSize& first, const FrameSize& second) {
 
 Result<NextBuffers> createNextBuffers(Context::State& context, const FrameSize& now, const FrameSize& next) {
     NextBuffers buffers;
-    buffers.pool = std::make_shared<MemoryPool>(context, "frame");
+    MemoryPool pool(context, "frame");
     const auto before = wantedBuffers(now);
     const auto after = wantedBuffers(next);
     bool shadowsMove = false;
@@ -420,23 +413,21 @@ Result<NextBuffers> createNextBuffers(Context::State& context, const FrameSize& 
         Buffer made;
         if (wanted.bytes > 0) {
             SharedMemory* const shared = wanted.followsShadows ? &ofShadows : nullptr;
-            GLINT_TRY(made,
-                      createBuffer(context, *buffers.pool, wanted.bytes, wanted.usage, wanted.use, shared));
+            GLINT_TRY(made, createBuffer(context, pool, wanted.bytes, wanted.usage, wanted.use, shared));
             ++buffers.made;
             if (wanted.member == &FrameResources::shadows) {
                 ofShadows = memoryOf(made);
             }
         }
-        buffers.exchanges.push_back({place, wanted.member, std::move(made)});
+        buffers.exchanges.push_back({wanted.member, std::move(made)});
     }
     return buffers;
 }
 
-EarlierBuffers replaceBuffers(NextBuffers next, FrameResources& frame) {
-    EarlierBuffers earlier;
-    for (NextBuffers::Exchange& exchange : next.exchanges) {
-        earlier.buffers.push_back(std::exchange(frame.*exchange.member, std::move(exchange.buffer)));
-        earlier.pools.push_back(std::exchange(frame.bufferPools[exchange.place], next.pool));
+std::vector<Buffer> replaceBuffers(NextBuffers next, FrameResources& frame) {
+    std::vector<Buffer> earlier;
+    for (auto& [member, buffer] : next.exchanges) {
+        earlier.push_back(std::exchange(frame.*member, std::move(buffer)));
     }
     return earlier;
 }
@@ -450,14 +441,14 @@ std::vector<std::pair<const char*, const Buffer*>> buffersOf(const FrameResource
     return buffers;
 }
 
-VkDeviceSize allocatedBytes(const FrameResources& frame) {
-    std::set<const MemoryPool*> pools{&frame.pool};
-    for (const std::shared_ptr<MemoryPool>& pool : frame.bufferPools) {
-        pools.insert(pool != nullptr ? pool.get() : &frame.pool);
-    }
-    VkDeviceSize bytes = 0;
-    for (const MemoryPool* const pool : pools) {
-        bytes += pool->bytes();
+VkDeviceSize allocatedBytes(const FrameResources& frame, const FrameSize& size) {
+    VkDeviceSize bytes = frame.pool.bytes();
+    std::set<const MemoryBlocks*> others;
+    for (const auto& [name, buffer] : buffersOf(frame, size)) {
+        if (buffer->memory != nullptr && !frame.pool.has(*buffer->memory) &&
+            others.insert(buffer->memory->pool).second) {
+            bytes += buffer->memory->pool->bytes();
+        }
     }
     return bytes;
 }
@@ -466,13 +457,7 @@ Result<DescriptorSet> createFrameSet(Context::State& context, const FrameSize& s
                                      const FrameResources& frame, const Environment::State* environment) {
     GLINT_TRY(auto made, createSet(context, frame.setLayout.get(), setBindings(context, size), false));
     const auto write = [&](std::uint32_t binding, VkDescriptorType type, const VkDescriptorImageInfo& image) {
-        const VkWriteDescriptorSet one{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                                       .dstSet = made.set,
-                                       .dstBinding = binding,
-                                       .descriptorCount = 1,
-                                       .descriptorType = type,
-                                       .pImageInfo = &image};
-        context.vk.UpdateDescriptorSets(context.handles.device, 1, &one, 0, nullptr);
+        writeImages(context, made.set, binding, type, std::span(&image, 1));
     };
     const auto bind = [&](std::uint32_t binding, const DeviceImage& own) {
         write(binding, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,

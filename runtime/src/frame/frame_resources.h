@@ -33,10 +33,6 @@ struct FrameResources {
     explicit FrameResources(Context::State& context) : pool(context, "frame") {}
 
     MemoryPool pool;
-    // The memory of buffers that replaceBuffers() has exchanged, in the order of buffersOf(). The memory of
-    // the others is `pool`.
-    static constexpr std::size_t kBufferCount = 27;
-    std::array<std::shared_ptr<MemoryPool>, kBufferCount> bufferPools{};
     // The images by binding, in the layout GENERAL. Bindings that share an image have it in one place
     // (imageOf()).
     std::array<DeviceImage, gpu::kFrameImageCount> images;
@@ -199,11 +195,9 @@ void prepareImages(Context::State& context, VkCommandBuffer commands, FrameResou
 // Buffers for frames of another size in memory, which replace those that have another size now.
 struct NextBuffers {
     struct Exchange {
-        std::size_t place = 0;  // in buffersOf()
         Buffer FrameResources::*member = nullptr;
         Buffer buffer;  // without a handle if the frame no longer needs it
     };
-    std::shared_ptr<MemoryPool> pool;
     std::vector<Exchange> exchanges;
     std::uint32_t kept = 0;  // buffers that stay
     std::uint32_t made = 0;
@@ -219,24 +213,19 @@ VkDeviceSize frameBytes(const FrameSize& size);
 // Returns whether frames of both sizes have the same images and the same layout of set 1.
 bool haveSameImages(const FrameSize& first, const FrameSize& second);
 
-// Makes the buffers that frames of the size `next` need and frames of the size `now` lack. Errors: those of
-// buffers.
+// Makes the buffers that frames of the size `next` need and frames of the size `now` lack, in memory of their
+// own, so that another thread may destroy them. Errors: those of buffers.
 Result<NextBuffers> createNextBuffers(Context::State& context, const FrameSize& now, const FrameSize& next);
 
-// The buffers that were exchanged, which commands in flight may still use. Members are destroyed in reverse
-// order.
-struct EarlierBuffers {
-    std::vector<std::shared_ptr<MemoryPool>> pools;
-    std::vector<Buffer> buffers;
-};
-EarlierBuffers replaceBuffers(NextBuffers next, FrameResources& frame);
+// Returns the buffers that were exchanged, which commands in flight may still use.
+std::vector<Buffer> replaceBuffers(NextBuffers next, FrameResources& frame);
 
 // Returns all buffers, with names for reports.
 std::vector<std::pair<const char*, const Buffer*>> buffersOf(const FrameResources& frame,
                                                              const FrameSize& size);
 
 // Returns the size of the memory of all images and buffers.
-VkDeviceSize allocatedBytes(const FrameResources& frame);
+VkDeviceSize allocatedBytes(const FrameResources& frame, const FrameSize& size);
 
 // Makes a set 1 of the frame's images and, with FrameSize::environmentMap, of an environment, which may be
 // null until a frame needs it. Errors: "vulkan-call".

@@ -48,8 +48,9 @@ Status MotionHistory::makeRoom() {
     if (!isChanging(*scene_)) {
         return okStatus();
     }
-    if (instances_.bytes < scene_->instances.bytes) {
-        GLINT_TRY(auto buffer, createBuffer(scene_->context, pool_, scene_->instances.bytes, kHistoryUsage));
+    const VkDeviceSize wanted = instanceRecords(*scene_).bytes;
+    if (instances_.bytes < wanted) {
+        GLINT_TRY(auto buffer, createBuffer(scene_->context, pool_, wanted, kHistoryUsage));
         outgrown_.add(std::exchange(instances_, std::move(buffer)));
         hasInstances_ = false;
     }
@@ -118,7 +119,7 @@ void MotionHistory::recordTable(VkCommandBuffer commands) {
 void MotionHistory::fill(gpu::FrameConstants& constants) {
     fillView(constants, next_.rows);
     std::ranges::copy(view_ ? view_->rows : next_.rows, constants.previousView);
-    constants.previousInstances = hasInstances_ ? instances_.address : scene_->instances.address;
+    constants.previousInstances = hasInstances_ ? instances_.address : instanceRecords(*scene_).address;
     const bool hasVertices = hasInstances_ && hasVertices_;
     constants.previousVertices = hasVertices ? table_.address : 0;
     constants.hasPreviousVertices = hasVertices ? 1 : 0;
@@ -133,8 +134,9 @@ void MotionHistory::record(VkCommandBuffer commands, std::uint64_t recording) {
     recordDependency(scene_->context, commands, kFrameToCopy);
     recordTable(commands);
     const DeviceTable& vk = scene_->context.vk;
-    const VkBufferCopy all{0, 0, std::min(instances_.bytes, scene_->instances.bytes)};
-    vk.CmdCopyBuffer(commands, scene_->instances.handle.get(), instances_.handle.get(), 1, &all);
+    const Buffer& instances = instanceRecords(*scene_);
+    const VkBufferCopy all{0, 0, std::min(instances_.bytes, instances.bytes)};
+    vk.CmdCopyBuffer(commands, instances.handle.get(), instances_.handle.get(), 1, &all);
     for (const Copy& copy : copies_) {
         vk.CmdCopyBuffer(commands, copy.source, vertices_.handle.get(), 1, &copy.region);
     }

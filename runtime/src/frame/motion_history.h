@@ -42,7 +42,7 @@ public:
 
 private:
     explicit MotionHistory(const GpuScene::State& scene)
-        : scene_(&scene), pool_(scene.context, "frame before"), outgrown_(pool_) {}
+        : scene_(&scene), pool_(scene.context, "frame before") {}
 
     Status makeVertices();
     void recordTable(VkCommandBuffer commands);

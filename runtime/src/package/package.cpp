@@ -22,13 +22,11 @@ constexpr std::uint64_t kMaxTablesBytes = std::uint64_t{256} << 20;
 
 }  // namespace
 
-Result<Package> Package::load(const std::filesystem::path& folder) try {
-    return loadFrom(FolderFiles(folder));
-}
+Result<Package> Package::load(const std::filesystem::path& folder) try { return loadFrom(filesOf(folder)); }
 GLINT_CATCH
 
 Result<Package> Package::load(std::span<const package::EmbeddedFile> files) try {
-    return loadFrom(MemoryFiles(files));
+    return loadFrom(filesOf(files));
 }
 GLINT_CATCH
 

@@ -1,6 +1,7 @@
 // A package in memory, and the checks that make it trustworthy.
 #pragma once
 
+#include "context/context.h"
 #include "interop/scene.h"
 
 #include <glint/context.h>
@@ -14,6 +15,7 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -73,42 +75,19 @@ Status checkTables(Package::State& state, const std::string& where);
 // The source of a package's files.
 class PackageFiles {
 public:
-    PackageFiles() = default;
-    PackageFiles(const PackageFiles&) = delete;
-    PackageFiles& operator=(const PackageFiles&) = delete;
-    virtual ~PackageFiles() = default;
-
     // Returns the name that messages use for a file.
-    virtual std::string where(const std::string& name) const = 0;
+    std::function<std::string(const std::string& name)> where;
     // Returns a whole file. If the file is longer than maxBytes, returns its first maxBytes + 1 bytes.
     // Errors: `missingId` if there is no such file, "package-read", "package-file-name".
-    virtual Result<std::vector<std::uint8_t>> read(const std::string& name, const char* missingId,
-                                                   std::uint64_t maxBytes) const = 0;
+    std::function<Result<std::vector<std::uint8_t>>(const std::string& name, const char* missingId,
+                                                    std::uint64_t maxBytes)>
+        read;
 };
 
 // Files below a folder. No name and no link may lead out of it.
-class FolderFiles final : public PackageFiles {
-public:
-    explicit FolderFiles(std::filesystem::path folder);
-    std::string where(const std::string& name) const override;
-    Result<std::vector<std::uint8_t>> read(const std::string& name, const char* missingId,
-                                           std::uint64_t maxBytes) const override;
-
-private:
-    std::filesystem::path folder_;
-};
-
-// Files in memory. The memory must outlive this object.
-class MemoryFiles final : public PackageFiles {
-public:
-    explicit MemoryFiles(std::span<const package::EmbeddedFile> files);
-    std::string where(const std::string& name) const override;
-    Result<std::vector<std::uint8_t>> read(const std::string& name, const char* missingId,
-                                           std::uint64_t maxBytes) const override;
-
-private:
-    std::map<std::string_view, std::span<const std::uint8_t>> files_;
-};
+PackageFiles filesOf(const std::filesystem::path& folder);
+// Files in memory, which must outlive the result. If two have the same name, the first one counts.
+PackageFiles filesOf(std::span<const package::EmbeddedFile> files);
 
 // Reads the modules that the tables name into state.spirv.
 // Errors: "package-module-missing", "package-module-altered", and those of PackageFiles::read().

@@ -119,7 +119,7 @@ Status checkHeader(const Package::State& state, const std::string& where) {
     };
     for (const auto& [what, value, least, most] : fields) {
         if (value < least || value > most) {
-            return altered(where, std::string(what) + " " + std::to_string(value) + " is unknown");
+            return altered(where, phrase(what, " ", value, " is unknown"));
         }
     }
     return okStatus();
@@ -162,8 +162,8 @@ Status checkOpacity(const Package::State& state, const std::string& where) {
 
 Status checkCases(const Package::State& state, const std::string& where) {
     if (state.cases.size() != state.header.caseCount) {
-        return altered(where, "the header names " + std::to_string(state.header.caseCount) +
-                                  " cases, there are " + std::to_string(state.cases.size()));
+        return altered(where, phrase("the header names ", state.header.caseCount, " cases, there are ",
+                                     state.cases.size()));
     }
     for (const package::CaseEntry& entry : state.cases) {
         if (!inStrings(state, entry.name)) {
@@ -181,20 +181,18 @@ Status checkCases(const Package::State& state, const std::string& where) {
 
 Status checkPrimitive(const Package::State& state, const package::SceneEntry& scene,
                       const package::PrimitiveEntry& entry, const std::string& where) {
-    const std::string name =
-        "primitive " + std::to_string(entry.primitive) + " of mesh " + std::to_string(entry.mesh);
+    const std::string name = phrase("primitive ", entry.primitive, " of mesh ", entry.mesh);
     if (entry.shaderId >= state.header.caseCount) {
-        return altered(where, name + " has shader ID " + std::to_string(entry.shaderId) + " of " +
-                                  std::to_string(state.header.caseCount));
+        return altered(where,
+                       phrase(name, " has shader ID ", entry.shaderId, " of ", state.header.caseCount));
     }
     if (entry.materialIndex >= scene.materialCount) {
-        return altered(where, name + " has material " + std::to_string(entry.materialIndex) + " of " +
-                                  std::to_string(scene.materialCount));
+        return altered(where,
+                       phrase(name, " has material ", entry.materialIndex, " of ", scene.materialCount));
     }
     const package::CaseEntry& shadedBy = state.cases[entry.shaderId];
     if (shadedBy.keyCount == 0) {
-        return altered(where,
-                       name + " has shader ID " + std::to_string(entry.shaderId) + ", which is retired");
+        return altered(where, phrase(name, " has shader ID ", entry.shaderId, ", which is retired"));
     }
     // The key may have features that its case does not know: lobes that primary surfaces have and hits do not
     // keep.
@@ -249,8 +247,8 @@ Status checkMaterials(const Package::State& state, const package::SceneEntry& sc
             const gpu::TextureRecord texture = textureAt(materials, i, slot);
             if (texture.textureIndex >= textureEnd || texture.samplerIndex >= samplerEnd ||
                 texture.texCoord > 1) {
-                return altered(where, "material " + std::to_string(scene.firstMaterial + i) +
-                                          " refers to a texture, sampler or UV set that does not exist");
+                return altered(where, phrase("material ", scene.firstMaterial + i,
+                                             " refers to a texture, sampler or UV set that does not exist"));
             }
         }
     }
@@ -398,7 +396,7 @@ Status checkLayers(const Package::State& state, const std::string& where) {
     for (const package::LayerEntry& entry : state.layerEntries) {
         const package::LayerInfo* const info = package::findLayer(entry.layer);
         if (info == nullptr) {
-            return altered(where, "layer " + std::to_string(entry.layer) + " is unknown");
+            return altered(where, phrase("layer ", entry.layer, " is unknown"));
         }
         using Subject = package::LayerSubject;
         const bool ofBounce = info->subject == Subject::Bounce;

@@ -45,8 +45,7 @@ Result<std::vector<std::uint32_t>> readModule(const PackageFiles& files, const s
     GLINT_TRY(auto bytes, files.read(name, "package-module-missing", entry.bytes));
     if (bytes.size() != entry.bytes) {
         return makeError("package-module-altered", where,
-                         "the module has " + std::to_string(bytes.size()) + " bytes, the package says " +
-                             std::to_string(entry.bytes),
+                         phrase("the module has ", bytes.size(), " bytes, the package says ", entry.bytes),
                          kRecompile);
     }
     if (XXH3_64bits(bytes.data(), bytes.size()) != entry.hash) {
@@ -89,49 +88,40 @@ Result<std::vector<std::uint8_t>> readWhole(const std::filesystem::path& path, c
 
 }  // namespace
 
-FolderFiles::FolderFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
-
-std::string FolderFiles::where(const std::string& name) const {
-    return (folder_ / name).string();
+PackageFiles filesOf(const std::filesystem::path& folder) {
+    const auto where = [folder](const std::string& name) { return (folder / name).string(); };
+    const auto read = [folder, where](const std::string& name, const char* missingId,
+                                      std::uint64_t maxBytes) -> Result<std::vector<std::uint8_t>> {
+        if (!staysInside(name) || name.find('\\') != std::string::npos ||
+            name.find('\0') != std::string::npos) {
+            return makeError("package-file-name", where(package::kTablesFile),
+                             "the module file name \"" + name + "\" does not stay in the package's folder",
+                             kRecompile);
+        }
+        GLINT_TRY(auto bytes, readWhole(folder / name, missingId, maxBytes));
+        if (!resolvesInside(folder, folder / name)) {
+            return makeError("package-file-name", where(name),
+                             "the file is a link that leaves the package's folder", kRecompile);
+        }
+        return bytes;
+    };
+    return {where, read};
 }
 
-Result<std::vector<std::uint8_t>> FolderFiles::read(const std::string& name, const char* missingId,
-                                                    std::uint64_t maxBytes) const {
-    if (!staysInside(name) || name.find('\\') != std::string::npos || name.find('\0') != std::string::npos) {
-        return makeError("package-file-name", where(package::kTablesFile),
-                         "the module file name \"" + name + "\" does not stay in the package's folder",
-                         kRecompile);
-    }
-    Result<std::vector<std::uint8_t>> bytes = readWhole(folder_ / name, missingId, maxBytes);
-    if (bytes && !resolvesInside(folder_, folder_ / name)) {
-        return makeError("package-file-name", where(name),
-                         "the file is a link that leaves the package's folder", kRecompile);
-    }
-    return bytes;
-}
-
-// If two files have the same name, the first one counts.
-MemoryFiles::MemoryFiles(std::span<const package::EmbeddedFile> files) {
-    for (const package::EmbeddedFile& file : files) {
-        files_.emplace(file.name, file.bytes);
-    }
-}
-
-std::string MemoryFiles::where(const std::string& name) const {
-    return "embedded " + name;
-}
-
-Result<std::vector<std::uint8_t>> MemoryFiles::read(const std::string& name, const char* missingId,
-                                                    std::uint64_t maxBytes) const {
-    const auto file = files_.find(name);
-    if (file == files_.end()) {
-        return makeError(missingId, where(name), "there is no such file in memory",
-                         "pass all files that `glint compile --embed` made");
-    }
-    const std::span<const std::uint8_t> bytes = file->second;
-    const auto kept =
-        bytes.first(static_cast<std::size_t>(std::min<std::uint64_t>(bytes.size(), maxBytes + 1)));
-    return std::vector<std::uint8_t>(kept.begin(), kept.end());
+PackageFiles filesOf(std::span<const package::EmbeddedFile> files) {
+    const auto where = [](const std::string& name) { return "embedded " + name; };
+    const auto read = [files, where](const std::string& name, const char* missingId,
+                                     std::uint64_t maxBytes) -> Result<std::vector<std::uint8_t>> {
+        const auto file = std::ranges::find(files, name, &package::EmbeddedFile::name);
+        if (file == files.end()) {
+            return makeError(missingId, where(name), "there is no such file in memory",
+                             "pass all files that `glint compile --embed` made");
+        }
+        const auto kept = file->bytes.first(
+            static_cast<std::size_t>(std::min<std::uint64_t>(file->bytes.size(), maxBytes + 1)));
+        return std::vector<std::uint8_t>(kept.begin(), kept.end());
+    };
+    return {where, read};
 }
 
 Status readModules(Package::State& state, const PackageFiles& files) {
@@ -170,20 +160,19 @@ Status readHeader(Package::State& state, const std::string& where) {
     package::PackageHeader& header = state.header;
     if (bytes.size() < sizeof(header)) {
         return makeError("package-truncated", where,
-                         "the file ends within its header, after " + std::to_string(bytes.size()) + " bytes",
+                         phrase("the file ends within its header, after ", bytes.size(), " bytes"),
                          kRecompile);
     }
     std::memcpy(&header, bytes.data(), sizeof(header));
     if (header.version != package::kVersion) {
         return makeError("package-version", where,
-                         "the package has format version " + std::to_string(header.version) +
-                             ", this runtime reads version " + std::to_string(package::kVersion),
+                         phrase("the package has format version ", header.version,
+                                ", this runtime reads version ", package::kVersion),
                          "compile the package with the glint of this runtime's release");
     }
     if (bytes.size() < header.fileBytes) {
         return makeError("package-truncated", where,
-                         "the file has " + std::to_string(bytes.size()) + " of " +
-                             std::to_string(header.fileBytes) + " bytes",
+                         phrase("the file has ", bytes.size(), " of ", header.fileBytes, " bytes"),
                          kRecompile);
     }
     if (bytes.size() > header.fileBytes) {
@@ -212,7 +201,7 @@ Status readSection(const Package::State& state, const package::PackageSection& s
     if (section.elementBytes != sizeof(T) || !inside || !aligned) {
         return makeError(
             "package-altered", where,
-            "section " + std::to_string(static_cast<std::uint32_t>(section.kind)) + " does not fit the file",
+            phrase("section ", static_cast<std::uint32_t>(section.kind), " does not fit the file"),
             kRecompile);
     }
     elements = {reinterpret_cast<const T*>(state.tables.data() + section.offset),
@@ -275,10 +264,9 @@ Status readKnownSection(Package::State& state, const package::PackageSection& se
         case package::SectionKind::Fields:
             return readSection(state, section, where, state.fields);
     }
-    return makeError(
-        "package-altered", where,
-        "the section kind " + std::to_string(static_cast<std::uint32_t>(section.kind)) + " is unknown",
-        kRecompile);
+    return makeError("package-altered", where,
+                     phrase("the section kind ", static_cast<std::uint32_t>(section.kind), " is unknown"),
+                     kRecompile);
 }
 
 }  // namespace
@@ -295,10 +283,9 @@ Status readTables(Package::State& state, const std::string& where) {
         std::memcpy(&section, state.tables.data() + sizeof(package::PackageHeader) + i * sizeof(section),
                     sizeof(section));
         if (!seen.insert(section.kind).second) {
-            return makeError(
-                "package-altered", where,
-                "section " + std::to_string(static_cast<std::uint32_t>(section.kind)) + " is there twice",
-                kRecompile);
+            return makeError("package-altered", where,
+                             phrase("section ", static_cast<std::uint32_t>(section.kind), " is there twice"),
+                             kRecompile);
         }
         GLINT_TRY_DO(readKnownSection(state, section, where));
     }
@@ -309,8 +296,7 @@ Status readTables(Package::State& state, const std::string& where) {
     seen.erase(package::SectionKind::Layers);
     if (seen.size() != kSectionKinds) {
         return makeError("package-altered", where,
-                         "the package has " + std::to_string(seen.size()) + " of " +
-                             std::to_string(kSectionKinds) + " sections",
+                         phrase("the package has ", seen.size(), " of ", kSectionKinds, " sections"),
                          kRecompile);
     }
     return okStatus();

@@ -26,9 +26,6 @@ std::vector<std::uint32_t> casesOf(const PlannedPipeline& planned) {
             cases.push_back(key.index);
         }
     }
-    if (planned.rays) {
-        cases.insert(cases.end(), planned.rays->shaderIds.begin(), planned.rays->shaderIds.end());
-    }
     return cases;
 }
 
@@ -94,20 +91,14 @@ void BackgroundPipelines::work() noexcept {
 }
 
 std::optional<Diagnostic> BackgroundPipelines::make(PlannedPipeline planned) try {
-    PipelineCreation creation{.flags = flags_, .name = planned.job.name};
-    Result<UniquePipeline> made = planned.job.make(creation);
-    std::optional<MadePipeline> pipeline;
-    if (made) {
-        pipeline = {planned.job.name, std::make_shared<const UniquePipeline>(std::move(*made)),
-                    creation.feedback, planned.job.identity};
-    }
+    Result<MadePipeline> made = makePipeline(planned.job, flags_);
     const std::lock_guard lock(mutex_);
     missing_ -= planned.turn == PipelineTurn::Spare ? 0 : 1;
-    if (!pipeline) {
+    if (!made) {
         return made.error();
     }
     missingFixed_ -= planned.turn == PipelineTurn::Fixed ? 1 : 0;
-    done_.push_back({std::move(planned), std::move(*pipeline)});
+    done_.push_back({std::move(planned), std::move(*made)});
     return std::nullopt;
 } catch (...) {
     return caughtError();

@@ -27,20 +27,11 @@ enum class PipelineTurn : std::uint8_t {
     Spare,  // nothing that is drawn needs it
 };
 
-// The parts of a ray tracing pipeline, and the pass that it serves.
-struct RayPass {
-    std::string name;  // for reports
-    package::ModuleKey key;
-    RayPipelineSource source;
-    std::vector<std::uint32_t> shaderIds{};  // of the cases that a pass of cases shades
-    PipelineTurn turn = PipelineTurn::First;
-};
-
 // A pipeline to make, and the passes that it serves.
 struct PlannedPipeline {
     PipelineJob job;
-    std::vector<package::ModuleKey> keys;      // of compute and graphics passes
-    std::shared_ptr<const RayPass> rays = {};  // of a ray tracing pipeline
+    std::vector<package::ModuleKey> keys;                // of the passes
+    std::shared_ptr<const RayPipelineSource> rays = {};  // of a ray tracing pipeline
     PipelineTurn turn = PipelineTurn::First;
 };
 

@@ -1,6 +1,6 @@
 #include "frame/frame_resources.h"
 #include "interop/frame.h"
-#include "renderer/renderer_choice.h"
+#include "renderer/pipelines.h"
 
 #include <glint/internal/frame_traffic.h>
 #include <glint/internal/package_modules.h>

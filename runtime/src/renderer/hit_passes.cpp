@@ -221,18 +221,6 @@ void PassRecorder::dispatchList(const PassLabel& label, const PassPipeline& pass
     endPass();
 }
 
-void PassRecorder::setRows(std::uint32_t rows) {
-    rows_ = rows;
-}
-
-void PassRecorder::setBucket(std::uint32_t bucket) {
-    pushed_.bucket = bucket;
-}
-
-void PassRecorder::setShadowRound(std::uint32_t round) {
-    pushed_.shadowRound = round;
-}
-
 using package::ModuleRole;
 
 void HitPasses::dispatchRays(const PassLabel& label, ModuleRole role) {

@@ -123,7 +123,9 @@ public:
     // Draws a scene into the G-buffer's visibility image.
     void drawScene(std::span<const DrawBatch> batches, std::span<const VkDescriptorSet> sets);
     // Sets the number of rows that passes over pixels have. The default is the height of the image.
-    void setRows(std::uint32_t rows);
+    void setRows(std::uint32_t rows) {
+        rows_ = rows;
+    }
     // Dispatches the pass over the pixels of these rows.
     void dispatchPixels(const PassLabel& label, const PassPipeline& pass);
     // Dispatches `groups` workgroups.
@@ -132,9 +134,13 @@ public:
     void dispatchList(const PassLabel& label, const PassPipeline& pass, const Buffer& arguments,
                       std::uint32_t index);
     // Sets the bucket that the next dispatch shades.
-    void setBucket(std::uint32_t bucket);
+    void setBucket(std::uint32_t bucket) {
+        pushed_.bucket = bucket;
+    }
     // Sets PushConstants::shadowRound of the next dispatches.
-    void setShadowRound(std::uint32_t round);
+    void setShadowRound(std::uint32_t round) {
+        pushed_.shadowRound = round;
+    }
 
     const PassDependencies& dependencies() const {
         return dependencies_;

@@ -4,7 +4,6 @@
 #include "data/deformer.h"
 #include "renderer/pipeline_jobs.h"
 #include "renderer/pipelines.h"
-#include "renderer/renderer_choice.h"
 #include "scene/gpu_scene_state.h"
 
 #include <glint/internal/package_pipelines.h>
@@ -216,11 +215,11 @@ struct Planned {
     }
 
     static std::vector<package::ModuleKey> modulesOf(const Package& package, const PlannedPipeline& planned) {
-        std::vector<package::ModuleKey> keys = planned.keys;
-        if (!planned.rays) {
-            return keys;
+        if (planned.rays == nullptr) {
+            return planned.keys;
         }
-        const RayPipelineSource& source = planned.rays->source;
+        std::vector<package::ModuleKey> keys;
+        const RayPipelineSource& source = *planned.rays;
         std::vector<SpirvWords> stages{source.rayGeneration, source.anyHit};
         stages.insert(stages.end(), source.miss.begin(), source.miss.end());
         stages.insert(stages.end(), source.closestHit.begin(), source.closestHit.end());

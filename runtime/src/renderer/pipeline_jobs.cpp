@@ -3,6 +3,7 @@
 #include "context/parallel.h"
 #include "context/resources.h"
 #include "context/vulkan_table.h"
+#include "interop/frame.h"
 #include "package/package.h"
 
 #include <xxhash.h>
@@ -11,7 +12,6 @@
 #include <array>
 #include <cstring>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 namespace glint {
@@ -176,14 +176,13 @@ Result<ShaderBindingTable> createTable(Context::State& context, MemoryPool& pool
     GLINT_TRY(auto handles, groupHandles(context, pipeline, groupCount));
     const TableLayout layout = layOutTable(context, source);
     const VkDeviceSize alignment = context.limits.rayPipeline.shaderGroupBaseAlignment;
-    // Vulkan does not guarantee this alignment for the buffer itself.
-    GLINT_TRY(auto buffer, createBuffer(context, pool, layout.bytes + alignment,
-                                        VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR, MemoryUse::Shared));
-    ShaderBindingTable table;
-    table.buffer = std::move(buffer);
-    const VkDeviceAddress start = alignUp(table.buffer.address, alignment);
+    GLINT_TRY(auto made, createAligned(context, pool, layout.bytes, alignment,
+                                       VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR, MemoryUse::Shared));
+    const VkDeviceAddress start = made.address;
     const std::vector<std::uint8_t> bytes = fillTable(source, layout, handles);
-    std::memcpy(table.buffer.mapped + (start - table.buffer.address), bytes.data(), bytes.size());
+    std::memcpy(made.buffer.mapped + made.offset(), bytes.data(), bytes.size());
+    ShaderBindingTable table;
+    table.buffer = std::move(made.buffer);
     table.rayGeneration = {start, layout.missOffset, layout.missOffset};
     table.miss = {start + layout.missOffset, layout.stride, layout.stride * source.miss.size()};
     table.hit = {start + layout.hitOffset, layout.stride, layout.bytes - layout.hitOffset};
@@ -217,6 +216,13 @@ PipelineIdentity identify(const Package& package, const RayPipelineSource& sourc
     return identify(package, VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR, source.miss.size(), stages);
 }
 
+Result<MadePipeline> makePipeline(const PipelineJob& job, VkPipelineCreateFlags flags) {
+    PipelineCreation creation{.flags = flags, .name = job.name};
+    GLINT_TRY(auto pipeline, job.make(creation));
+    return MadePipeline{job.name, std::make_shared<const UniquePipeline>(std::move(pipeline)),
+                        creation.feedback, job.identity};
+}
+
 std::uint32_t pipelineThreads(std::uint32_t wanted, std::size_t jobCount) {
     const std::uint32_t most = wanted > 0 ? wanted : threadsOfMachine();
     return static_cast<std::uint32_t>(std::clamp<std::size_t>(jobCount, 1, most));
@@ -229,29 +235,10 @@ std::vector<Result<MadePipeline>> tryPipelines(std::span<const PipelineJob> jobs
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::stable_sort(order, std::greater(), [&](std::size_t job) { return jobs[job].wordCount; });
 
-    std::vector<std::optional<Result<UniquePipeline>>> results(jobs.size());
-    std::vector<PipelineCreation> creations(jobs.size(), PipelineCreation{.flags = flags});
+    std::vector<Result<MadePipeline>> made(jobs.size(), Result<MadePipeline>(MadePipeline{}));
     forEach(
         order.size(),
-        [&](std::size_t taken) {
-            const std::size_t job = order[taken];
-            creations[job].name = jobs[job].name;
-            results[job].emplace(jobs[job].make(creations[job]));
-        },
-        threads);
-
-    std::vector<Result<MadePipeline>> made;
-    made.reserve(jobs.size());
-    for (std::size_t job = 0; job < jobs.size(); ++job) {
-        Result<UniquePipeline>& result = *results[job];
-        if (!result) {
-            made.emplace_back(result.error());
-            continue;
-        }
-        made.emplace_back(MadePipeline{jobs[job].name,
-                                       std::make_shared<const UniquePipeline>(std::move(*result)),
-                                       creations[job].feedback, jobs[job].identity});
-    }
+        [&](std::size_t taken) { made[order[taken]] = makePipeline(jobs[order[taken]], flags); }, threads);
     return made;
 }
 

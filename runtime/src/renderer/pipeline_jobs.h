@@ -50,8 +50,6 @@ Result<UniquePipeline> createRayPipeline(Context::State& context, VkPipelineLayo
 Result<ShaderBindingTable> createTable(Context::State& context, MemoryPool& pool, VkPipeline pipeline,
                                        const RayPipelineSource& source);
 
-struct RayPipelineSource;
-
 // A hash of everything that a pipeline is made from, except its layout and flags: its stages' SPIR-V and the
 // size of its workgroups. 128 bits, so that two pipelines of a program never share one by chance.
 struct PipelineIdentity {
@@ -85,6 +83,8 @@ struct MadePipeline {
     VkPipelineCreationFeedback feedback{};         // without the flag VALID the driver gives no feedback
     PipelineIdentity identity{};
 };
+
+Result<MadePipeline> makePipeline(const PipelineJob& job, VkPipelineCreateFlags flags);
 
 // Returns the number of threads for that many jobs, at most `wanted`. 0 asks for as many as the machine runs
 // at once.

@@ -10,10 +10,10 @@
 #include <array>
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <memory>
-#include <set>
 #include <utility>
 
 namespace glint {
@@ -144,78 +144,6 @@ RayPipelineSource hitShaderSource(const Package& package, const HitShaderRoles& 
     return source;
 }
 
-// Returns the source of a strategy's own pipeline with the fallback for every hit.
-RayPipelineSource hitFallbackSource(const Package& package, const HitShaderRoles& roles) {
-    RayPipelineSource source = hitShaderStart(package, roles);
-    source.closestHit = {rayWords(package, roles.fallbackHit)};
-    return source;
-}
-
-// Plans the cases that trace their own shadow rays. Each distinct module has a pipeline, so that threads can
-// make several at once: one pipeline for all took a driver six times as long for 256 cases (docs/live.md).
-std::vector<RayPass> planCases(const Package& package, const PipelineChoice& choice, ModuleRole role) {
-    std::vector<RayPass> passes;
-    std::map<const std::uint32_t*, std::size_t> byWords;
-    for (std::uint32_t shaderId = 0; shaderId < package.caseCount(); ++shaderId) {
-        const SpirvWords words = rayWords(package, role, shaderId);
-        if (words.empty()) {
-            continue;
-        }
-        const auto [known, fresh] = byWords.emplace(words.data(), passes.size());
-        if (fresh) {
-            RayPass& pass = passes.emplace_back();
-            pass.key = {role, shaderId, package::kTracerRayPipeline};
-            pass.name = pipelineName(package, pass.key);
-            pass.source = tracingSource(package, words);
-            pass.turn = turnOf(choice, role);
-        }
-        passes[known->second].shaderIds.push_back(shaderId);
-    }
-    return passes;
-}
-
-// Plans the ray passes of the choice. `shaderIds` are those of the scene's geometry records, in their order.
-// The sources point into the package.
-std::vector<RayPass> planRayPasses(const Package& package, const PipelineChoice& choice,
-                                   std::span<const std::uint32_t> shaderIds) {
-    std::vector<RayPass> passes;
-    std::set<ModuleRole> ofCases;  // of cases that trace their own shadow rays
-    for (const package::ModuleKey& key : package::requiredModules(chosenShape(package, choice))) {
-        const package::RoleInfo& info = *package::findRole(key.role);
-        const bool generatesRays = info.kind == package::ShaderKind::Tracing ||
-                                   info.kind == package::ShaderKind::Shading ||
-                                   info.kind == package::ShaderKind::RayGeneration;
-        if (key.tracer != package::kTracerRayPipeline || !generatesRays || !runsFallback(choice, key.role)) {
-            continue;
-        }
-        if (info.over == package::Over::Buckets) {
-            ofCases.insert(key.role);
-            continue;
-        }
-        RayPass pass;
-        pass.name = pipelineName(package, key);
-        pass.key = key;
-        pass.turn = turnOf(choice, key.role);
-        if (info.kind != package::ShaderKind::RayGeneration) {
-            pass.source = tracingSource(package, package.spirv(key));
-        } else {
-            const HitShaderRoles roles = hitShaderRoles(choice.strategy);
-            if (choice.background) {
-                RayPass& fallback = passes.emplace_back(pass);
-                fallback.name = pipelineName(package, {roles.fallbackHit, 0, key.tracer});
-                fallback.turn = choice.draft ? PipelineTurn::Fixed : PipelineTurn::First;
-                fallback.source = hitFallbackSource(package, roles);
-            }
-            pass.source = hitShaderSource(package, roles, shaderIds);
-        }
-        passes.push_back(std::move(pass));
-    }
-    for (const ModuleRole role : ofCases) {
-        std::ranges::move(planCases(package, choice, role), std::back_inserter(passes));
-    }
-    return passes;
-}
-
 // Returns the number of SPIR-V words of all stages.
 std::size_t wordCount(const RayPipelineSource& source) {
     std::size_t count = source.rayGeneration.size() + source.anyHit.size();
@@ -225,19 +153,6 @@ std::size_t wordCount(const RayPipelineSource& source) {
         }
     }
     return count;
-}
-
-// Makes the shader binding table of the pass and adds the pass to `pipelines`, which then must own
-// `pipeline`. Errors: those of buffers, "vulkan-call".
-Status addRayPass(Context::State& context, const RayPass& pass, VkPipeline pipeline, Pipelines& pipelines) {
-    GLINT_TRY(auto table, createTable(context, pipelines.pool, pipeline, pass.source));
-    const PassPipeline made{pipeline, true, table.rayGeneration, table.miss, table.hit};
-    pipelines.add(pass.key, made);
-    for (const std::uint32_t shaderId : pass.shaderIds) {
-        pipelines.add({pass.key.role, shaderId, pass.key.tracer}, made);
-    }
-    pipelines.tables.push_back(std::move(table.buffer));
-    return okStatus();
 }
 
 // Returns the stages that push constants are for.
@@ -342,39 +257,132 @@ bool runs(const Package& package, const PipelineChoice& choice, const package::R
     return key.role != ModuleRole::OrderCheck || choice.checksOrder;
 }
 
-// Plans every compute pass and case of the choice.
-void planComputePasses(Context::State& context, const Package& package, const PipelineChoice& choice,
-                       VkPipelineLayout layout, std::vector<PlannedPipeline>& plan) {
-    // The loader gives the same words to entries that name the same file.
-    std::map<const std::uint32_t*, std::size_t> byWords;
-    for (const package::ModuleKey& key : package::requiredModules(chosenShape(package, choice))) {
-        const package::RoleInfo& info = *package::findRole(key.role);
-        if (isGraphics(info) || key.tracer == package::kTracerRayPipeline ||
-            !runs(package, choice, info, key)) {
-            continue;
+// Plans the pipelines of a choice.
+class Planner {
+public:
+    // `shaderIds` are those of the scene's geometry records, in their order.
+    Planner(Context::State& context, const Package& package, const PipelineChoice& choice,
+            std::span<const std::uint32_t> shaderIds, VkPipelineLayout layout)
+        : context_(context), package_(package), choice_(choice), shaderIds_(shaderIds), layout_(layout) {}
+
+    std::vector<PlannedPipeline> plan() {
+        if (package_.passes() == package::Passes::Frame) {
+            addGBuffer();
         }
-        const std::span<const std::uint32_t> words = package.spirv(key);
-        const std::uint32_t threads = chosenThreads(context.limits, key, package.bucketCount());
-        const auto [known, fresh] = byWords.emplace(words.data(), plan.size());
-        if (fresh) {
-            plan.push_back(
-                {{pipelineName(package, key), words.size(),
-                  [&context, words, layout, constants = ShaderConstants{threads, choice.countsLight},
-                   half = choice.halfPicture](PipelineCreation& creation) {
-                      creation.constants = constants;
-                      creation.halfPicture = half;
-                      return createComputePipeline(context, words, layout, creation);
-                  },
-                  identify(package, VK_PIPELINE_BIND_POINT_COMPUTE, threads, {words})},
-                 {},
-                 {},
-                 PipelineTurn::Spare});
+        for (const bool generatesRays : {false, true}) {
+            for (const package::ModuleKey& key : package::requiredModules(chosenShape(package_, choice_))) {
+                const package::RoleInfo& info = *package::findRole(key.role);
+                if (hasPass(info) && (key.tracer == package::kTracerRayPipeline) == generatesRays &&
+                    runs(package_, choice_, info, key)) {
+                    add(info, key);
+                }
+            }
         }
-        PlannedPipeline& planned = plan[known->second];
-        planned.keys.push_back(key);
-        planned.turn = std::min(planned.turn, turnOf(choice, key.role));
+        return std::move(plan_);
     }
-}
+
+private:
+    // Returns whether a pipeline is named after modules of the role. They may be part of those of others.
+    static bool hasPass(const package::RoleInfo& info) {
+        return !isGraphics(info) && info.kind != package::ShaderKind::ClosestHit &&
+               info.kind != package::ShaderKind::AnyHit && info.kind != package::ShaderKind::Miss;
+    }
+
+    void addGBuffer() {
+        const SpirvWords vertex = package_.spirv({ModuleRole::GBufferVertex});
+        const SpirvWords fragment = package_.spirv({ModuleRole::GBufferFragment});
+        plan_.push_back(
+            {{"GBuffer", vertex.size() + fragment.size(),
+              [&context = context_, &package = package_, layout = layout_](PipelineCreation& creation) {
+                  return createGBuffer(context, package, layout, creation);
+              },
+              identify(package_, VK_PIPELINE_BIND_POINT_GRAPHICS, 0, {vertex, fragment})},
+             {{ModuleRole::GBufferVertex}}});
+    }
+
+    // Modules that share their words share a pipeline. Cases that differ have one each, so that threads can
+    // make several at once: one pipeline for all took a driver six times as long for 256 cases
+    // (docs/live.md).
+    void add(const package::RoleInfo& info, const package::ModuleKey& key) {
+        const PipelineTurn turn = turnOf(choice_, key.role);
+        if (info.kind == package::ShaderKind::RayGeneration) {
+            addHitShaders(key, turn);
+            return;
+        }
+        const SpirvWords words = package_.spirv(key);
+        const auto [known, fresh] = byWords_.emplace(words.data(), plan_.size());
+        if (!fresh) {
+            PlannedPipeline& shared = plan_[known->second];
+            shared.keys.push_back(key);
+            shared.turn = std::min(shared.turn, turn);
+        } else if (key.tracer == package::kTracerRayPipeline) {
+            addRays(pipelineName(package_, key), key, tracingSource(package_, words), turn);
+        } else {
+            addCompute(key, words, turn);
+        }
+    }
+
+    void addCompute(const package::ModuleKey& key, SpirvWords words, PipelineTurn turn) {
+        const std::uint32_t threads = chosenThreads(context_.limits, key, package_.bucketCount());
+        plan_.push_back({{pipelineName(package_, key), words.size(),
+                          withSettings(threads,
+                                       [&context = context_, words, layout = layout_](auto& creation) {
+                                           return createComputePipeline(context, words, layout, creation);
+                                       }),
+                          identify(package_, VK_PIPELINE_BIND_POINT_COMPUTE, threads, {words})},
+                         {key},
+                         {},
+                         turn});
+    }
+
+    // The source points into the package.
+    void addRays(std::string name, const package::ModuleKey& key, RayPipelineSource source,
+                 PipelineTurn turn) {
+        const auto rays = std::make_shared<const RayPipelineSource>(std::move(source));
+        plan_.push_back({{std::move(name), wordCount(*rays),
+                          withSettings(0,
+                                       [&context = context_, rays, layout = layout_](auto& creation) {
+                                           return createRayPipeline(context, layout, *rays, creation);
+                                       }),
+                          identify(package_, *rays)},
+                         {key},
+                         rays,
+                         turn});
+    }
+
+    // Plans a strategy's own pipeline, and before it one with the fallback for every hit, if that is drawn
+    // with meanwhile.
+    void addHitShaders(const package::ModuleKey& key, PipelineTurn turn) {
+        const HitShaderRoles roles = hitShaderRoles(choice_.strategy);
+        if (choice_.background) {
+            RayPipelineSource fallback = hitShaderStart(package_, roles);
+            fallback.closestHit = {rayWords(package_, roles.fallbackHit)};
+            addRays(pipelineName(package_, {roles.fallbackHit, 0, key.tracer}), key, std::move(fallback),
+                    choice_.draft ? PipelineTurn::Fixed : PipelineTurn::First);
+        }
+        addRays(pipelineName(package_, key), key, hitShaderSource(package_, roles, shaderIds_), turn);
+    }
+
+    // Returns a job's function that calls create(creation) with the settings of the choice.
+    template <typename Create>
+    std::function<Result<UniquePipeline>(PipelineCreation&)> withSettings(std::uint32_t threads,
+                                                                          const Create& create) const {
+        return [create, constants = ShaderConstants{threads, choice_.countsLight},
+                half = choice_.halfPicture](PipelineCreation& creation) {
+            creation.constants = constants;
+            creation.halfPicture = half;
+            return create(creation);
+        };
+    }
+
+    Context::State& context_;
+    const Package& package_;
+    const PipelineChoice& choice_;
+    std::span<const std::uint32_t> shaderIds_;
+    VkPipelineLayout layout_;
+    std::vector<PlannedPipeline> plan_;
+    std::map<const std::uint32_t*, std::size_t> byWords_;  // places in `plan_`
+};
 
 // Error "module-features" for the first module that the choice runs and the device can't.
 Status checkFeatures(const Context::State& context, const Package& package, const PipelineChoice& choice) {
@@ -403,56 +411,28 @@ std::vector<PlannedPipeline> planPipelines(Context::State& context, const Packag
                                            const PipelineChoice& choice,
                                            std::span<const std::uint32_t> shaderIds,
                                            VkPipelineLayout layout) {
-    std::vector<PlannedPipeline> plan;
-    if (package.passes() == package::Passes::Frame) {
-        const std::span<const std::uint32_t> vertex = package.spirv({ModuleRole::GBufferVertex});
-        const std::span<const std::uint32_t> fragment = package.spirv({ModuleRole::GBufferFragment});
-        plan.push_back({{"GBuffer", vertex.size() + fragment.size(),
-                         [&context, &package, layout](PipelineCreation& creation) {
-                             return createGBuffer(context, package, layout, creation);
-                         },
-                         identify(package, VK_PIPELINE_BIND_POINT_GRAPHICS, 0, {vertex, fragment})},
-                        {{ModuleRole::GBufferVertex}}});
-    }
-    planComputePasses(context, package, choice, layout, plan);
-    for (RayPass& planned : planRayPasses(package, choice, shaderIds)) {
-        const auto pass = std::make_shared<const RayPass>(std::move(planned));
-        plan.push_back({{pass->name, wordCount(pass->source),
-                         [&context, pass, layout, constants = ShaderConstants{0, choice.countsLight},
-                          half = choice.halfPicture](PipelineCreation& creation) {
-                             creation.constants = constants;
-                             creation.halfPicture = half;
-                             return createRayPipeline(context, layout, pass->source, creation);
-                         },
-                         identify(package, pass->source)},
-                        {},
-                        pass,
-                        pass->turn});
-    }
-    return plan;
+    return Planner(context, package, choice, shaderIds, layout).plan();
 }
 
-// Takes a pipeline, and lets the passes that it serves use it.
 Status addPipeline(Context::State& context, const PlannedPipeline& planned, MadePipeline made,
                    Pipelines& pipelines) {
-    const VkPipeline pipeline = made.handle->get();
-    if (planned.rays) {
-        GLINT_TRY_DO(addRayPass(context, *planned.rays, pipeline, pipelines));
-        pipelines.owned.push_back(std::move(made));
-        return okStatus();
+    PassPipeline pass{.pipeline = made.handle->get()};
+    if (planned.rays != nullptr) {
+        GLINT_TRY(auto table, createTable(context, pipelines.pool, pass.pipeline, *planned.rays));
+        pass = {pass.pipeline, true, table.rayGeneration, table.miss, table.hit};
+        pipelines.tables.push_back(std::move(table.buffer));
     }
     pipelines.owned.push_back(std::move(made));
     for (const package::ModuleKey& key : planned.keys) {
         if (key.role == ModuleRole::GBufferVertex) {
-            pipelines.gbuffer = pipeline;
+            pipelines.gbuffer = pass.pipeline;
         } else {
-            pipelines.add(key, {.pipeline = pipeline});
+            pipelines.add(key, pass);
         }
     }
     return okStatus();
 }
 
-// Lets the fallback replace the pipelines that are made later.
 void addFallback(const Package& package, const PipelineChoice& choice, Pipelines& pipelines) {
     if (!choice.background) {
         return;

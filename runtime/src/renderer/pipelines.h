@@ -3,10 +3,12 @@
 #pragma once
 
 #include "context/resources.h"
+#include "frame/frame_resources.h"
 #include "renderer/background_pipelines.h"
 #include "renderer/pipeline_jobs.h"
 
 #include <glint/package.h>
+#include <glint/renderer_options.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -35,6 +37,29 @@ struct PipelineChoice {
     bool halfPicture = false;  // as FrameSize::halfPicture
     bool countsLight = false;  // as RendererOptions::countsLight
 };
+
+// --- The choice of a renderer by its options, its package and the device (renderer_choice.cpp) ---
+
+// Errors: "renderer-options" (not exactly one strategy, tracer or ordering), "package-strategy" and
+// "package-tracer" (the package lacks it), "device-tracer" and "device-ordering" (the device lacks it).
+Result<PipelineChoice> choosePipelines(const Context::State& context, const Package& package,
+                                       const RendererOptions& options);
+
+// Returns the rows of a band, or 0 for a frame that is lit as a whole. Pure.
+std::uint32_t chooseBandRows(const FrameSize& size, std::uint32_t bands);
+
+// Returns the bytes of a shadow ray of a first hit that waits in memory; 0 if they are traced inline.
+std::uint32_t firstShadowBytes(const Package& package);
+
+// Returns whether frames have a picture of 16-bit floats: the options request it, and nothing needs 32 bits.
+// The march in screen space reads depths from it, and shaders have one format for the picture and for layers
+// of 32-bit vectors.
+bool hasHalfPicture(const Package& package, const RendererOptions& options);
+
+FrameSize frameSize(const Package& package, const PipelineChoice& choice, const RendererOptions& options,
+                    std::uint32_t textures);
+
+// --- Its pipelines ---
 
 // Returns the stages of the passes that are not raster passes.
 inline VkPipelineStageFlags2 stagesOf(const PipelineChoice& choice) {

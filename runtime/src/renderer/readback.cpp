@@ -116,26 +116,24 @@ Result<std::vector<SurfaceIdentity>> readIdentities(const Renderer::State& state
 
 }  // namespace
 
-Result<std::vector<std::array<float, 4>>> readFrameImage(Renderer::State& state, CommandRunner& runner,
-                                                         std::uint32_t binding) {
-    const DeviceImage& image = imageOf(state.frame, binding);
+Result<LinearImage> readPicture(const Renderer::State& state, CommandRunner& runner) {
+    const DeviceImage& image = imageOf(state.frame, gpu::kBindingAccumulated);
+    LinearImage picture{state.size.width, state.size.height, {}};
     const std::size_t count = std::size_t{state.size.width} * state.size.height;
     if (image.format != kHalfLightFormat) {
-        return readImage<std::array<float, 4>>(state, runner, image, count);
+        GLINT_TRY(picture.pixels, readImage<std::array<float, 4>>(state, runner, image, count));
+        return picture;
     }
     using HalfPixel = std::array<std::uint16_t, 4>;
     GLINT_TRY(const auto pixels, readImage<HalfPixel>(state, runner, image, count));
-    std::vector<std::array<float, 4>> widened(count);
-    std::ranges::transform(pixels, widened.begin(), [](const HalfPixel& pixel) {
-        std::array<float, 4> wide{};
-        std::ranges::transform(pixel, wide.begin(),
+    for (const HalfPixel& pixel : pixels) {
+        std::ranges::transform(pixel, picture.pixels.emplace_back().begin(),
                                [](std::uint16_t value) { return glm::unpackHalf1x16(value); });
-        return wide;
-    });
-    return widened;
+    }
+    return picture;
 }
 
-Result<std::vector<std::uint8_t>> readFrameBuffer(Renderer::State& state, CommandRunner& runner,
+Result<std::vector<std::uint8_t>> readFrameBuffer(const Renderer::State& state, CommandRunner& runner,
                                                   const Buffer& buffer) {
     std::vector<std::uint8_t> bytes(buffer.bytes);
     const VkBufferCopy region{0, 0, buffer.bytes};
@@ -212,8 +210,7 @@ GLINT_CATCH
 Result<LinearImage> Renderer::readOutput() try {
     GLINT_TRY_DO(checkRecorded(*state_));
     GLINT_TRY(auto runner, CommandRunner::create(state_->context));
-    GLINT_TRY(auto pixels, readFrameImage(*state_, runner, gpu::kBindingAccumulated));
-    return LinearImage{state_->size.width, state_->size.height, std::move(pixels)};
+    return readPicture(*state_, runner);
 }
 GLINT_CATCH
 
@@ -231,12 +228,9 @@ Result<std::vector<Renderer::PixelPath>> Renderer::readCoverage(package::Effect 
             "make the renderer with RendererOptions::bands at 1");
     }
     GLINT_TRY(const auto starts, readFrameBuffer(*state_, runner, state_->frame.sampleStarts));
-    Result<std::vector<std::uint8_t>> radiance = std::vector<std::uint8_t>{};
+    std::vector<std::uint8_t> radiance;
     if (state_->size.paths) {
-        radiance = readFrameBuffer(*state_, runner, state_->frame.radiance);
-        if (!radiance) {
-            return radiance.error();
-        }
+        GLINT_TRY(radiance, readFrameBuffer(*state_, runner, state_->frame.radiance));
     }
     std::vector<PixelPath> paths(std::size_t{state_->size.width} * state_->size.height);
     const std::size_t first = paths.size() * package::effectSlot(state_->size.effects, effect);
@@ -249,7 +243,7 @@ Result<std::vector<Renderer::PixelPath>> Renderer::readCoverage(package::Effect 
                                     : start.state >> gpu::kPathShift;
         if (state_->size.paths && (outcome == gpu::kRaySent || outcome == gpu::kRayEnded)) {
             gpu::vec4 found{};
-            std::memcpy(&found, radiance->data() + (first + i) * sizeof(found), sizeof(found));
+            std::memcpy(&found, radiance.data() + (first + i) * sizeof(found), sizeof(found));
             path = static_cast<std::uint32_t>(found.w);
         }
         paths[i] = pathOf(path, outcome);

@@ -9,7 +9,7 @@
 #include "package/package.h"
 #include "renderer/background_pipelines.h"
 #include "renderer/pipeline_jobs.h"
-#include "renderer/renderer_choice.h"
+#include "renderer/pipelines.h"
 
 #include <algorithm>
 #include <array>
@@ -30,57 +30,46 @@ constexpr std::uint32_t kMaxInterfaces = 64;
 
 // `made` are the options that the renderer was made with.
 Status checkFrame(const FrameOptions& frame, const RendererOptions& made) {
-    const std::uint32_t most = made.bounces;
-    if (frame.sampleIndex > 0 && !made.accumulate) {
-        return makeError("frame-options", "",
-                         "sample " + std::to_string(frame.sampleIndex) +
-                             " of a picture is asked of a renderer that does not accumulate",
-                         "set RendererOptions::accumulate, or use 0 for sampleIndex");
-    }
-    if (frame.screenSteps > 0 && !made.screenMarch) {
-        return makeError("frame-options", "",
-                         "screenSteps is asked of a renderer that was made without the march in screen space",
-                         "set RendererOptions::screenMarch, or use 0 for screenSteps");
-    }
     GLINT_TRY_DO(checkCamera(frame.camera));
-    if (!std::isfinite(frame.maxReflectionRoughness) || !std::isfinite(frame.mirrorRoughness)) {
-        return makeError("frame-options", "", "a limit of roughness is not finite", "use 0 to 1");
-    }
-    if (!std::isfinite(frame.faintWeight) || frame.faintWeight < 0.0F) {
-        return makeError("frame-options", "", "faintWeight is negative or not finite", "use 0 to 1");
-    }
-    if (frame.shadowSamples == 0 || frame.shadowSamples > kMaxSurfaceSamples || frame.occlusionSamples == 0 ||
-        frame.occlusionSamples > kMaxSurfaceSamples) {
-        return makeError("frame-options", "", "shadowSamples or occlusionSamples is 0 or above the limit",
-                         "use 1 to " + std::to_string(kMaxSurfaceSamples));
-    }
-    if (!(frame.occlusionRadius > 0.0F) ||
-        (frame.occlusionFalloff && !std::isfinite(frame.occlusionRadius))) {
-        return makeError(
-            "frame-options", "",
-            "occlusionRadius is not above 0, or infinite where occluders count less with distance",
-            "use metres, or infinity without the falloff");
-    }
-    if (frame.maxInterfaces == 0 || frame.maxInterfaces > kMaxInterfaces) {
-        return makeError("frame-options", "", "maxInterfaces is 0 or above the limit",
-                         "use 1 to " + std::to_string(kMaxInterfaces));
-    }
-    if (frame.bounces > most) {
-        return makeError(
-            "frame-options", "",
-            "frames of " + std::to_string(frame.bounces) + " bounces need a renderer for as many",
-            "use 0 to " + std::to_string(most) + ", or set RendererOptions::bounces");
-    }
-    if (!(frame.maxSampleRadiance > 0.0F)) {
-        return makeError("frame-options", "", "maxSampleRadiance is not above 0",
-                         "use a luminance, or infinity for no limit");
-    }
-    if (!std::isfinite(frame.time)) {
-        return makeError("frame-options", "", "time is not finite", "use seconds");
-    }
-    if (!std::isfinite(frame.screenThickness) || frame.screenThickness < 0.0F) {
-        return makeError("frame-options", "", "screenThickness is negative or not finite",
-                         "use a share of the distance, such as 0.02");
+    const auto isOutside = [](std::uint32_t value, std::uint32_t most) { return value == 0 || value > most; };
+    const auto isNegative = [](float value) { return !std::isfinite(value) || value < 0.0F; };
+    const struct {
+        bool isBroken;
+        std::string what;
+        std::string hint;
+    } rules[] = {
+        {frame.sampleIndex > 0 && !made.accumulate,
+         phrase("sample ", frame.sampleIndex,
+                " of a picture is asked of a renderer that does not accumulate"),
+         "set RendererOptions::accumulate, or use 0 for sampleIndex"},
+        {frame.screenSteps > 0 && !made.screenMarch,
+         "screenSteps is asked of a renderer that was made without the march in screen space",
+         "set RendererOptions::screenMarch, or use 0 for screenSteps"},
+        {!std::isfinite(frame.maxReflectionRoughness) || !std::isfinite(frame.mirrorRoughness),
+         "a limit of roughness is not finite", "use 0 to 1"},
+        {isNegative(frame.faintWeight), "faintWeight is negative or not finite", "use 0 to 1"},
+        {isOutside(frame.shadowSamples, kMaxSurfaceSamples) ||
+             isOutside(frame.occlusionSamples, kMaxSurfaceSamples),
+         "shadowSamples or occlusionSamples is 0 or above the limit",
+         phrase("use 1 to ", kMaxSurfaceSamples)},
+        {!(frame.occlusionRadius > 0.0F) || (frame.occlusionFalloff && !std::isfinite(frame.occlusionRadius)),
+         "occlusionRadius is not above 0, or infinite where occluders count less with distance",
+         "use metres, or infinity without the falloff"},
+        {isOutside(frame.maxInterfaces, kMaxInterfaces), "maxInterfaces is 0 or above the limit",
+         phrase("use 1 to ", kMaxInterfaces)},
+        {frame.bounces > made.bounces,
+         phrase("frames of ", frame.bounces, " bounces need a renderer for as many"),
+         phrase("use 0 to ", made.bounces, ", or set RendererOptions::bounces")},
+        {!(frame.maxSampleRadiance > 0.0F), "maxSampleRadiance is not above 0",
+         "use a luminance, or infinity for no limit"},
+        {!std::isfinite(frame.time), "time is not finite", "use seconds"},
+        {isNegative(frame.screenThickness), "screenThickness is negative or not finite",
+         "use a share of the distance, such as 0.02"},
+    };
+    for (const auto& [isBroken, what, hint] : rules) {
+        if (isBroken) {
+            return makeError("frame-options", "", what, hint);
+        }
     }
     return okStatus();
 }
@@ -324,8 +313,7 @@ Result<LinearImage> Renderer::render(const FrameOptions& frame, std::uint32_t sa
                                      const std::function<Status()>& afterSample) try {
     GLINT_TRY(auto runner, CommandRunner::create(state_->context));
     GLINT_TRY_DO(runSamples(*this, runner, frame, sampleCount, afterSample));
-    GLINT_TRY(auto pixels, readFrameImage(*state_, runner, gpu::kBindingAccumulated));
-    return LinearImage{state_->size.width, state_->size.height, std::move(pixels)};
+    return readPicture(*state_, runner);
 }
 GLINT_CATCH
 
@@ -392,15 +380,12 @@ std::vector<MemoryItem> Renderer::memory() const {
     // Memory that buffers share with the depth image counts as the buffers' memory, and memory that they
     // share with the shadow rays of first hits as that of these.
     const auto liesIn = [](const Buffer& buffer, const auto& other) {
-        const Allocation& place = buffer.memory;
-        const VkDeviceSize begin = other.memory.offset;
-        return buffer.handle.get() != VK_NULL_HANDLE && &buffer.memory != &other.memory &&
-               place.memory == other.memory.memory && place.offset >= begin &&
-               place.offset < begin + other.bytes;
+        return buffer.memory != nullptr && buffer.memory->lender != nullptr &&
+               buffer.memory->lender == other.memory;
     };
     VkDeviceSize shared = 0;
     for (const auto& [name, buffer] : buffersOf(frame, state_->size)) {
-        shared += liesIn(*buffer, frame.depth) && !liesIn(*buffer, frame.shadows) ? buffer->bytes : 0;
+        shared += liesIn(*buffer, frame.depth) ? buffer->bytes : 0;
     }
     if (frame.depth.handle.get() != VK_NULL_HANDLE) {
         addTo(items, {"depth", MemoryUse::Device, true, 1, frame.depth.bytes - shared});
@@ -429,7 +414,8 @@ Renderer::Footprint Renderer::footprint() const {
         footprint.bytes += item.bytes;
     }
     footprint.allocatedBytes = (state_->history != nullptr ? state_->history->allocatedBytes() : 0) +
-                               glint::allocatedBytes(state_->frame) + state_->pipelines.pool.bytes();
+                               glint::allocatedBytes(state_->frame, state_->size) +
+                               state_->pipelines.pool.bytes();
     return footprint;
 }
 

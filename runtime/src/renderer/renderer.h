@@ -76,12 +76,11 @@ inline std::uint32_t bouncesOf(const FrameSize& size, const FrameOptions& frame)
 void recordFrame(Renderer::State& state, VkCommandBuffer commands, const FrameOptions& frame,
                  const gpu::FrameConstants& constants);
 
-// Reads one of the rgba32f images, given by its binding, row by row from the top. Waits for the device.
-Result<std::vector<std::array<float, 4>>> readFrameImage(Renderer::State& state, CommandRunner& runner,
-                                                         std::uint32_t binding);
+// Implements Renderer::readOutput().
+Result<LinearImage> readPicture(const Renderer::State& state, CommandRunner& runner);
 
 // Reads a whole buffer of the frame. Waits for the device.
-Result<std::vector<std::uint8_t>> readFrameBuffer(Renderer::State& state, CommandRunner& runner,
+Result<std::vector<std::uint8_t>> readFrameBuffer(const Renderer::State& state, CommandRunner& runner,
                                                   const Buffer& buffer);
 
 }  // namespace glint

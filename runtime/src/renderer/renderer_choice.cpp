@@ -1,6 +1,5 @@
-#include "renderer/renderer_choice.h"
-
 #include "interop/frame.h"
+#include "renderer/pipelines.h"
 
 #include <algorithm>
 #include <bit>
@@ -73,18 +72,17 @@ Status checkOrdering(const DeviceLimits& limits, package::Ordering ordering, std
     const std::string name(nameOf(ordering));
     if (isLocal(ordering) && bucketCount > gpu::kMaxLocalBuckets) {
         return makeError("renderer-options", "",
-                         "the ordering " + name + " holds " + std::to_string(gpu::kMaxLocalBuckets) +
-                             " buckets, the package has " + std::to_string(bucketCount),
+                         phrase("the ordering ", name, " holds ", gpu::kMaxLocalBuckets,
+                                " buckets, the package has ", bucketCount),
                          "use another ordering, or merge cases");
     }
     if (ordering == package::Ordering::TileSort && !sortsTiles(limits)) {
         return makeError("renderer-options", "",
-                         "the ordering " + name + " takes " + std::to_string(gpu::kTileSharedBytes) +
-                             " bytes of shared memory, workgroups of " + std::to_string(gpu::kTileThreads) +
-                             " threads and subgroups of 4 to 64 that shuffle; the device has " +
-                             std::to_string(limits.core.maxComputeSharedMemorySize) + ", " +
-                             std::to_string(limits.core.maxComputeWorkGroupInvocations) + " and " +
-                             std::to_string(limits.subgroupSize),
+                         phrase("the ordering ", name, " takes ", gpu::kTileSharedBytes,
+                                " bytes of shared memory, workgroups of ", gpu::kTileThreads,
+                                " threads and subgroups of 4 to 64 that shuffle; the device has ",
+                                limits.core.maxComputeSharedMemorySize, ", ",
+                                limits.core.maxComputeWorkGroupInvocations, " and ", limits.subgroupSize),
                          "use another ordering");
     }
     return okStatus();
@@ -124,11 +122,11 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
     }
     const std::uint32_t compiledBounces = package.shape().maxBounces;
     if (options.bounces == 0 || options.bounces > compiledBounces) {
-        return makeError("package-bounces", "",
-                         "paths of " + std::to_string(options.bounces) +
-                             " bounces are asked for, and the package was compiled for 1 to " +
-                             std::to_string(compiledBounces),
-                         "compile the package with more --bounces, or ask for fewer");
+        return makeError(
+            "package-bounces", "",
+            phrase("paths of ", options.bounces,
+                   " bounces are asked for, and the package was compiled for 1 to ", compiledBounces),
+            "compile the package with more --bounces, or ask for fewer");
     }
     if (options.backgroundPipelines && !package.shape().fallback) {
         return makeError(

@@ -61,9 +61,7 @@ bool isSpare(const PlannedPipeline& planned, bool shadesUnknown) {
         const package::RoleInfo& info = *package::findRole(key.role);
         return info.purpose == package::Purpose::Fallback && info.over != package::Over::Nothing;
     };
-    const bool ofRays = planned.rays && isFallback(planned.rays->key);
-    return !shadesUnknown &&
-           (ofRays || (!planned.keys.empty() && std::ranges::all_of(planned.keys, isFallback)));
+    return !shadesUnknown && std::ranges::all_of(planned.keys, isFallback);
 }
 
 // Plans the pipelines, keeps those that are known, and makes the others or starts threads that do. If
@@ -261,7 +259,7 @@ std::string reasonToWait(const PackageUser& user, const PackageUser& state) {
         return "";
     }
     if (background->missing() > 0) {
-        return "lacks " + std::to_string(background->missing()) + " pipelines, which are being made";
+        return phrase("lacks ", background->missing(), " pipelines, which are being made");
     }
     if (background->progress().error) {
         return "could not make a pipeline";
@@ -276,8 +274,8 @@ std::vector<std::string> reasonsToWait(const PackageUser& state) {
         const std::uint32_t number = ++numbers[user->passes()];
         if (const std::string reason = reasonToWait(*user, state); !reason.empty()) {
             const bool isRenderer = user->passes() == package::Passes::Frame;
-            reasons.push_back((isRenderer ? "Renderer " : "RaySteps ") + std::to_string(number) +
-                              " of the scene " + reason);
+            reasons.push_back(
+                phrase((isRenderer ? "Renderer " : "RaySteps "), number, " of the scene ", reason));
         }
     }
     return reasons;
@@ -299,14 +297,14 @@ std::uint32_t timerCapacity(const Package& package, const FrameSize& size) {
     return size.bandCount() * (first + rounds * size.bounces * (kMaxFixedPasses + package.caseCount()));
 }
 
-void PipelineDisposal::take(std::unique_ptr<Pipelines> pipelines, std::unique_ptr<NextPackage> next) {
-    if (!pipelines && !next) {
+void PipelineDisposal::take(std::shared_ptr<void> waste) {
+    if (waste == nullptr) {
         return;
     }
     try {
         {
             const std::lock_guard lock(mutex_);
-            waste_.push_back({std::move(next), std::move(pipelines)});
+            waste_.push_back(std::move(waste));
         }
         group_.run([this] { destroyOne(); });
     } catch (const std::exception&) {
@@ -315,7 +313,7 @@ void PipelineDisposal::take(std::unique_ptr<Pipelines> pipelines, std::unique_pt
 }
 
 void PipelineDisposal::destroyOne() {
-    Waste waste;
+    std::shared_ptr<void> waste;
     const std::lock_guard lock(mutex_);
     if (!waste_.empty()) {
         waste = std::move(waste_.back());
@@ -494,7 +492,8 @@ void releaseLeftovers(PackageUser& state, std::uint64_t recording) {
         if (left->recording > recording) {
             return false;
         }
-        state.disposal.take(std::move(left->pipelines), std::move(left->next));
+        state.disposal.take(std::move(left->pipelines));
+        state.disposal.take(std::move(left->next));
         return true;
     });
 }

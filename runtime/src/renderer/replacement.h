@@ -47,7 +47,7 @@ struct NextPackage {
 // Resources that only recordings up to `recording` use. Members are destroyed in reverse order.
 struct Leftovers {
     std::uint64_t recording = 0;
-    EarlierBuffers buffers;
+    std::vector<Buffer> buffers;
     std::shared_ptr<const RetiredLot> scene;  // shared by all who draw the scene
     std::shared_ptr<const Environment::State> environment;
     UniqueDescriptorPool descriptors;  // of a set with that environment
@@ -61,18 +61,14 @@ struct Leftovers {
 class PipelineDisposal {
 public:
     explicit PipelineDisposal(Jobs& jobs) : group_(jobs) {}
-    // Never waits, unless there is no thread.
-    void take(std::unique_ptr<Pipelines> pipelines, std::unique_ptr<NextPackage> next);
+    // Takes pipelines, or what has some; null changes nothing. Never waits, unless there is no thread.
+    void take(std::shared_ptr<void> waste);
 
 private:
-    struct Waste {
-        std::unique_ptr<NextPackage> next;
-        std::unique_ptr<Pipelines> pipelines;
-    };
     void destroyOne();
 
     std::mutex mutex_;
-    std::vector<Waste> waste_;
+    std::vector<std::shared_ptr<void>> waste_;
     JobGroup group_;  // its jobs destroy a part of the waste each
 };
 

@@ -1,5 +1,6 @@
 // Compaction: copies of the BLASes, and the TLAS over them.
 #include "context/commands.h"
+#include "context/parallel.h"
 #include "context/vulkan_table.h"
 #include "scene/scene_store.h"
 
@@ -36,15 +37,9 @@ Result<std::vector<Replacement>> makeCopies(GpuScene::State& state, std::span<co
         if (structure == nullptr) {
             continue;  // edits have removed it
         }
-        Result<AccelerationStructure> copy = createStructure(state.context, state.pool, sizes[i],
-                                                             VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR);
-        if (!copy) {
-            for (Replacement& made : replacements) {
-                discard(state.pool, std::move(made.copy));
-            }
-            return copy.error();
-        }
-        replacements.push_back({structure, std::move(*copy)});
+        GLINT_TRY(auto copy, createStructure(state.context, state.pool, sizes[i],
+                                             VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR));
+        replacements.push_back({structure, std::move(copy)});
     }
     return replacements;
 }
@@ -85,7 +80,8 @@ void exchange(GpuScene::State& state, std::vector<Replacement>& replacements) {
 
 }  // namespace
 
-Result<bool> recordCompaction(GpuScene::State& state, VkCommandBuffer commands, std::uint64_t frame) {
+Result<bool> GpuScene::recordCompaction(VkCommandBuffer commands, std::uint64_t frame) try {
+    State& state = *state_;
     if (!state.compaction || state.upload || state.compaction->frame) {
         return false;
     }
@@ -101,13 +97,12 @@ Result<bool> recordCompaction(GpuScene::State& state, VkCommandBuffer commands, 
     state.compaction->frame = frame;
     return true;
 }
+GLINT_CATCH
 
 void completeCompaction(GpuScene::State& state, std::uint64_t frame) {
     if (state.compaction && state.compaction->frame && *state.compaction->frame <= frame) {
         state.compaction.reset();
     }
 }
-
-// --- Opacity micromaps ---
 
 }  // namespace glint

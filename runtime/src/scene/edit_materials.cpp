@@ -58,9 +58,8 @@ Status checkDimensions(const SceneStore& store, std::span<const TextureUse> uses
 Status checkSource(const SceneStore& store, const MaterialSource& source, const std::string& where) {
     if (source.record.size() != store.scene.materialLayout.recordBytes) {
         return badValue(where,
-                        "the record has " + std::to_string(source.record.size()) +
-                            " bytes, those of the package have " +
-                            std::to_string(store.scene.materialLayout.recordBytes),
+                        phrase("the record has ", source.record.size(), " bytes, those of the package have ",
+                               store.scene.materialLayout.recordBytes),
                         "make the record in the package's layout");
     }
     for (std::size_t i = 0; i < source.textures.size(); ++i) {
@@ -172,7 +171,7 @@ Diagnostic unknownHandle(const char* what) {
 }
 
 std::string placeOf(const char* what, std::uint32_t index) {
-    return std::string(what) + " " + std::to_string(index);
+    return phrase(what, " ", index);
 }
 
 MaterialHandle materialOf(const SceneStore& store, const StoredInstance& instance, std::size_t primitive) {
@@ -222,10 +221,10 @@ std::size_t findSampler(const SceneStore& store, const package::SamplerEntry& en
 }
 
 Diagnostic noRoomForSampler(const SceneStore& store) {
-    return makeError("scene-edit-room", "",
-                     "the scene has " + std::to_string(store.samplers.size()) +
-                         " kinds of samplers, and no room for another",
-                     "set SceneView::samplerRoom, or use fewer kinds of samplers");
+    return makeError(
+        "scene-edit-room", "",
+        phrase("the scene has ", store.samplers.size(), " kinds of samplers, and no room for another"),
+        "set SceneView::samplerRoom, or use fewer kinds of samplers");
 }
 
 Status ensureSampler(SceneStore& store, const package::SamplerEntry& entry) {
@@ -269,10 +268,10 @@ Result<TextureHandle> SceneEditor::addTexture(const ImageView& image, bool srgb)
     GpuScene::State& scene = store_->scene;
     const TextureHandle next = store_->textures.next();
     if (next.index >= scene.textureRoom) {
-        return makeError("scene-edit-room", "",
-                         "the scene has " + std::to_string(store_->textures.count()) +
-                             " textures, and no room for another",
-                         "set SceneView::textureRoom, or remove a texture");
+        return makeError(
+            "scene-edit-room", "",
+            phrase("the scene has ", store_->textures.count(), " textures, and no room for another"),
+            "set SceneView::textureRoom, or remove a texture");
     }
     GLINT_TRY(auto made, makeImage(*store_, image, srgb, next.index));
     const TextureHandle texture =

@@ -341,7 +341,7 @@ void exchangeTables(SceneStore& store, EditedTables& tables) {
     std::swap(store.materialSlots, tables.materialSlots);
     std::swap(store.firstTextures, tables.firstTextures);
     std::swap(store.firstMaterials, tables.firstMaterials);
-    std::swap(store.materials, tables.materials);
+    std::swap<RecordStore>(store.materials, tables.materials);
     for (auto& [mesh, materials] : tables.meshMaterials) {
         for (std::size_t i = 0; i < materials.size(); ++i) {
             std::swap(store.meshes.at(mesh).primitives[i].material, materials[i]);

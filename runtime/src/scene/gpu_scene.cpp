@@ -24,10 +24,10 @@ Result<std::unique_ptr<GpuScene::State>> makeScene(Context& context, const Packa
     Context::State& contextState = context.state();
     const bool hasNothing = scene.editable && scene.packageScene == kNoPackageScene;
     if (!hasNothing && scene.packageScene >= package.sceneCount()) {
-        return makeError("scene-package", "",
-                         "scene " + std::to_string(scene.packageScene) +
-                             " is not in the package, which has " + std::to_string(package.sceneCount()),
-                         "find its index by Package::findScene()");
+        return makeError(
+            "scene-package", "",
+            phrase("scene ", scene.packageScene, " is not in the package, which has ", package.sceneCount()),
+            "find its index by Package::findScene()");
     }
     GLINT_TRY_DO(checkDevice(package, contextState.handles));
     const PackageScene known = hasNothing ? PackageScene{} : package.scene(scene.packageScene);
@@ -96,8 +96,7 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
 }
 GLINT_CATCH
 
-GpuScene::State::State(Context::State& contextState)
-    : DrawnScene(contextState), sharedPool(std::make_shared<MemoryPool>(contextState)), pool(*sharedPool) {}
+GpuScene::State::State(Context::State& contextState) : DrawnScene(contextState), pool(contextState) {}
 GpuScene::State::~State() = default;
 
 GpuScene::GpuScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -135,19 +134,9 @@ bool GpuScene::isUploaded() const {
     return state_->upload == nullptr;
 }
 
-Result<bool> GpuScene::recordCompaction(VkCommandBuffer commands, std::uint64_t frame) try {
-    return glint::recordCompaction(*state_, commands, frame);
-}
-GLINT_CATCH
-
 const GpuScene::Statistics& GpuScene::statistics() const {
     return state_->statistics;
 }
-
-Status GpuScene::update(VkCommandBuffer commands, const MotionView& motion, std::uint64_t frame) try {
-    return recordPose(*state_, commands, motion, frame);
-}
-GLINT_CATCH
 
 Status GpuScene::updateAndWait(const MotionView& motion) try {
     const std::uint64_t frame = state_->store->lastFrame;
@@ -156,9 +145,6 @@ Status GpuScene::updateAndWait(const MotionView& motion) try {
     complete(frame);
     return okStatus();
 }
-GLINT_CATCH
-
-Result<GpuScene::MotionStatistics> GpuScene::motion() const try { return readMotion(*state_); }
 GLINT_CATCH
 
 GpuScene::State& GpuScene::state() {
@@ -188,9 +174,9 @@ void addStore(std::vector<MemoryItem>& items, const SceneStore& store) {
         }
     });
     addTo(items, "textures", store.white);
-    addTo(items, "poses", store.poseBuffer);
-    addTo(items, "deform records", store.deformBuffer);
-    addTo(items, "instances of the top level", store.placedBuffer);
+    addTo(items, "poses", store.poses.device);
+    addTo(items, "deform records", store.deforms.device);
+    addTo(items, "instances of the top level", store.topLevel.records().device);
     addTo(items, "scratch of structures", store.tlasScratch.buffer);
     for (const Buffer& staging : store.uploader->staging()) {
         addTo(items, "changes on their way", staging);
@@ -205,7 +191,8 @@ void addStore(std::vector<MemoryItem>& items, const SceneStore& store) {
 
 std::vector<MemoryItem> GpuScene::memory() const {
     std::vector<MemoryItem> items;
-    addStore(items, *state_->store);
+    const SceneStore& store = *state_->store;
+    addStore(items, store);
     for (const DeviceImage& texture : state_->textures) {
         addTo(items, "textures", texture);
     }
@@ -217,13 +204,13 @@ std::vector<MemoryItem> GpuScene::memory() const {
         addTo(items, "opacity micromaps", micromap.indices);
     }
     addTo(items, "top level", state_->tlas.buffer);
-    addTo(items, "geometry records", state_->geometries);
-    addTo(items, "instance records", state_->instances);
-    addTo(items, "material records", state_->materials);
-    addTo(items, "light records", state_->lights);
-    addTo(items, "light nodes", state_->lightNodes);
-    addTo(items, "emissive triangles", state_->emitterRecords);
-    addTo(items, "emissive triangles", state_->firstEmitters);
+    addTo(items, "geometry records", store.geometries.device);
+    addTo(items, "instance records", store.instances.device);
+    addTo(items, "material records", store.materials.device);
+    addTo(items, "light records", store.lights.device);
+    addTo(items, "light nodes", store.lightNodes.device);
+    addTo(items, "emissive triangles", store.emitterRecords.device);
+    addTo(items, "emissive triangles", store.firstEmitters.device);
     if (state_->upload != nullptr) {
         for (const Buffer& buffer : state_->upload->kept) {
             addTo(items, "upload on its way", buffer);
@@ -245,17 +232,11 @@ std::uint64_t GpuScene::allocatedBytes() const {
 }
 
 void fillScene(const GpuScene::State& state, gpu::FrameConstants& constants) {
-    constants.geometries = state.geometries.address;
-    constants.instances = state.instances.address;
-    constants.materials = state.materials.address;
-    constants.lights = state.lights.address;
-    constants.lightCount = state.lightCount;
-    constants.lightNodes = state.lightNodes.address;
-    constants.lightTreeNodes = state.lightTree.treeNodes;
-    constants.lightsApart = state.lightTree.apart;
-    constants.emitters = state.emitterRecords.address;
-    constants.firstEmitters = state.firstEmitters.address;
-    constants.emitterCount = state.emitterCount;
+    state.store->fill(constants);
+}
+
+const Buffer& instanceRecords(const GpuScene::State& state) {
+    return state.store->instances.device;
 }
 
 bool GpuScene::State::hasLightTree() const {
@@ -359,28 +340,11 @@ Status createSetLayout(GpuScene::State& state) {
     return okStatus();
 }
 
-namespace {
-
-Result<DescriptorSet> allocateSet(const GpuScene::State& state) {
-    return createSet(state.context, state.setLayout.get(), makeBindings(state.context, sizeOf(state)), true);
-}
-
-VkWriteDescriptorSet writeOf(VkDescriptorSet set, std::uint32_t binding, VkDescriptorType type,
-                             std::size_t count) {
-    VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-                               .dstSet = set,
-                               .dstBinding = binding,
-                               .descriptorCount = static_cast<std::uint32_t>(count),
-                               .descriptorType = type};
-    return write;
-}
-
-void fillSet(const GpuScene::State& state, VkDescriptorSet set, VkAccelerationStructureKHR tlas,
-             VkImageView absent) {
-    VkWriteDescriptorSetAccelerationStructureKHR structures{
-        .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR,
-        .accelerationStructureCount = 1,
-        .pAccelerationStructures = &tlas};
+Result<DescriptorSet> makeSceneSet(const GpuScene::State& state, VkAccelerationStructureKHR tlas,
+                                   VkImageView absent) {
+    Context::State& context = state.context;
+    GLINT_TRY(auto made,
+              createSet(context, state.setLayout.get(), makeBindings(context, sizeOf(state)), true));
     std::vector<VkDescriptorImageInfo> textures;
     for (const DeviceImage& texture : state.textures) {
         const VkImageView view = texture.view.get() == VK_NULL_HANDLE ? absent : texture.view.get();
@@ -393,25 +357,20 @@ void fillSet(const GpuScene::State& state, VkDescriptorSet set, VkAccelerationSt
     for (const UniqueSampler& sampler : state.samplers) {
         samplers.push_back({sampler.get(), VK_NULL_HANDLE, VK_IMAGE_LAYOUT_UNDEFINED});
     }
-    std::array writes{writeOf(set, gpu::kBindingTlas, VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR, 1),
-                      writeOf(set, gpu::kBindingTextures, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, textures.size()),
-                      writeOf(set, gpu::kBindingSamplers, VK_DESCRIPTOR_TYPE_SAMPLER, samplers.size())};
-    writes[0].pNext = &structures;
-    writes[1].pImageInfo = textures.data();
-    writes[2].pImageInfo = samplers.data();
-    state.context.vk.UpdateDescriptorSets(state.context.handles.device, writes.size(), writes.data(), 0,
-                                          nullptr);
-}
-
-}  // namespace
-
-Result<DescriptorSet> makeSceneSet(const GpuScene::State& state, VkAccelerationStructureKHR tlas,
-                                   VkImageView absent) {
-    Result<DescriptorSet> set = allocateSet(state);
-    if (set) {
-        fillSet(state, set->set, tlas, absent);
-    }
-    return set;
+    writeImages(context, made.set, gpu::kBindingTextures, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, textures);
+    writeImages(context, made.set, gpu::kBindingSamplers, VK_DESCRIPTOR_TYPE_SAMPLER, samplers);
+    const VkWriteDescriptorSetAccelerationStructureKHR structures{
+        .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET_ACCELERATION_STRUCTURE_KHR,
+        .accelerationStructureCount = 1,
+        .pAccelerationStructures = &tlas};
+    const VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+                                     .pNext = &structures,
+                                     .dstSet = made.set,
+                                     .dstBinding = gpu::kBindingTlas,
+                                     .descriptorCount = 1,
+                                     .descriptorType = VK_DESCRIPTOR_TYPE_ACCELERATION_STRUCTURE_KHR};
+    context.vk.UpdateDescriptorSets(context.handles.device, 1, &write, 0, nullptr);
+    return made;
 }
 
 }  // namespace glint

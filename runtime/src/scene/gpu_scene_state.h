@@ -4,9 +4,7 @@
 #include "context/device_objects.h"
 #include "context/resources.h"
 #include "data/acceleration.h"
-#include "data/emitters.h"
 #include "data/geometry.h"
-#include "data/light_tree.h"
 #include "data/materials.h"
 #include "interop/frame.h"
 #include "scene/drawn_scene.h"
@@ -86,7 +84,6 @@ struct ScenePackage {
     std::vector<Decided> decided;
 };
 
-// Members are destroyed in reverse order: the pool's memory last.
 struct GpuScene::State final : DrawnScene {
     explicit State(Context::State& contextState);
     ~State() override;
@@ -96,29 +93,13 @@ struct GpuScene::State final : DrawnScene {
                                          VkCommandBuffer commands) override;
     bool hasLightTree() const override;
 
-    // Renderers keep it for what a replaced package leaves to them.
-    std::shared_ptr<MemoryPool> sharedPool;
-    MemoryPool& pool;
+    MemoryPool pool;
     std::unique_ptr<Compaction> compaction;             // null if there is nothing more to compact
     std::unique_ptr<SceneUpload> upload;                // null when the device has completed it
     ScenePackage package;                               // the package that draws the scene
     std::array<double, 3> origin{};                     // SceneView::origin, or that of the last MotionView
     std::map<std::uint32_t, DeviceMicromap> micromaps;  // by index into SceneView::primitives
     AccelerationStructure tlas;
-    Buffer geometries;
-    Buffer instances;
-    Buffer materials;
-    Buffer lights;
-    std::uint32_t lightCount = 0;
-    // The hierarchy of lights, in packages that choose lights by one.
-    LightTree lightTree;
-    Buffer lightNodes;
-    // The emissive triangles, in packages with emissive lights. The triangles of a scene that neither moves
-    // nor is edited are on the device alone.
-    Emitters emitters;
-    std::uint32_t emitterCount = 0;
-    Buffer emitterRecords;
-    Buffer firstEmitters;
     std::vector<DeviceImage> textures;
     std::vector<UniqueSampler> samplers;
     // The number of textures and samplers that the set's layout has; 0: as many as there are.
@@ -146,6 +127,8 @@ std::vector<GeometryPositions> geometryPositions(const GpuScene::State& state);
 // Returns nothing if no instance has the record.
 std::optional<GeometryPlace> placeOf(const GpuScene::State& state, std::uint32_t geometry);
 
+// Returns the records of instances on the device.
+const Buffer& instanceRecords(const GpuScene::State& state);
 // Sets the addresses and numbers of the scene's records.
 void fillScene(const GpuScene::State& state, gpu::FrameConstants& constants);
 

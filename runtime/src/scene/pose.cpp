@@ -1,4 +1,5 @@
 // GpuScene: poses, which are edits of many things at once.
+#include "context/parallel.h"
 #include "data/materials.h"
 #include "data/scene_checks.h"
 #include "scene/scene_store.h"
@@ -110,32 +111,32 @@ void poseLights(SceneStore& store, std::span<const LightView> lights) {
 
 }  // namespace
 
-Status recordPose(GpuScene::State& state, VkCommandBuffer commands, const MotionView& view,
-                  std::uint64_t frame) {
-    SceneStore& store = *state.store;
+Status GpuScene::update(VkCommandBuffer commands, const MotionView& motion, std::uint64_t frame) try {
+    SceneStore& store = *state_->store;
     if (!store.keeps()) {
         return makeError("scene-still", "", "the scene was uploaded as one that neither moves nor is edited",
                          "set SceneView::moves before the upload");
     }
     GLINT_TRY_DO(checkFrame(store, frame));
-    GLINT_TRY_DO(checkMotion(view, store.posedShape));
-    GLINT_TRY_DO(poseMaterials(store, view.materials));
-    moveOrigin(store, view.origin);
-    GLINT_TRY_DO(poseInstances(store, view.instances));
-    poseLights(store, view.lights);
-    GLINT_TRY_DO(recordChanges(store, commands, frame, view.builds));
+    GLINT_TRY_DO(checkMotion(motion, store.posedShape));
+    GLINT_TRY_DO(poseMaterials(store, motion.materials));
+    moveOrigin(store, motion.origin);
+    GLINT_TRY_DO(poseInstances(store, motion.instances));
+    poseLights(store, motion.lights);
+    GLINT_TRY_DO(recordChanges(store, commands, frame, motion.builds));
     store.posed = true;
     return okStatus();
 }
+GLINT_CATCH
 
-Result<GpuScene::MotionStatistics> readMotion(const GpuScene::State& state) {
-    const SceneStore& store = *state.store;
+Result<GpuScene::MotionStatistics> GpuScene::motion() const try {
+    const SceneStore& store = *state_->store;
     if (!store.posed) {
         return makeError("frame-not-recorded", "", "no update has been recorded",
                          "record an update, submit it and wait for it first");
     }
-    GpuScene::MotionStatistics statistics = store.statistics;
-    const bool isTimed = statistics.topLevel != GpuScene::MotionStatistics::TopLevel::Kept;
+    MotionStatistics statistics = store.statistics;
+    const bool isTimed = statistics.topLevel != MotionStatistics::TopLevel::Kept;
     if (isTimed && store.timer->available()) {
         GLINT_TRY(const auto times, readTimes(store));
         statistics.deformMs = times[0];
@@ -144,5 +145,6 @@ Result<GpuScene::MotionStatistics> readMotion(const GpuScene::State& state) {
     }
     return statistics;
 }
+GLINT_CATCH
 
 }  // namespace glint

@@ -114,34 +114,26 @@ constexpr VkBufferUsageFlags kRecordUsage =
 
 }  // namespace
 
-ArrayUpdate::~ArrayUpdate() {
-    for (std::size_t i = 0; i < made_.size(); ++i) {
-        discard(*pools_[i], std::move(made_[i]));
-    }
-    discard(stagingPool_, std::move(staging_));
-}
-
-Status ArrayUpdate::prepareBuffers(std::span<const RecordArray> arrays) {
-    for (const auto& [records, device, capacity, pool, usage] : arrays) {
+Status ArrayUpdate::prepareBuffers(std::span<const ArrayTarget> arrays) {
+    for (const auto& [records, capacity, pool, usage] : arrays) {
         made_.emplace_back();
-        pools_.push_back(pool);
         if (capacity == 0 || capacity == records.capacity) {
             continue;
         }
         GLINT_TRY(made_.back(),
                   createBuffer(context_, *pool, capacity * records.stride(), kRecordUsage | usage));
-        if (device.handle.get() == VK_NULL_HANDLE) {
+        if (records.device.handle.get() == VK_NULL_HANDLE) {
             records.touchAll();
         }
     }
     return okStatus();
 }
 
-Status ArrayUpdate::prepareStaging(std::span<const RecordArray> arrays) {
+Status ArrayUpdate::prepareStaging(std::span<const ArrayTarget> arrays) {
     VkDeviceSize bytes = 0;
-    for (const RecordArray& array : arrays) {
-        for (const IndexRange& range : array.store.dirty()) {
-            bytes += (range.end - range.first) * array.store.stride();
+    for (const ArrayTarget& target : arrays) {
+        for (const IndexRange& range : target.array.dirty()) {
+            bytes += (range.end - range.first) * target.array.stride();
         }
     }
     if (bytes > 0) {
@@ -157,11 +149,12 @@ bool ArrayUpdate::hasWork() const {
            });
 }
 
-void ArrayUpdate::recordResizes(VkCommandBuffer commands, std::span<const RecordArray> arrays,
+void ArrayUpdate::recordResizes(VkCommandBuffer commands, std::span<const ArrayTarget> arrays,
                                 Retired& retired) {
     bool copied = false;
     for (std::size_t i = 0; i < arrays.size(); ++i) {
-        const auto& [records, device, capacity, pool, usage] = arrays[i];
+        const auto& [records, capacity, pool, usage] = arrays[i];
+        Buffer& device = records.device;
         Buffer& resized = made_[i];
         if (resized.handle.get() == VK_NULL_HANDLE) {
             continue;
@@ -181,10 +174,10 @@ void ArrayUpdate::recordResizes(VkCommandBuffer commands, std::span<const Record
     }
 }
 
-Buffer ArrayUpdate::recordCopies(VkCommandBuffer commands, std::span<const RecordArray> arrays) {
+Buffer ArrayUpdate::recordCopies(VkCommandBuffer commands, std::span<const ArrayTarget> arrays) {
     VkDeviceSize from = 0;
-    for (const RecordArray& array : arrays) {
-        RecordStore& records = array.store;
+    for (const ArrayTarget& target : arrays) {
+        RecordArray& records = target.array;
         std::vector<VkBufferCopy> regions;
         for (const IndexRange& range : records.dirty()) {
             const std::span<const std::uint8_t> bytes = records.at(range);
@@ -192,8 +185,8 @@ Buffer ArrayUpdate::recordCopies(VkCommandBuffer commands, std::span<const Recor
             regions.push_back({from, range.first * records.stride(), bytes.size()});
             from += bytes.size();
         }
-        if (!regions.empty() && array.device.handle.get() != VK_NULL_HANDLE) {
-            context_.vk.CmdCopyBuffer(commands, staging_.handle.get(), array.device.handle.get(),
+        if (!regions.empty() && records.device.handle.get() != VK_NULL_HANDLE) {
+            context_.vk.CmdCopyBuffer(commands, staging_.handle.get(), records.device.handle.get(),
                                       static_cast<std::uint32_t>(regions.size()), regions.data());
         }
         records.clearDirty();

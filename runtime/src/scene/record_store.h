@@ -151,10 +151,11 @@ public:
         writeBytes(index, std::span(reinterpret_cast<const std::uint8_t*>(&record), sizeof record));
     }
     // Replaces the records by these, and writes those that differ.
-    template <typename T>
-    void replace(std::span<const T> records) {
-        static_assert(std::is_trivially_copyable_v<T>);
-        replaceBytes(std::span(reinterpret_cast<const std::uint8_t*>(records.data()), records.size_bytes()));
+    template <typename Records>
+    void replace(const Records& records) {
+        const std::span all(records);
+        static_assert(std::is_trivially_copyable_v<typename decltype(all)::value_type>);
+        replaceBytes({reinterpret_cast<const std::uint8_t*>(all.data()), all.size_bytes()});
     }
     void replaceBytes(std::span<const std::uint8_t> records);
     // Forgets the records from `count` on.
@@ -206,10 +207,16 @@ private:
     std::vector<IndexRange> dirty_;  // may overlap
 };
 
-// An array on the device, and the size that it should have.
-struct RecordArray {
-    RecordStore& store;
-    Buffer& device;
+// An array of records on the host, and its copy on the device.
+struct RecordArray : RecordStore {
+    using RecordStore::RecordStore;
+
+    Buffer device;
+};
+
+// An array of a recording, and the size that it should have on the device.
+struct ArrayTarget {
+    RecordArray& array;
     std::uint32_t capacity = 0;  // in records; 0 if nothing reads the array, which then has no buffer
     MemoryPool* pool = nullptr;  // of a buffer of another size
     VkBufferUsageFlags usage = 0;
@@ -220,35 +227,30 @@ inline std::uint32_t grownCapacity(std::uint32_t count, std::uint32_t now) {
     return count > now ? std::max(count, 2 * now) : std::max(now, 1U);
 }
 
-// Brings arrays up to date in one recording. Its functions get the same arrays in the same order. Everything
-// that it has made is discarded with it, unless it was recorded.
+// Brings arrays up to date in one recording. Its functions get the same arrays in the same order.
 class ArrayUpdate {
 public:
     // `staging` is the pool of staging memory.
     ArrayUpdate(Context::State& context, MemoryPool& staging) : context_(context), stagingPool_(staging) {}
-    ~ArrayUpdate();
-    ArrayUpdate(const ArrayUpdate&) = delete;
-    ArrayUpdate& operator=(const ArrayUpdate&) = delete;
 
     // Makes the buffers of arrays that get another capacity. Errors: those of buffers.
-    Status prepareBuffers(std::span<const RecordArray> arrays);
+    Status prepareBuffers(std::span<const ArrayTarget> arrays);
     // Makes the staging memory of the records that the device does not have. Errors: those of buffers.
-    Status prepareStaging(std::span<const RecordArray> arrays);
+    Status prepareStaging(std::span<const ArrayTarget> arrays);
     // Returns the new buffer of an array, which has no handle if the array keeps the one that it has.
     const Buffer& bufferOf(std::size_t array) const {
         return made_[array];
     }
     bool hasWork() const;
     // Copies old content into new buffers, which the arrays get. `retired` gets the old ones.
-    void recordResizes(VkCommandBuffer commands, std::span<const RecordArray> arrays, Retired& retired);
+    void recordResizes(VkCommandBuffer commands, std::span<const ArrayTarget> arrays, Retired& retired);
     // Copies the changed records. The caller keeps the result until the device has completed the copies.
-    Buffer recordCopies(VkCommandBuffer commands, std::span<const RecordArray> arrays);
+    Buffer recordCopies(VkCommandBuffer commands, std::span<const ArrayTarget> arrays);
 
 private:
     Context::State& context_;
     MemoryPool& stagingPool_;
     std::vector<Buffer> made_;
-    std::vector<MemoryPool*> pools_;  // of these buffers
     Buffer staging_;
 };
 

@@ -43,10 +43,10 @@ Status checkPrimitive(const SceneStore& store, const SceneEditor::EditedPrimitiv
 Result<EditReport> checkMaterials(const SceneStore& store, const StoredMesh& mesh,
                                   std::span<const MaterialHandle> materials, const std::string& where) {
     if (!materials.empty() && materials.size() != mesh.primitives.size()) {
-        return makeError("scene-edit-value", where,
-                         "there are " + std::to_string(materials.size()) + " materials for " +
-                             std::to_string(mesh.primitives.size()) + " primitives",
-                         "give one for each primitive, or none");
+        return makeError(
+            "scene-edit-value", where,
+            phrase("there are ", materials.size(), " materials for ", mesh.primitives.size(), " primitives"),
+            "give one for each primitive, or none");
     }
     EditReport report;
     for (std::size_t i = 0; i < materials.size(); ++i) {

@@ -32,7 +32,7 @@ Diagnostic needsEditable(std::string where, std::string what) {
 }
 
 std::string placeOfEntry(const package::PrimitiveEntry& entry) {
-    return "mesh " + std::to_string(entry.mesh) + ", primitive " + std::to_string(entry.primitive);
+    return phrase("mesh ", entry.mesh, ", primitive ", entry.primitive);
 }
 
 template <typename T>
@@ -115,9 +115,8 @@ Status checkAttributes(const GpuPrimitive& uploaded, const Package& package,
 Status checkPrimitives(const GpuScene::State& scene, const Package& package, const PackageScene& known) {
     const ScenePackage& now = scene.package;
     if (known.primitives.size() != now.entries.size()) {
-        return otherScene(now.scene, "the package has " + std::to_string(known.primitives.size()) +
-                                         " primitives, the uploaded scene " +
-                                         std::to_string(now.entries.size()));
+        return otherScene(now.scene, phrase("the package has ", known.primitives.size(),
+                                            " primitives, the uploaded scene ", now.entries.size()));
     }
     for (std::size_t i = 0; i < now.entries.size(); ++i) {
         const package::PrimitiveEntry& before = now.entries[i];
@@ -276,7 +275,7 @@ void exchange(SceneStore& store, OtherPackage& other) {
         exchangeTables(store, *other.edited);
         store.emittersDirty = store.emittersDirty || store.emission.has_value();
     } else {
-        std::swap(store.materials, *other.materials);
+        std::swap<RecordStore>(store.materials, *other.materials);
         store.meshes.forEach([&](MeshHandle /*handle*/, StoredMesh& mesh) {
             for (StoredPrimitive& primitive : mesh.primitives) {
                 primitive.entry = scene.package.entries[primitive.entryIndex];
@@ -400,7 +399,6 @@ Result<RetiredLot> GpuScene::State::recordReplacement(const std::shared_ptr<cons
         exchange(*store, content);
         return status.error();
     }
-    leftovers.keep(sharedPool);
     return leftovers;
 }
 

@@ -22,6 +22,7 @@
 #include "scene/draw_runs.h"
 #include "scene/gpu_scene_state.h"
 #include "scene/record_store.h"
+#include "scene/scene_records.h"
 #include "scene/scene_upload.h"
 #include "scene/top_level.h"
 
@@ -152,7 +153,7 @@ struct StoredInstance {
     }
 };
 
-struct SceneStore {
+struct SceneStore : SceneRecords {
     SceneStore(GpuScene::State& owner, const Package& package, const SceneView& view);
 
     GpuScene::State& scene;
@@ -189,23 +190,13 @@ struct SceneStore {
     // The attributes of the primitives of the upload, by their places in PackageScene::primitives.
     std::vector<std::pair<std::uint32_t, AttributeMask>> firstAttributes;
 
-    RecordStore geometries{sizeof(gpu::GeometryRecord)};
-    RecordStore instances{sizeof(gpu::InstanceRecord)};
-    RecordStore materials;
-    RecordStore lights{sizeof(gpu::LightRecord)};
-    RecordStore lightNodes{sizeof(gpu::LightNode)};
-    RecordStore emitters{sizeof(gpu::EmitterRecord)};
-    RecordStore firstEmitters{sizeof(std::uint32_t)};  // of each geometry record
-    RecordStore poses{sizeof(gpu::vec4)};
-    RecordStore deforms{sizeof(gpu::DeformRecord)};
+    RecordArray poses{sizeof(gpu::vec4)};
+    RecordArray deforms{sizeof(gpu::DeformRecord)};
     RunAllocator geometryRuns;
     RunAllocator poseRuns;
     RunAllocator deformRuns;
     TopLevel topLevel;
     DrawRuns draws;
-    Buffer poseBuffer;
-    Buffer deformBuffer;
-    Buffer placedBuffer;  // TopLevel::records() on the device
 
     // Instances that change their shape, and those of them with another pose since the last recording.
     std::optional<DeformPass> deformPass;
@@ -233,7 +224,7 @@ struct SceneStore {
     bool setDirty = true;
     bool trims = false;
 
-    Scratch tlasScratch;
+    AlignedBuffer tlasScratch;
     VkDeviceSize tlasScratchBytes = 0;
     std::uint32_t tlasCapacity = 0;  // instances
     std::uint32_t firstTlasCapacity = 0;
@@ -433,13 +424,6 @@ Result<std::vector<double>> readTimes(const SceneStore& store);
 // Makes the content of a scene and records its upload. `known` may be a scene without tables.
 Status uploadScene(GpuScene::State& state, const Package& package, const PackageScene& known,
                    const SceneView& view, SceneUpload& upload, VkCommandBuffer commands);
-
-// --- Poses (pose.cpp) ---
-
-// These implement GpuScene::update() and GpuScene::motion().
-Status recordPose(GpuScene::State& state, VkCommandBuffer commands, const MotionView& view,
-                  std::uint64_t frame);
-Result<GpuScene::MotionStatistics> readMotion(const GpuScene::State& state);
 
 std::string placeOf(const char* what, std::uint32_t index);
 // Error "scene-edit-handle".

@@ -62,27 +62,20 @@ constexpr MemoryDependency kMicromapToStructures{
     VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR | VK_PIPELINE_STAGE_2_MICROMAP_BUILD_BIT_EXT,
     VK_ACCESS_2_MICROMAP_READ_BIT_EXT};
 
-// A buffer whose content is at an address with the alignment of build inputs.
-struct InputBuffer {
-    Buffer buffer;
-    VkDeviceAddress address = 0;
-};
-
-Result<InputBuffer> uploadInput(Context::State& context, MemoryPool& pool, Uploader& uploader,
-                                std::span<const std::uint8_t> bytes) {
-    GLINT_TRY(auto buffer, createBuffer(context, pool, bytes.size() + kInputAlignment,
+Result<AlignedBuffer> uploadInput(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                                  std::span<const std::uint8_t> bytes) {
+    GLINT_TRY(auto input, createAligned(context, pool, bytes.size(), kInputAlignment,
                                         VK_BUFFER_USAGE_MICROMAP_BUILD_INPUT_READ_ONLY_BIT_EXT |
                                             VK_BUFFER_USAGE_TRANSFER_DST_BIT));
-    const VkDeviceAddress aligned = alignUp(buffer.address, kInputAlignment);
-    GLINT_TRY_DO(uploader.copyToBuffer(bytes, buffer, aligned - buffer.address));
-    return InputBuffer{std::move(buffer), aligned};
+    GLINT_TRY_DO(uploader.copyToBuffer(bytes, input.buffer, input.offset()));
+    return input;
 }
 
 // The resources of one micromap's build, which must stay until it is done.
 struct PendingMicromap {
-    InputBuffer data;
-    InputBuffer records;
-    Scratch scratch;
+    AlignedBuffer data;
+    AlignedBuffer records;
+    AlignedBuffer scratch;
     std::vector<VkMicromapUsageEXT> usages;
     VkMicromapBuildInfoEXT info{};
 };

@@ -41,8 +41,7 @@ struct Compaction {
     std::optional<std::uint64_t> frame;  // frame of the recorded copies
 };
 
-// These implement GpuScene::recordCompaction() and the part of GpuScene::complete() that is about it.
-Result<bool> recordCompaction(GpuScene::State& state, VkCommandBuffer commands, std::uint64_t frame);
+// Implements the part of GpuScene::complete() that is about compaction.
 void completeCompaction(GpuScene::State& state, std::uint64_t frame);
 
 // --- The upload ---

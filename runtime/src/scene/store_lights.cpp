@@ -1,6 +1,7 @@
 // SceneStore: lights, and emissive triangles as lights.
 #include "data/instance_math.h"
 #include "data/materials.h"
+#include "package/package.h"
 #include "scene/scene_store.h"
 
 #include <algorithm>
@@ -105,9 +106,8 @@ void gatherEmitters(SceneStore& store) {
     forEachEmissive(store,
                     [&](const StoredInstance& instance) { addParts(store, instance, number++, parts); });
     store.emitterMeans.forgetUnused();
-    store.scene.emitters = Emitters(*store.emission, std::move(parts));
-    store.firstEmitters.replace(
-        std::span<const std::uint32_t>(store.scene.emitters.firstsOf(store.geometries.count())));
+    store.emitters = Emitters(*store.emission, std::move(parts));
+    store.firstEmitters.replace(store.emitters.firstsOf(store.geometries.count()));
 }
 
 }  // namespace
@@ -153,7 +153,7 @@ void removeLight(SceneStore& store, LightHandle handle) {
     for (const LightHandle other : store.lightOrder) {
         records.push_back(makeLightRecord(*store.lightSlots.find(other)));
     }
-    store.lights.replace(std::span<const gpu::LightRecord>(records));
+    store.lights.replace(records);
     store.lightsDirty = true;
 }
 
@@ -206,8 +206,8 @@ void forgetEmitters(SceneStore& store) {
     store.emissiveInstances.clear();
     store.emissiveMaterials.clear();
     store.emitterMeans = {};
-    store.scene.emitters = {};
-    store.emitters.shrink(0);
+    store.emitters = {};
+    store.emitterRecords.shrink(0);
     store.firstEmitters.shrink(0);
     store.emittersDirty = store.emittersMoved = false;
     store.lightsDirty = true;
@@ -229,7 +229,7 @@ void writeMaterial(SceneStore& store, std::uint32_t material, std::span<const st
             store.emittersDirty = store.emittersDirty || changes;
         } else if (brightens) {
             const ChangingMaterial changed{material, {record.begin(), record.end()}};
-            store.scene.emitters.takeMaterials(std::span(&changed, 1));
+            store.emitters.takeMaterials(std::span(&changed, 1));
             store.emittersMoved = true;
         }
     }
@@ -237,7 +237,6 @@ void writeMaterial(SceneStore& store, std::uint32_t material, std::span<const st
 }
 
 void settleLights(SceneStore& store) {
-    GpuScene::State& scene = store.scene;
     if (store.emittersDirty) {
         gatherEmitters(store);
     }
@@ -256,11 +255,7 @@ void settleLights(SceneStore& store) {
                               : !store.moves    ? TreeChange::Build
                               : restructured    ? TreeChange::BuildWithDark
                                                 : TreeChange::Refit;
-    followLights(records, views, change, scene.emitters, scene.lightTree);
-    if (store.buildsTree) {
-        store.lightNodes.replace(std::span<const gpu::LightNode>(scene.lightTree.nodes));
-    }
-    store.emitters.replace(std::span<const gpu::EmitterRecord>(scene.emitters.records));
+    store.followLights(records, views, change);
 }
 
 }  // namespace glint

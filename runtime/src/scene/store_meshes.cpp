@@ -164,35 +164,12 @@ Status fillMesh(SceneStore& store, const Package& package, const MeshContent& co
     return makeParts(store, content, mesh);
 }
 
-// Functions for resources that frames may still use, and for those that nothing has used.
-auto retire(SceneStore& store) {
-    return [&store](auto&& resource) { store.retired.add(std::forward<decltype(resource)>(resource)); };
-}
-auto discardNow(SceneStore& store) {
-    return
-        [&store](auto&& resource) { discard(store.scene.pool, std::forward<decltype(resource)>(resource)); };
-}
-
-// Gives every resource of a mesh to `take`.
-template <typename Take>
-void takeMesh(StoredMesh& mesh, const Take& take) {
-    for (StoredPart& part : mesh.parts) {
-        take(std::move(part.blas));
-    }
-    for (StoredPrimitive& primitive : mesh.primitives) {
-        take(std::move(primitive.device.buffer));
-        take(std::move(primitive.device.buildInput));
-        take(std::move(primitive.source.buffer));
-    }
-}
-
-template <typename Take>
-void takeShape(OwnShape& shape, const Take& take) {
+void retire(SceneStore& store, OwnShape& shape) {
     for (AccelerationStructure& blas : shape.blases) {
-        take(std::move(blas));
+        store.retired.add(std::move(blas));
     }
     for (DeformedVertices& vertices : shape.vertices) {
-        take(std::move(vertices.buffer));
+        store.retired.add(std::move(vertices.buffer));
     }
 }
 
@@ -207,7 +184,6 @@ Result<MeshHandle> addMesh(SceneStore& store, const Package& package, const Mesh
             store.uploader->forgetAfter(copies);
             store.builds.resize(builds);
             store.reshapedMeshes.erase(store.meshes.next().index);
-            takeMesh(mesh, discardNow(store));
         }
         return status.error();
     }
@@ -272,7 +248,13 @@ void retireMesh(SceneStore& store, MeshHandle handle) {
     }
     std::erase_if(store.builds,
                   [&](const BlasBuild& build) { return gone.contains(build.info.dstAccelerationStructure); });
-    takeMesh(mesh, retire(store));
+    for (StoredPart& part : mesh.parts) {
+        store.retired.add(std::move(part.blas));
+    }
+    for (StoredPrimitive& primitive : mesh.primitives) {
+        store.retired.add(std::move(primitive.device.buffer));
+        store.retired.add(std::move(primitive.source.buffer));
+    }
 }
 
 void countUse(Slots<StoredMaterial, MaterialHandle>& materials, MaterialHandle material,
@@ -324,7 +306,7 @@ void releaseShape(SceneStore& store, std::uint32_t index, StoredInstance& instan
         return;
     }
     OwnShape& shape = *instance.shape;
-    takeShape(shape, retire(store));
+    retire(store, shape);
     store.poseRuns.release(shape.pose.first, shape.pose.end - shape.pose.first);
     store.deformRuns.release(shape.records.first, shape.records.end - shape.records.first);
     store.shaped.erase(index);
@@ -392,10 +374,7 @@ Result<std::unique_ptr<OwnShape>> makeShape(SceneStore& store, const Package* pa
     auto shape = std::make_unique<OwnShape>();
     shape->joints = static_cast<std::uint32_t>(pose.joints.size());
     shape->weights = static_cast<std::uint32_t>(pose.morphWeights.size());
-    if (Status status = fillShape(store, handle, mesh, *shape); !status) {
-        takeShape(*shape, discardNow(store));
-        return status.error();
-    }
+    GLINT_TRY_DO(fillShape(store, handle, mesh, *shape));
     const auto run = [](RunAllocator& runs, std::uint32_t count) {
         const std::uint32_t first = runs.allocate(count);
         return IndexRange{first, first + count};
@@ -439,7 +418,7 @@ void takeShape(SceneStore& store, std::uint32_t index, StoredInstance& instance,
     instance.shape = std::move(shape);
     store.shaped.insert(index);
     store.reshaped.insert(index);
-    writeDeforms(store, index, store.poseBuffer.address);
+    writeDeforms(store, index, store.poses.device.address);
 }
 
 gpu::GeometryRecord recordAt(const SceneStore& store, const StoredInstance& instance, std::uint32_t index,

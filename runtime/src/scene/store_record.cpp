@@ -26,23 +26,16 @@ constexpr MemoryDependency kDeformToBuild{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT
 constexpr std::size_t kArrays = 10;
 constexpr std::size_t kPoseArray = 7;
 
-// Everything that a recording needs to allocate. Its destructor discards everything that was not handed over.
+// Everything that a recording needs to allocate.
 struct Prepared {
     explicit Prepared(SceneStore& store)
         : kept(store.scene.pool), brief(store.upload != nullptr ? store.upload->pool : store.scene.pool) {}
-    ~Prepared() {
-        discard(brief, std::move(scratch.buffer));
-        discard(kept, std::move(tlas));
-        discard(kept, std::move(tlasScratch.buffer));
-    }
-    Prepared(const Prepared&) = delete;
-    Prepared& operator=(const Prepared&) = delete;
 
     MemoryPool& kept;
     MemoryPool& brief;  // of resources that only this recording needs
-    Scratch scratch;
+    AlignedBuffer scratch;
     AccelerationStructure tlas;
-    Scratch tlasScratch;
+    AlignedBuffer tlasScratch;
     std::uint32_t tlasCapacity = 0;
     std::optional<DescriptorSet> set;
     TlasBuild build;
@@ -83,34 +76,27 @@ public:
 private:
     // The arrays, with the sizes that they are to have. Those of poses and of the TLAS's instances are made
     // for the recordings that read them in a scene that does not keep them.
-    std::array<RecordArray, kArrays> arrays() {
+    std::array<ArrayTarget, kArrays> arrays() {
         const bool keeps = store_.keeps();
         const bool isLit = store_.emission.has_value();
         const bool isPosed = store_.deformPass && (keeps || !deformed_.empty());
         const bool isPlaced = keeps || tlasAction_ != BuildAction::Keep;
-        const auto array = [&](RecordStore& records, Buffer& device, bool isRead = true) {
-            const std::uint32_t capacity =
-                isRead ? capacityFor(records.count(), records.capacity, records.firstCapacity) : 0;
-            return RecordArray{records, device, capacity, &prepared_.kept};
+        const auto target = [&](RecordArray& array, bool isRead = true) {
+            return ArrayTarget{array,
+                               isRead ? capacityFor(array.count(), array.capacity, array.firstCapacity) : 0,
+                               &prepared_.kept};
         };
-        std::array<RecordArray, kArrays> all{
-            {array(store_.geometries, scene_.geometries), array(store_.instances, scene_.instances),
-             array(store_.materials, scene_.materials), array(store_.lights, scene_.lights),
-             array(store_.lightNodes, scene_.lightNodes, store_.buildsTree),
-             array(store_.emitters, scene_.emitterRecords, isLit),
-             array(store_.firstEmitters, scene_.firstEmitters, isLit),
-             array(store_.poses, store_.poseBuffer, isPosed),
-             array(store_.deforms, store_.deformBuffer, isPosed),
-             array(store_.topLevel.records(), store_.placedBuffer, isPlaced)}};
+        std::array<ArrayTarget, kArrays> all{
+            {target(store_.geometries), target(store_.instances), target(store_.materials),
+             target(store_.lights), target(store_.lightNodes, store_.buildsTree),
+             target(store_.emitterRecords, isLit), target(store_.firstEmitters, isLit),
+             target(store_.poses, isPosed), target(store_.deforms, isPosed),
+             target(store_.topLevel.records(), isPlaced)}};
         all.back().usage = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
         for (std::size_t i = kPoseArray; i < kArrays && !keeps; ++i) {
             all[i].pool = &prepared_.brief;
         }
         return all;
-    }
-
-    bool lightsChange() const {
-        return store_.lightsDirty || store_.lightsMoved || store_.emittersDirty || store_.emittersMoved;
     }
 
     // Decides which vertices are computed, and which structures are built or refitted.
@@ -246,7 +232,7 @@ private:
         }
         // Earlier frames may still read the memory that is written here.
         recordDependency(context_, commands_, kAllToAll);
-        const std::array<RecordArray, kArrays> now = arrays();
+        const std::array<ArrayTarget, kArrays> now = arrays();
         update_.recordResizes(commands_, now, store_.retired);
         for (Buffer& staging : store_.uploader->record(commands_)) {
             retire(std::move(staging));
@@ -283,7 +269,7 @@ private:
 
     void recordDeform() {
         if (!deformed_.empty()) {
-            store_.deformPass->record(commands_, store_.deformBuffer.address, deformed_);
+            store_.deformPass->record(commands_, store_.deforms.device.address, deformed_);
             recordDependency(context_, commands_, kDeformToBuild);
         }
     }
@@ -313,10 +299,10 @@ private:
             store_.tlasScratch = std::move(prepared_.tlasScratch);
             store_.tlasScratchBytes = tlasScratchBytes_;
         }
-        recordTlasBuild(
-            context_, commands_, prepared_.build,
-            {store_.placedBuffer.address, store_.topLevel.records().count(), store_.tlasScratch.address},
-            scene_.tlas.handle.get(), tlasAction_ == BuildAction::Refit);
+        recordTlasBuild(context_, commands_, prepared_.build,
+                        {store_.topLevel.records().device.address, store_.topLevel.records().count(),
+                         store_.tlasScratch.address},
+                        scene_.tlas.handle.get(), tlasAction_ == BuildAction::Refit);
     }
 
     // Takes over everything that was prepared, and notes that nothing is pending.
@@ -330,10 +316,7 @@ private:
         if (!store_.keeps()) {
             dropBriefs();
         }
-        if (lightsChange()) {
-            scene_.lightCount = store_.lights.count();
-            scene_.emitterCount = store_.emitters.count();
-        }
+        store_.countLights();
         scene_.statistics.instances = static_cast<std::uint32_t>(store_.instanceSlots.count());
         store_.topLevel.apply(tlasAction_);
         takeStatistics();
@@ -355,11 +338,9 @@ private:
     void dropBriefs() {
         retire(std::move(store_.tlasScratch.buffer));
         store_.tlasScratchBytes = 0;
-        const std::array<RecordArray, kArrays> all = arrays();
-        for (const RecordArray& array : std::span(all).subspan(kPoseArray)) {
-            retire(std::move(array.device));
-            array.device = {};
-            array.store.capacity = 0;
+        for (RecordArray* const array : {&store_.poses, &store_.deforms, &store_.topLevel.records()}) {
+            retire(std::exchange(array->device, {}));
+            array->capacity = 0;
         }
     }
 
@@ -416,10 +397,9 @@ static_assert(static_cast<int>(BuildAction::Build) ==
 
 Status checkFrame(const SceneStore& store, std::uint64_t frame) {
     if (frame < store.lastFrame) {
-        return makeError(
-            "scene-edit-frame", "",
-            "frame " + std::to_string(frame) + " is recorded after frame " + std::to_string(store.lastFrame),
-            "number frames in the order in which they are recorded");
+        return makeError("scene-edit-frame", "",
+                         phrase("frame ", frame, " is recorded after frame ", store.lastFrame),
+                         "number frames in the order in which they are recorded");
     }
     return okStatus();
 }

@@ -13,7 +13,8 @@
 namespace glint {
 
 SceneStore::SceneStore(GpuScene::State& owner, const Package& package, const SceneView& view)
-    : scene(owner),
+    : SceneRecords(package.scene(0).materials.recordBytes),
+      scene(owner),
       moves(view.moves),
       editable(view.editable),
       capacity(blasCapacity(owner.context)),
@@ -21,10 +22,8 @@ SceneStore::SceneStore(GpuScene::State& owner, const Package& package, const Sce
       vertices(view.vertices),
       dataAccess(package.positionFetch()),
       buildsTree(package.lightSamples() > 0),
-      materials(package.scene(0).materials.recordBytes),
       topLevel(view.moves, leafOrder),
-      emittersDirty(package.emission() != nullptr),
-      retired(owner.pool) {
+      emittersDirty(package.emission() != nullptr) {
     if (leafOrder != nullptr) {
         capacity = orderedCapacity(capacity);
     }
@@ -336,16 +335,16 @@ private:
     }
 
     void finish() {
-        for (RecordStore* const records :
+        for (RecordArray* const records :
              {&store_.geometries, &store_.instances, &store_.materials, &store_.lights, &store_.lightNodes,
-              &store_.emitters, &store_.firstEmitters, &store_.poses, &store_.deforms,
+              &store_.emitterRecords, &store_.firstEmitters, &store_.poses, &store_.deforms,
               &store_.topLevel.records()}) {
             records->firstCapacity = records->capacity;
         }
         store_.firstTlasCapacity = store_.tlasCapacity;
         store_.texelsOf = nullptr;
         if (!store_.keeps()) {
-            scene_.emitters = {};
+            store_.emitters = {};
             store_.emitterMeans = {};
             store_.meshes.forEach([&](MeshHandle /*handle*/, StoredMesh& mesh) {
                 for (StoredPrimitive& primitive : mesh.primitives) {

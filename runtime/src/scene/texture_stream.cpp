@@ -128,8 +128,7 @@ Result<std::uint32_t> TextureStream::record(VkCommandBuffer commands, std::uint6
                                             std::uint64_t mostBytes) try {
     if (frame < state_->lastFrame) {
         return makeError("stream-frame", "",
-                         "the frame " + std::to_string(frame) + " comes after the frame " +
-                             std::to_string(state_->lastFrame),
+                         phrase("the frame ", frame, " comes after the frame ", state_->lastFrame),
                          "give each frame a number that is not below that of the frame before");
     }
     Advance advance;

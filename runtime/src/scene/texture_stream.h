@@ -30,7 +30,6 @@ struct TextureStream::State {
     State(GpuScene::State& owner, std::uint32_t firstTexels)
         : scene(owner),
           firstSize(firstTexels),
-          retired(owner.pool),
           uploader(std::make_unique<Uploader>(owner.context, owner.pool)) {}
 
     GpuScene::State& scene;

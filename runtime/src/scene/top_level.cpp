@@ -116,7 +116,7 @@ void TopLevel::prepare(BuildAction action) {
         instances.push_back(records_.read<Instance>(place));
         places_[instances.back().instanceCustomIndex] = static_cast<std::uint32_t>(instances.size() - 1);
     }
-    records_.replace(std::span<const Instance>(instances));
+    records_.replace(instances);
     boxes_ = permuted<Box>(boxes_, order);
 }
 

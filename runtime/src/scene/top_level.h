@@ -45,10 +45,10 @@ public:
         return updatable_;
     }
     // The array of VkAccelerationStructureInstanceKHR that the TLAS is built from.
-    RecordStore& records() {
+    RecordArray& records() {
         return records_;
     }
-    const RecordStore& records() const {
+    const RecordArray& records() const {
         return records_;
     }
 
@@ -59,7 +59,7 @@ private:
 
     bool updatable_;
     LeafOrder order_;
-    RecordStore records_;
+    RecordArray records_;
     std::unordered_map<std::uint32_t, std::uint32_t> places_;  // by custom index
     std::vector<Box> boxes_;                                   // by place; empty unless keepsBoxes()
     std::vector<Box> built_;  // the same at the last build; empty unless the TLAS is updatable

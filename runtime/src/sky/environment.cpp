@@ -80,8 +80,11 @@ Status uploadLevels(Environment::State& state, Uploader& uploader, const std::ve
 Status uploadCounts(Environment::State& state, Uploader& uploader, const SkyCounts& distribution) {
     state.countColumns = distribution.columns;
     state.countRows = distribution.rows;
-    return uploadRecords(state.context, state.pool, uploader,
-                         std::span<const std::uint32_t>(distribution.counts), state.counts);
+    const std::span<const std::uint8_t> bytes = bytesOf(std::span(distribution.counts));
+    GLINT_TRY(state.counts,
+              createBuffer(state.context, state.pool, bytes.size(),
+                           VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT));
+    return uploader.copyToBuffer(bytes, state.counts);
 }
 
 // Makes an environment, and queues its copies.

@@ -1,5 +1,6 @@
 #include "sky/radiance_map.h"
 
+#include "context/context.h"
 #include "interop/lights.h"
 
 #include <algorithm>
@@ -45,10 +46,10 @@ std::vector<Coverage> coverages(std::uint32_t sources, std::uint32_t targets, co
 }
 
 Diagnostic radianceError(const std::string& what, std::size_t pixel, std::uint32_t width) {
-    return makeError("environment-radiance", "",
-                     "the pixel at column " + std::to_string(pixel % width) + ", row " +
-                         std::to_string(pixel / width) + " from the top left " + what,
-                     "correct the image: radiance is 0 to 1e18");
+    return makeError(
+        "environment-radiance", "",
+        phrase("the pixel at column ", pixel % width, ", row ", pixel / width, " from the top left ", what),
+        "correct the image: radiance is 0 to 1e18");
 }
 
 }  // namespace
@@ -57,9 +58,8 @@ Result<CheckedMap> checkMap(const LinearImage& image) {
     const std::size_t count = std::size_t{image.width} * image.height;
     if (count == 0 || image.pixels.size() != count) {
         return makeError("environment-size", "",
-                         "the environment's image is " + std::to_string(image.width) + " x " +
-                             std::to_string(image.height) + " with " + std::to_string(image.pixels.size()) +
-                             " pixels",
+                         phrase("the environment's image is ", image.width, " x ", image.height, " with ",
+                                image.pixels.size(), " pixels"),
                          "give an image with all its pixels");
     }
     CheckedMap checked;

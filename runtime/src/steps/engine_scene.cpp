@@ -21,9 +21,9 @@
 namespace glint {
 namespace {
 
-static_assert(static_cast<std::uint32_t>(EngineSceneView::RecordsBy::CustomIndexTable) ==
+static_assert(static_cast<std::uint32_t>(EngineScene::View::RecordsBy::CustomIndexTable) ==
               gpu::kRecordsByCustomIndexTable);
-static_assert(static_cast<std::uint32_t>(EngineSceneView::RecordsBy::InstanceTable) ==
+static_assert(static_cast<std::uint32_t>(EngineScene::View::RecordsBy::InstanceTable) ==
               gpu::kRecordsByInstanceTable);
 
 std::string geometryPlace(std::size_t index) {
@@ -32,10 +32,8 @@ std::string geometryPlace(std::size_t index) {
 
 Diagnostic outOfRange(const std::string& where, const std::string& what, std::size_t value,
                       std::size_t count) {
-    return makeError(
-        "engine-scene", where,
-        what + " " + std::to_string(value) + " is out of range, there are " + std::to_string(count),
-        "give indices below the number of what they name");
+    return makeError("engine-scene", where, phrase(what, " ", value, " is out of range, there are ", count),
+                     "give indices below the number of what they name");
 }
 
 struct NamedAddress {
@@ -59,10 +57,10 @@ Result<const package::PrimitiveEntry*> entryOf(const Package& package, const Pac
                                                const gpu::GeometryRecord& record) {
     const package::PrimitiveEntry* const entry = known.findPrimitive(primitive.mesh, primitive.primitive);
     if (entry == nullptr) {
-        return makeError("scene-package", geometryPlace(index),
-                         "the package does not know primitive " + std::to_string(primitive.primitive) +
-                             " of mesh " + std::to_string(primitive.mesh),
-                         "compile the package from the scene that is traced");
+        return makeError(
+            "scene-package", geometryPlace(index),
+            phrase("the package does not know primitive ", primitive.primitive, " of mesh ", primitive.mesh),
+            "compile the package from the scene that is traced");
     }
     for (const NamedAddress& one : kAddresses) {
         const bool needed =
@@ -79,7 +77,7 @@ Result<const package::PrimitiveEntry*> entryOf(const Package& package, const Pac
 // The corners of triangles that may be lights. Geometries that name the same corners share them.
 class Shapes {
 public:
-    Result<std::shared_ptr<const EmitterShape>> find(const EngineSceneView::Geometry& view,
+    Result<std::shared_ptr<const EmitterShape>> find(const EngineScene::View::Geometry& view,
                                                      const std::string& where) {
         const std::span<const std::array<float, 3>> corners = view.lightCorners;
         if (corners.empty()) {
@@ -120,11 +118,11 @@ struct Geometries {
     std::vector<EngineScene::State::Primitive> primitives;
 };
 
-Result<Geometries> makeGeometries(const EngineSceneView& scene) {
+Result<Geometries> makeGeometries(const EngineScene::View& scene) {
     Geometries made;
     Shapes shapes;
     for (std::size_t i = 0; i < scene.geometries.size(); ++i) {
-        const EngineSceneView::Geometry& view = scene.geometries[i];
+        const EngineScene::View::Geometry& view = scene.geometries[i];
         if (view.instance >= scene.instances.size()) {
             return outOfRange(geometryPlace(i), "instance", view.instance, scene.instances.size());
         }
@@ -165,19 +163,18 @@ std::vector<Rows> movedBack(std::vector<Rows> instances, const std::array<double
 
 // The package's materials, with the host's numbers of textures and samplers.
 Result<std::vector<std::uint8_t>> makeMaterials(const Context::State& context, const PackageScene& known,
-                                                std::span<const EngineSceneView::Texture> textures,
-                                                std::span<const EngineSceneView::Sampler> samplers) {
+                                                std::span<const EngineScene::View::Texture> textures,
+                                                std::span<const EngineScene::View::Sampler> samplers) {
     if (textures.size() != known.textures.size() || samplers.size() != known.samplers.size()) {
         return makeError("engine-scene", "",
-                         "there are " + std::to_string(textures.size()) + " textures and " +
-                             std::to_string(samplers.size()) + " samplers, the package's scene has " +
-                             std::to_string(known.textures.size()) + " and " +
-                             std::to_string(known.samplers.size()),
+                         phrase("there are ", textures.size(), " textures and ", samplers.size(),
+                                " samplers, the package's scene has ", known.textures.size(), " and ",
+                                known.samplers.size()),
                          "give one for each of PackageScene::textures and PackageScene::samplers");
     }
     std::vector<ImageView> images;
     for (std::size_t i = 0; i < known.textures.size(); ++i) {
-        const EngineSceneView::Texture& texture = textures[i];
+        const EngineScene::View::Texture& texture = textures[i];
         if (texture.width == 0 || texture.height == 0) {
             return makeError("engine-scene", "texture " + std::to_string(i), "it has no texels",
                              "give the size of its finest level");
@@ -225,7 +222,7 @@ Status takeTextures(const MaterialTable& given, const MaterialTable& ofPackage, 
         gpu::TextureRecord texture = textureAt(given, 0, slot);
         if (!(texture.texels.x >= 1.0F && texture.texels.y >= 1.0F)) {
             return makeError("scene-material", materialPlace(number),
-                             "texture " + std::to_string(slot) + " of the record has no texels",
+                             phrase("texture ", slot, " of the record has no texels"),
                              "give the size of its finest level in TextureRecord::texels");
         }
         texture.anisotropy = std::max(texture.anisotropy, 1.0F);
@@ -285,7 +282,7 @@ Status takeMaterial(const Host& host, std::size_t index, gpu::GeometryRecord& ge
         geometry.materialIndex = host.ofPackage;
         return okStatus();
     }
-    if (primitive.material == EngineSceneView::Geometry::kOfPackage) {
+    if (primitive.material == EngineScene::View::Geometry::kOfPackage) {
         return okStatus();
     }
     if (primitive.material >= host.materials.size() || host.materials[primitive.material].record.empty()) {
@@ -294,8 +291,8 @@ Status takeMaterial(const Host& host, std::size_t index, gpu::GeometryRecord& ge
     const std::uint32_t material = host.materials[primitive.material].material;
     if (material != geometry.materialIndex) {
         return makeError("engine-scene", geometryPlace(index),
-                         "its values are of material " + std::to_string(material) +
-                             ", and the primitive has material " + std::to_string(geometry.materialIndex),
+                         phrase("its values are of material ", material, ", and the primitive has material ",
+                                geometry.materialIndex),
                          "name values of the primitive's material");
     }
     geometry.materialIndex = host.ofPackage + primitive.material;
@@ -384,8 +381,8 @@ Status carryValues(const Package& package, const PackageScene& known, std::span<
 // The content by a package of what the host has given before.
 Result<PackageContent> contentBy(const EngineScene::State& state, const Package& package,
                                  std::uint32_t index) {
-    GLINT_TRY_DO(checkDisks(package.diskLights(), state.lights));
-    const RecordStore& geometries = state.arrays[EngineScene::State::Geometries].store;
+    GLINT_TRY_DO(checkDisks(package.diskLights(), state.lightViews));
+    const RecordStore& geometries = state.geometries;
     std::vector<gpu::GeometryRecord> records;
     for (std::uint32_t i = 0; i < geometries.count(); ++i) {
         records.push_back(geometries.read<gpu::GeometryRecord>(i));
@@ -398,27 +395,20 @@ Result<PackageContent> contentBy(const EngineScene::State& state, const Package&
 }
 
 void take(EngineScene::State& state, const PackageContent& content) {
-    using State = EngineScene::State;
-    RecordStore& materials = state.arrays[State::Materials].store;
+    RecordStore& materials = state.materials;
     if (content.host.layout.recordBytes != materials.stride()) {
         materials.reset(content.host.layout.recordBytes);
     }
     materials.replaceBytes(content.materials);
-    state.arrays[State::Geometries].store.replace(std::span<const gpu::GeometryRecord>(content.geometries));
+    state.geometries.replace(content.geometries);
     state.host = content.host;
     state.records = content.records;
     state.shaderIds = content.shaderIds;
 }
 
-template <typename T>
-void replace(EngineScene::State& state, EngineScene::State::Kind kind, const std::vector<T>& records) {
-    state.arrays[kind].store.replace(std::span<const T>(records));
-}
-
 // Lists the triangles that are lights: those whose corners the host has given, if their material emits light.
 void gatherEmitters(EngineScene::State& state) {
-    using State = EngineScene::State;
-    const RecordStore& geometries = state.arrays[State::Geometries].store;
+    const RecordStore& geometries = state.geometries;
     std::vector<EmitterPart> parts;
     std::vector<std::uint32_t> firsts;
     state.emitters = {};
@@ -435,19 +425,17 @@ void gatherEmitters(EngineScene::State& state) {
             part.material = record.materialIndex;
             part.count = static_cast<std::uint32_t>(shape->indices.size() / 3);
             part.twoSided = (record.flags & gpu::kGeometryDoubleSided) != 0;
-            part.luminance = emittedLuminance(state.arrays[State::Materials].store.at(record.materialIndex),
-                                              *state.host.emission);
+            part.luminance = emittedLuminance(state.materials.at(record.materialIndex), *state.host.emission);
             part.shape = shape;
         }
         state.emitters = Emitters(*state.host.emission, std::move(parts));
         firsts = state.emitters.firstsOf(geometries.count());
     }
-    replace(state, State::FirstEmitters, firsts);
+    state.firstEmitters.replace(firsts);
 }
 
 // Brings the hierarchy of lights to their present places. `refits`: there are the same lights.
 void settleLights(EngineScene::State& state, bool refits) {
-    using State = EngineScene::State;
     if (!state.host.buildsTree) {
         state.lightTree = {};
     }
@@ -459,10 +447,11 @@ void settleLights(EngineScene::State& state, bool refits) {
         const TreeChange change = !state.host.buildsTree ? TreeChange::None
                                   : refits               ? TreeChange::Refit
                                                          : TreeChange::BuildWithDark;
-        followLights(makeLightRecords(state.lights), instances, change, state.emitters, state.lightTree);
+        state.followLights(makeLightRecords(state.lightViews), instances, change);
+    } else {
+        state.lightNodes.shrink(0);
+        state.emitterRecords.shrink(0);
     }
-    replace(state, State::LightNodes, state.lightTree.nodes);
-    replace(state, State::EmitterRecords, state.emitters.records);
 }
 
 // Brings triangles and lights to another content.
@@ -474,7 +463,6 @@ void rebuildLights(EngineScene::State& state) {
 // Places the instances and lights. Motion is measured from the transforms before; new instances are still.
 Status place(EngineScene::State& state, std::span<const Rows> instances, std::span<const LightView> lights,
              bool knowsDisks, const std::array<double, 3>& originMoved) {
-    using State = EngineScene::State;
     GLINT_TRY(auto records, makeInstances(instances));
     GLINT_TRY_DO(checkLights(lights));
     GLINT_TRY_DO(checkDisks(knowsDisks, lights));
@@ -483,11 +471,11 @@ Status place(EngineScene::State& state, std::span<const Rows> instances, std::sp
     before.insert(before.end(), instances.begin() + static_cast<std::ptrdiff_t>(before.size()),
                   instances.end());
     GLINT_TRY(auto previous, makeInstances(before));
-    replace(state, State::Instances, records);
-    replace(state, State::PreviousInstances, previous);
-    replace(state, State::Lights, makeLightRecords(lights));
+    state.instances.replace(records);
+    state.previousInstances.replace(previous);
+    state.lights.replace(makeLightRecords(lights));
     state.placed.assign(instances.begin(), instances.end());
-    state.lights.assign(lights.begin(), lights.end());
+    state.lightViews.assign(lights.begin(), lights.end());
     return okStatus();
 }
 
@@ -496,22 +484,20 @@ Status checkOwn(const EngineScene::State& state, std::uint64_t frame) {
         return makeError("engine-scene", "", "the scene is that of a GpuScene", "use GpuScene::update()");
     }
     if (frame < state.lastFrame) {
-        return makeError(
-            "engine-scene", "",
-            "frame " + std::to_string(frame) + " is recorded after frame " + std::to_string(state.lastFrame),
-            "number frames in the order in which they are recorded");
+        return makeError("engine-scene", "",
+                         phrase("frame ", frame, " is recorded after frame ", state.lastFrame),
+                         "number frames in the order in which they are recorded");
     }
     return okStatus();
 }
 
-OwnMaterial keptMaterial(const EngineSceneView::Material& view) {
+OwnMaterial keptMaterial(const EngineScene::View::Material& view) {
     return {view.material, {view.record.begin(), view.record.end()}, view.ownTextures};
 }
 
 Status recordContent(EngineScene::State& state, VkCommandBuffer commands, const Package& package,
-                     const EngineSceneView& scene, std::uint64_t frame,
+                     const EngineScene::View& scene, std::uint64_t frame,
                      const std::array<double, 3>& originMoved) {
-    using State = EngineScene::State;
     if (scene.packageScene >= package.sceneCount()) {
         return makeError("scene-package", "",
                          "the package has no scene " + std::to_string(scene.packageScene),
@@ -523,10 +509,10 @@ Status recordContent(EngineScene::State& state, VkCommandBuffer commands, const 
     host.hitRecords.assign(scene.hitRecords.begin(), scene.hitRecords.end());
     takeLayout(package, package.scene(scene.packageScene), host);
     std::uint32_t leastInstances = 0;
-    for (const EngineSceneView::Geometry& view : scene.geometries) {
+    for (const EngineScene::View::Geometry& view : scene.geometries) {
         leastInstances = std::max(leastInstances, view.instance + 1);
     }
-    for (const EngineSceneView::Material& view : scene.materials) {
+    for (const EngineScene::View::Material& view : scene.materials) {
         host.materials.push_back(keptMaterial(view));
     }
     GLINT_TRY(auto geometries, makeGeometries(scene));
@@ -535,15 +521,15 @@ Status recordContent(EngineScene::State& state, VkCommandBuffer commands, const 
                                               std::move(geometries.records), std::move(host)));
     for (std::size_t i = 0; i < scene.firstRecords.size(); ++i) {
         if (scene.firstRecords[i] >= std::max<std::size_t>(content.geometries.size(), 1)) {
-            return outOfRange("entry " + std::to_string(i) + " of firstRecords", "geometry",
-                              scene.firstRecords[i], content.geometries.size());
+            return outOfRange(phrase("entry ", i, " of firstRecords"), "geometry", scene.firstRecords[i],
+                              content.geometries.size());
         }
     }
     GLINT_TRY_DO(place(state, scene.instances, scene.lights, content.host.knowsDisks, originMoved));
     state.shaderIdsVersion += state.shaderIds != content.shaderIds ? 1 : 0;
     take(state, content);
-    state.arrays[State::FirstRecords].store.replace(scene.firstRecords);
-    replace(state, State::PrimitiveMaterials, geometries.primitiveMaterials);
+    state.firstRecords.replace(scene.firstRecords);
+    state.primitiveMaterials.replace(geometries.primitiveMaterials);
     state.name = package.scene(scene.packageScene).name;
     state.leastInstances = leastInstances;
     state.recordsBy = scene.recordsBy;
@@ -553,7 +539,7 @@ Status recordContent(EngineScene::State& state, VkCommandBuffer commands, const 
 
 // Brings lights to the brightness of a material whose record has changed.
 void brightenLights(EngineScene::State& state, std::uint32_t index) {
-    const RecordStore& materials = state.arrays[EngineScene::State::Materials].store;
+    const RecordStore& materials = state.materials;
     if (index >= materials.count()) {
         return;
     }
@@ -580,9 +566,8 @@ Status checkUnnamed(const Host& host, std::uint32_t number) {
 
 // Writes the material of a number, and gives numbers between an empty record.
 Status setMaterial(EngineScene::State& state, std::uint32_t number, OwnMaterial own) {
-    using State = EngineScene::State;
     Host& host = state.host;
-    RecordStore& rows = state.arrays[State::Materials].store;
+    RecordStore& rows = state.materials;
     const bool isKnown = number < host.materials.size() && !host.materials[number].record.empty();
     if (isKnown && (own.record.empty() || own.material != host.materials[number].material)) {
         GLINT_TRY_DO(checkUnnamed(host, number));
@@ -610,27 +595,15 @@ Status setMaterial(EngineScene::State& state, std::uint32_t number, OwnMaterial 
 }  // namespace
 
 EngineScene::State::State(Context::State& contextState)
-    : DrawnScene(contextState),
-      pool(std::make_shared<MemoryPool>(contextState, "engine scene")),
-      arrays{{{RecordStore(sizeof(gpu::GeometryRecord)), {}},
-              {RecordStore(sizeof(gpu::InstanceRecord)), {}},
-              {RecordStore(sizeof(gpu::InstanceRecord)), {}},
-              {RecordStore(sizeof(std::uint32_t)), {}},
-              {RecordStore(sizeof(gpu::LightRecord)), {}},
-              {RecordStore(sizeof(std::uint32_t)), {}},
-              {RecordStore(sizeof(gpu::PrimitiveMaterials)), {}},
-              {RecordStore(sizeof(gpu::LightNode)), {}},
-              {RecordStore(sizeof(gpu::EmitterRecord)), {}},
-              {RecordStore(sizeof(std::uint32_t)), {}}}},
-      retired(*pool) {}
+    : DrawnScene(contextState), SceneRecords(sizeof(std::uint32_t)), pool(contextState, "engine scene") {}
 
 Status EngineScene::State::recordChanges(VkCommandBuffer commands, std::uint64_t frame,
                                          RetiredLot* leftovers) {
-    std::vector<RecordArray> now;
-    for (auto& [store, device] : arrays) {
-        now.push_back({store, device, grownCapacity(store.count(), store.capacity), pool.get()});
+    std::vector<ArrayTarget> now;
+    for (RecordArray* const array : arrays) {
+        now.push_back({*array, grownCapacity(array->count(), array->capacity), &pool});
     }
-    ArrayUpdate update(context, *pool);
+    ArrayUpdate update(context, pool);
     GLINT_TRY_DO(update.prepareBuffers(now));
     GLINT_TRY_DO(update.prepareStaging(now));
     if (update.hasWork()) {
@@ -644,8 +617,7 @@ Status EngineScene::State::recordChanges(VkCommandBuffer commands, std::uint64_t
     } else {
         retired.close(frame);
     }
-    counts = {arrays[Lights].store.count(), arrays[EmitterRecords].store.count(), lightTree.treeNodes,
-              lightTree.apart};
+    countLights();
     lastFrame = frame;
     return okStatus();
 }
@@ -663,8 +635,8 @@ Result<PackageFit> EngineScene::State::fit(const std::shared_ptr<const Package>&
 Result<RetiredLot> EngineScene::State::recordReplacement(const std::shared_ptr<const Package>& package,
                                                          std::uint32_t index, VkCommandBuffer commands) {
     GLINT_TRY(const auto content, contentBy(*this, *package, index));
-    const RecordStore materials = arrays[Materials].store;
-    const RecordStore geometries = arrays[Geometries].store;
+    const RecordStore materialsBefore = materials;
+    const RecordStore geometriesBefore = geometries;
     const Host hostBefore = host;
     const std::uint64_t recordsBefore = records;
     const std::vector<std::uint32_t> idsBefore = shaderIds;
@@ -672,15 +644,14 @@ Result<RetiredLot> EngineScene::State::recordReplacement(const std::shared_ptr<c
     rebuildLights(*this);
     RetiredLot leftovers;
     if (Status status = recordChanges(commands, lastFrame, &leftovers); !status) {
-        arrays[Materials].store = materials;
-        arrays[Geometries].store = geometries;
+        static_cast<RecordStore&>(materials) = materialsBefore;
+        static_cast<RecordStore&>(geometries) = geometriesBefore;
         host = hostBefore;
         records = recordsBefore;
         shaderIds = idsBefore;
         rebuildLights(*this);
         return status.error();
     }
-    leftovers.keep(pool);
     return leftovers;
 }
 
@@ -689,7 +660,7 @@ DrawnScene& EngineScene::State::drawn() {
 }
 
 Result<std::unique_ptr<EngineScene>> EngineScene::record(Context& context, const Package& package,
-                                                         const EngineSceneView& scene,
+                                                         const EngineScene::View& scene,
                                                          VkCommandBuffer commands, std::uint64_t frame) try {
     auto state = std::make_unique<State>(context.state());
     GLINT_TRY_DO(recordContent(*state, commands, package, scene, frame, {}));
@@ -698,7 +669,7 @@ Result<std::unique_ptr<EngineScene>> EngineScene::record(Context& context, const
 GLINT_CATCH
 
 Result<std::unique_ptr<EngineScene>> EngineScene::create(Context& context, const Package& package,
-                                                         const EngineSceneView& scene) try {
+                                                         const EngineScene::View& scene) try {
     return makeOnce(context.state(),
                     [&](VkCommandBuffer commands) { return record(context, package, scene, commands, 0); });
 }
@@ -721,28 +692,17 @@ void EngineScene::State::fill(gpu::FrameConstants& constants) const {
         constants.previousInstances = constants.instances;
         return;
     }
-    const auto at = [&](Kind kind) { return arrays[kind].device.address; };
-    constants.geometries = at(Geometries);
-    constants.instances = at(Instances);
-    constants.previousInstances = at(PreviousInstances);
-    constants.materials = at(Materials);
-    constants.firstRecords = at(FirstRecords);
-    constants.primitiveMaterials = at(PrimitiveMaterials);
+    SceneRecords::fill(constants);
+    constants.previousInstances = previousInstances.device.address;
+    constants.firstRecords = firstRecords.device.address;
+    constants.primitiveMaterials = primitiveMaterials.device.address;
     constants.recordsBy = static_cast<std::uint32_t>(recordsBy);
-    constants.lights = at(Lights);
-    constants.lightCount = counts.lights;
-    constants.lightNodes = at(LightNodes);
-    constants.lightTreeNodes = counts.treeNodes;
-    constants.lightsApart = counts.apart;
-    constants.emitters = at(EmitterRecords);
-    constants.firstEmitters = at(FirstEmitters);
-    constants.emitterCount = counts.emitters;
 }
 
 EngineScene::EngineScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
 EngineScene::~EngineScene() = default;
 
-Status EngineScene::update(VkCommandBuffer commands, const Package& package, const EngineSceneView& scene,
+Status EngineScene::update(VkCommandBuffer commands, const Package& package, const EngineScene::View& scene,
                            std::uint64_t frame, const std::array<double, 3>& originMoved) try {
     GLINT_TRY_DO(checkOwn(*state_, frame));
     return recordContent(*state_, commands, package, scene, frame, originMoved);
@@ -756,7 +716,8 @@ Status EngineScene::update(VkCommandBuffer commands, std::span<const std::array<
     if (instances.size() < state_->leastInstances) {
         return outOfRange("", "instance", state_->leastInstances - 1, instances.size());
     }
-    const bool refits = std::ranges::equal(state_->lights, lights, {}, &LightView::type, &LightView::type);
+    const bool refits =
+        std::ranges::equal(state_->lightViews, lights, {}, &LightView::type, &LightView::type);
     GLINT_TRY_DO(place(*state_, instances, lights, state_->host.knowsDisks, originMoved));
     settleLights(*state_, refits);
     return state_->recordChanges(commands, frame);
@@ -764,7 +725,7 @@ Status EngineScene::update(VkCommandBuffer commands, std::span<const std::array<
 GLINT_CATCH
 
 Status EngineScene::updateMaterial(VkCommandBuffer commands, std::uint32_t number,
-                                   const EngineSceneView::Material& material, std::uint64_t frame) try {
+                                   const EngineScene::View::Material& material, std::uint64_t frame) try {
     GLINT_TRY_DO(checkOwn(*state_, frame));
     GLINT_TRY_DO(setMaterial(*state_, number, keptMaterial(material)));
     brightenLights(*state_, state_->host.ofPackage + number);
@@ -773,15 +734,15 @@ Status EngineScene::updateMaterial(VkCommandBuffer commands, std::uint32_t numbe
 GLINT_CATCH
 
 VkDeviceAddress EngineScene::materials() const {
-    const State& state = *state_;
-    return state.shared != nullptr ? state.shared->materials.address
-                                   : state.arrays[State::Materials].device.address;
+    gpu::FrameConstants constants{};
+    state_->fill(constants);
+    return constants.materials;
 }
 
 std::uint64_t EngineScene::bytes() const {
     std::uint64_t sum = 0;
-    for (const State::Records& records : state_->arrays) {
-        sum += records.device.bytes;
+    for (const RecordArray* const array : state_->arrays) {
+        sum += array->device.bytes;
     }
     return sum;
 }

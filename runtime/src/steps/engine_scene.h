@@ -4,13 +4,13 @@
 #include "context/context.h"
 #include "context/resources.h"
 #include "data/emitters.h"
-#include "data/light_tree.h"
 #include "data/materials.h"
 #include "data/retired.h"
 #include "interop/frame.h"
 #include "scene/drawn_scene.h"
 #include "scene/gpu_scene_state.h"
 #include "scene/record_store.h"
+#include "scene/scene_records.h"
 
 #include <glint/internal/package_format.h>
 #include <glint/scene_view.h>
@@ -26,8 +26,7 @@
 
 namespace glint {
 
-// Members are destroyed in reverse order: the pool's memory last.
-struct EngineScene::State final : DrawnScene {
+struct EngineScene::State final : DrawnScene, SceneRecords {
     explicit State(Context::State& contextState);
 
     Result<PackageFit> fit(const std::shared_ptr<const Package>& package) const override;
@@ -49,51 +48,28 @@ struct EngineScene::State final : DrawnScene {
 
     GpuScene::State* shared = nullptr;  // null if the records are the scene's own, below
 
-    // An array of records, and its place on the device.
-    struct Records {
-        RecordStore store;
-        Buffer device;
-    };
-    enum Kind : std::size_t {
-        Geometries,
-        Instances,
-        PreviousInstances,
-        Materials,
-        Lights,
-        FirstRecords,
-        PrimitiveMaterials,
-        LightNodes,
-        EmitterRecords,
-        FirstEmitters,
-        Count
-    };
-    std::shared_ptr<MemoryPool> pool;
-    std::array<Records, Count> arrays;
+    RecordArray previousInstances{sizeof(gpu::InstanceRecord)};
+    RecordArray firstRecords{sizeof(std::uint32_t)};
+    RecordArray primitiveMaterials{sizeof(gpu::PrimitiveMaterials)};
+    std::vector<RecordArray*> arrays{&geometries,     &instances,    &previousInstances,  &materials,
+                                     &lights,         &firstRecords, &primitiveMaterials, &lightNodes,
+                                     &emitterRecords, &firstEmitters};
+    MemoryPool pool;
     Retired retired;
     std::uint64_t lastFrame = 0;
-    // These are of the last recording.
-    struct Counts {
-        std::uint32_t lights = 0;
-        std::uint32_t emitters = 0;
-        std::uint32_t treeNodes = 0;
-        std::uint32_t apart = 0;
-    };
-    Counts counts;
-    EngineSceneView::RecordsBy recordsBy = EngineSceneView::RecordsBy::CustomIndex;
+    EngineScene::View::RecordsBy recordsBy = EngineScene::View::RecordsBy::CustomIndex;
     std::vector<std::array<float, 12>> placed;  // the transforms of the instances
     std::uint32_t leastInstances = 0;           // that the geometries name
-    std::vector<LightView> lights;
-    // The triangles that are lights, and the hierarchy, if the package has them.
-    Emitters emitters;
-    LightTree lightTree;
+    std::vector<LightView> lightViews;
 
     // The host's content, from which another package makes its records.
     struct Primitive {
         std::uint32_t mesh = 0;
         std::uint32_t primitive = 0;
-        std::uint32_t material = EngineSceneView::Geometry::kOfPackage;
-        bool ownMaterials = false;                    // each of its triangles names one
-        std::shared_ptr<const EmitterShape> shape{};  // EngineSceneView::Geometry::lightCorners; may be null
+        std::uint32_t material = EngineScene::View::Geometry::kOfPackage;
+        bool ownMaterials = false;  // each of its triangles names one
+        std::shared_ptr<const EmitterShape>
+            shape{};  // EngineScene::View::Geometry::lightCorners; may be null
     };
     struct OwnMaterial {
         std::uint32_t material = 0;
@@ -102,8 +78,8 @@ struct EngineScene::State final : DrawnScene {
     };
     struct Host {
         std::vector<Primitive> primitives;  // of each geometry
-        std::vector<EngineSceneView::Texture> textures;
-        std::vector<EngineSceneView::Sampler> samplers;
+        std::vector<EngineScene::View::Texture> textures;
+        std::vector<EngineScene::View::Sampler> samplers;
         std::vector<std::uint32_t> hitRecords;
         std::vector<OwnMaterial> materials;  // in records with these fields
         RecordFields fields;

@@ -2,7 +2,7 @@
 #include "frame/frame_constants.h"
 #include "package/package.h"
 #include "renderer/hit_passes.h"
-#include "renderer/renderer_choice.h"
+#include "renderer/pipelines.h"
 #include "renderer/replacement.h"
 #include "steps/engine_scene.h"
 
@@ -18,21 +18,22 @@
 
 namespace glint {
 
-static_assert(sizeof(EngineRay) == sizeof(gpu::RayRecord));
-static_assert(offsetof(EngineRay, slot) == offsetof(gpu::RayRecord, target));
-static_assert(offsetof(EngineRay, coneSpread) == offsetof(gpu::RayRecord, coneSpread));
-static_assert(sizeof(EngineHit) == sizeof(gpu::HitRecord));
-static_assert(offsetof(EngineHit, barycentrics) == offsetof(gpu::HitRecord, barycentricU));
-static_assert(offsetof(EngineHit, coneWidth) == offsetof(gpu::HitRecord, coneWidth));
-static_assert(EngineHit::kMiss == gpu::kMissGeometry);
-static_assert(sizeof(EngineVisibilityRay) == sizeof(gpu::VisibilityRay));
-static_assert(offsetof(EngineVisibilityRay, slot) == offsetof(gpu::VisibilityRay, target));
-static_assert(offsetof(EngineVisibilityRay, distance) == offsetof(gpu::VisibilityRay, distance));
-static_assert(sizeof(EngineSurface) == sizeof(gpu::SurfaceRecord));
-static_assert(offsetof(EngineSurface, roughness) == offsetof(gpu::SurfaceRecord, roughness));
-static_assert(offsetof(EngineSurface, f0) == offsetof(gpu::SurfaceRecord, f0));
-static_assert(offsetof(EngineSurface, motion) == offsetof(gpu::SurfaceRecord, motion));
-static_assert(EngineSurface::kMiss == gpu::kSurfaceMiss && EngineSurface::kUnknown == gpu::kSurfaceUnknown);
+static_assert(sizeof(RaySteps::Ray) == sizeof(gpu::RayRecord));
+static_assert(offsetof(RaySteps::Ray, slot) == offsetof(gpu::RayRecord, target));
+static_assert(offsetof(RaySteps::Ray, coneSpread) == offsetof(gpu::RayRecord, coneSpread));
+static_assert(sizeof(RaySteps::Hit) == sizeof(gpu::HitRecord));
+static_assert(offsetof(RaySteps::Hit, barycentrics) == offsetof(gpu::HitRecord, barycentricU));
+static_assert(offsetof(RaySteps::Hit, coneWidth) == offsetof(gpu::HitRecord, coneWidth));
+static_assert(RaySteps::Hit::kMiss == gpu::kMissGeometry);
+static_assert(sizeof(RaySteps::VisibilityRay) == sizeof(gpu::VisibilityRay));
+static_assert(offsetof(RaySteps::VisibilityRay, slot) == offsetof(gpu::VisibilityRay, target));
+static_assert(offsetof(RaySteps::VisibilityRay, distance) == offsetof(gpu::VisibilityRay, distance));
+static_assert(sizeof(RaySteps::Surface) == sizeof(gpu::SurfaceRecord));
+static_assert(offsetof(RaySteps::Surface, roughness) == offsetof(gpu::SurfaceRecord, roughness));
+static_assert(offsetof(RaySteps::Surface, f0) == offsetof(gpu::SurfaceRecord, f0));
+static_assert(offsetof(RaySteps::Surface, motion) == offsetof(gpu::SurfaceRecord, motion));
+static_assert(RaySteps::Surface::kMiss == gpu::kSurfaceMiss &&
+              RaySteps::Surface::kUnknown == gpu::kSurfaceUnknown);
 static_assert(RaySteps::kPushBytes == sizeof(gpu::PushConstants));
 
 struct RaySteps::State final : PackageUser {
@@ -62,7 +63,7 @@ Diagnostic wrongBatch(const std::string& what, const std::string& hint) {
     return makeError("ray-steps", "", what, hint);
 }
 
-Outside outsideOf(const RayBatch& batch) {
+Outside outsideOf(const RaySteps::Batch& batch) {
     return {batch.sky, batch.environment, batch.environmentRotation, batch.environmentIntensity};
 }
 
@@ -72,37 +73,39 @@ RendererOptions optionsFor(const Package& package, RendererOptions options) {
     return options;
 }
 
-Status checkHits(const RaySteps::State& state, const RayBatch& batch) {
+Status checkHits(const RaySteps::State& state, const RaySteps::Batch& batch) {
     if (batch.hits != 0 && batch.visibility) {
-        return wrongBatch("rays that only ask for visibility have no hits", "leave out RayBatch::hits");
+        return wrongBatch("rays that only ask for visibility have no hits",
+                          "leave out RaySteps::Batch::hits");
     }
     if (batch.hits != 0 && package::infoOf(state.choice.strategy).ownPipeline) {
         return wrongBatch("the strategy " + std::string(nameOf(state.choice.strategy)) +
                               " shades hits where its pipeline finds them, and takes none",
-                          "make RaySteps with another strategy for RayBatch::hits");
+                          "make RaySteps with another strategy for RaySteps::Batch::hits");
     }
     return okStatus();
 }
 
-Status checkBatch(const RaySteps::State& state, const RayBatch& batch) {
+Status checkBatch(const RaySteps::State& state, const RaySteps::Batch& batch) {
     if (batch.rays == 0 || batch.answers == 0) {
         return wrongBatch("the address of rays or answers is 0", "give the addresses of both lists");
     }
     if (state.tlasByAddress && batch.tlas == 0) {
-        return wrongBatch("the package takes the acceleration structure by address, and RayBatch::tlas is 0",
-                          "set it, or compile the package with a number for tlas in --bindings");
+        return wrongBatch(
+            "the package takes the acceleration structure by address, and RaySteps::Batch::tlas is 0",
+            "set it, or compile the package with a number for tlas in --bindings");
     }
     if (batch.countAddress == 0 && batch.rayCount > state.options.width) {
-        return wrongBatch(std::to_string(batch.rayCount) + " rays are more than RayStepsOptions::maxRays, " +
-                              std::to_string(state.options.width),
-                          "split the batch, or make the steps for more rays");
+        return wrongBatch(
+            phrase(batch.rayCount, " rays are more than RaySteps::Options::maxRays, ", state.options.width),
+            "split the batch, or make the steps for more rays");
     }
     if (batch.bounces > state.size.bounces) {
-        return makeError("package-bounces", "",
-                         "paths of " + std::to_string(batch.bounces) +
-                             " bounces are asked for, and the package was compiled for 1 to " +
-                             std::to_string(state.size.bounces),
-                         "compile the package with more --bounces, or ask for fewer");
+        return makeError(
+            "package-bounces", "",
+            phrase("paths of ", batch.bounces,
+                   " bounces are asked for, and the package was compiled for 1 to ", state.size.bounces),
+            "compile the package with more --bounces, or ask for fewer");
     }
     GLINT_TRY_DO(checkHits(state, batch));
     return batch.visibility ? okStatus() : checkOutside(state.size, outsideOf(batch));
@@ -155,7 +158,7 @@ std::vector<std::uint32_t> RaySteps::State::hits() const {
 }
 
 Result<std::unique_ptr<RaySteps>> RaySteps::create(Context& context, const Package& package,
-                                                   EngineScene& scene, const RayStepsOptions& options) try {
+                                                   EngineScene& scene, const RaySteps::Options& options) try {
     Context::State& contextState = context.state();
     DrawnScene& drawn = scene.state().drawn();
     GLINT_TRY_DO(checkUse(package::Passes::Steps, package, drawn));
@@ -202,7 +205,7 @@ RaySteps::~RaySteps() {
 
 namespace {
 
-gpu::FrameConstants makeConstants(const RaySteps::State& state, const RayBatch& batch) {
+gpu::FrameConstants makeConstants(const RaySteps::State& state, const RaySteps::Batch& batch) {
     gpu::FrameConstants constants{};
     constants.width = state.options.width;
     constants.height = 1;
@@ -243,7 +246,7 @@ void recordStep(RaySteps::State& state, VkCommandBuffer commands, const char* na
 
 }  // namespace
 
-Status RaySteps::begin(VkCommandBuffer commands, const RayBatch& batch) try {
+Status RaySteps::begin(VkCommandBuffer commands, const RaySteps::Batch& batch) try {
     GLINT_TRY_DO(checkBatch(*state_, batch));
     GLINT_TRY_DO(adoptPipelines(state_->context, state_->pipelines));
     if (state_->next && joinReplacement(*state_)) {
@@ -321,7 +324,7 @@ void RaySteps::shade(VkCommandBuffer commands) {
     });
 }
 
-Status RaySteps::record(VkCommandBuffer commands, const RayBatch& batch) try {
+Status RaySteps::record(VkCommandBuffer commands, const RaySteps::Batch& batch) try {
     GLINT_TRY_DO(begin(commands, batch));
     trace(commands);
     order(commands);

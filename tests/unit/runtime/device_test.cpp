@@ -47,6 +47,27 @@ TEST_F(ContextTest, MemoryThatTheHostReachesIsMapped) {
     }
 }
 
+TEST_F(ContextTest, MemoryReturnsWithItsResourceAndOutlivesItsPool) {
+    Context::State& state = context().state();
+    const VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    Buffer kept;
+    {
+        MemoryPool pool(state);
+        kept = must(createBuffer(state, pool, 256, usage));
+        const VkDeviceSize bytes = pool.bytes();
+        VkDeviceSize offset = 0;
+        {
+            const Buffer near = must(createBuffer(state, pool, 256, usage));
+            const Buffer large = must(createBuffer(state, pool, 2 * bytes, usage));
+            offset = near.memory->offset;
+            EXPECT_GT(pool.bytes(), bytes);
+        }
+        EXPECT_EQ(pool.bytes(), bytes) << "a block without a resource is freed";
+        EXPECT_EQ(must(createBuffer(state, pool, 256, usage)).memory->offset, offset) << "its place is free";
+    }
+    EXPECT_GT(kept.memory->pool->bytes(), 0U);
+}
+
 // Each pipeline of a renderer is made with these functions in the place of the device's.
 struct SeenPipelines {
     DeviceTable real;

@@ -1,6 +1,6 @@
 // The memory of a frame, and the bytes that its passes move, stay within bounds. docs/memory.md states them.
 #include "frame/frame_resources.h"
-#include "renderer/renderer_choice.h"
+#include "renderer/pipelines.h"
 
 #include <glint/internal/frame_traffic.h>
 #include <glint/internal/package_modules.h>

@@ -2,6 +2,7 @@
 #include "device_fixture.h"
 #include "frame/motion_history.h"
 #include "renderer/renderer.h"
+#include "scene/scene_store.h"
 #include "support/must.h"
 #include "vulkan_hooks.h"
 
@@ -79,20 +80,20 @@ TEST_F(InFlight, OutgrownHistoryIsFreed) {
     view.moves = true;
     const auto uploaded = must(GpuScene::upload(context(), package, view));
     GpuScene::State& state = uploaded->state();
+    Buffer& instances = state.store->instances.device;
     const auto history = MotionHistory::create(state);
     ASSERT_TRUE(history);
     Buffer few;
     for (std::uint64_t recording = 1; recording <= 3; ++recording) {
         if (recording == 1) {
-            auto more = createBuffer(context().state(), state.pool, state.instances.bytes << 14U,
+            auto more = createBuffer(context().state(), state.pool, instances.bytes << 14U,
                                      VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT);
             ASSERT_TRUE(more);
-            few = std::exchange(state.instances, std::move(*more));
+            few = std::exchange(instances, std::move(*more));
         }
         Recording commands = begin();
         ASSERT_TRUE((*history)->makeRoom());
-        context().state().vk.CmdFillBuffer(commands.commands, state.instances.handle.get(), 0, VK_WHOLE_SIZE,
-                                           0);
+        context().state().vk.CmdFillBuffer(commands.commands, instances.handle.get(), 0, VK_WHOLE_SIZE, 0);
         (*history)->record(commands.commands, recording);
         ASSERT_TRUE(commands.runner.submitAndWait());
         std::vector<MemoryItem> items;
@@ -102,9 +103,9 @@ TEST_F(InFlight, OutgrownHistoryIsFreed) {
         (*history)->complete(recording);
         items.clear();
         (*history)->addMemory(items);
-        EXPECT_EQ(items[0].bytes, state.instances.bytes);
+        EXPECT_EQ(items[0].bytes, instances.bytes);
     }
-    state.instances = std::move(few);
+    instances = std::move(few);
 }
 
 TEST_F(InFlight, PipelineCachesThatThreadsMayUseStay) {
