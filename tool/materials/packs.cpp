@@ -55,7 +55,7 @@ Diagnostic folderError(const std::string& folder, std::string message) {
 
 // Returns whether a path has the extension, as std::filesystem does, which is much slower.
 bool hasExtension(const fs::path& path, std::string_view extension) {
-    const std::string_view text = path.native();
+    const std::string text = path.generic_string();
     return text.size() > extension.size() && text.ends_with(extension) &&
            text[text.size() - extension.size() - 1] != '/';
 }
@@ -68,7 +68,7 @@ bool isPackFile(const fs::path& path) {
 // The order of paths, without their components.
 bool isBefore(const fs::path& a, const fs::path& b) {
     const auto rank = [](char c) { return c == '/' ? 0 : static_cast<unsigned char>(c); };
-    return std::ranges::lexicographical_compare(a.native(), b.native(), {}, rank, rank);
+    return std::ranges::lexicographical_compare(a.generic_string(), b.generic_string(), {}, rank, rank);
 }
 
 // Adds the files of one folder.
