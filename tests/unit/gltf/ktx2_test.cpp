@@ -213,7 +213,7 @@ TEST(GltfKtx2Header, IsRefusedWithTheReason) {
     };
     const std::vector<Row> rows{
         {"etc1s", [](base::Bytes& b) { b.resize(90); }, "ends within its header"},
-        {"etc1s", [](base::Bytes& b) { setWord(b, 12, 37); }, "VkFormat 37"},   // R8G8B8A8_UNORM
+        {"etc1s", [](base::Bytes& b) { setWord(b, 12, 97); }, "VkFormat 97"},   // R16G16B16A16_SFLOAT
         {"etc1s", [](base::Bytes& b) { setWord(b, 12, 145); }, "scheme is 1"},  // BC7
         {"uastc_hdr", [](base::Bytes&) {}, "VkFormat 1000066000"},
         {"etc1s", [](base::Bytes& b) { b.at(descriptor(b) + 12) = 168; }, "UASTC HDR"},
