@@ -4,7 +4,7 @@
 
 #define HostGeometry GeometryRecord
 
-// EngineScene::View::Geometry::hostFlags.
+// EngineSceneView::Geometry::hostFlags.
 const uint kEngineCompact = 1u << kGeometryHostFlagsShift;
 const uint kFullWords = 18u;
 const uint kCompactWords = 7u;

@@ -26,15 +26,15 @@ struct EngineSun {
 };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Suns { EngineSun data[]; };
 
-// Glint's RaySteps::Ray and RaySteps::Radiance.
-struct RaySteps::Ray {
+// RaySteps::Ray and RaySteps::Radiance of Glint.
+struct EngineRay {
     vec3 origin;
     uint slot;
     vec3 direction;
     float coneWidth;
     float coneSpread;
 };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Rays { RaySteps::Ray data[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Rays { EngineRay data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Count { uint value; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Colors { vec4 data[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer TextureSizes { uvec2 data[]; };

@@ -139,7 +139,7 @@ void lightPixel(uvec2 place) {
             vec3 origin = glintRayOrigin(surface, mirror.direction);
             uint index = atomicAdd(FRAME.rayCount.value, 1u);
             FRAME.rays.data[index] =
-                RaySteps::Ray(origin, pixel, mirror.direction, FRAME.pixelSpread * distance(origin, FRAME.cameraPosition),
+                EngineRay(origin, pixel, mirror.direction, FRAME.pixelSpread * distance(origin, FRAME.cameraPosition),
                           FRAME.pixelSpread);
         }
     }

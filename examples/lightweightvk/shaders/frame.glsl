@@ -12,7 +12,7 @@ struct Object {
     Words indices, pad;
 };
 layout(buffer_reference, std430) readonly buffer Objects { Object data[]; };
-struct Ray {  // glint::RaySteps::Ray
+struct Ray {  // glint::EngineRay
     float origin[3];
     uint slot;
     float direction[3], coneWidth, coneSpread;
