@@ -126,7 +126,7 @@ struct Bindings {
     std::uint32_t environment = 5;     // sampler2D, in packages that read an environment map
     std::uint32_t pushOffset = 0;      // of gpu::PushConstants in the range of push constants, bytes
 
-    // The value of `tlas` without a descriptor: RayBatch::tlas has the structure's device address.
+    // The value of `tlas` without a descriptor: RaySteps::Batch::tlas has the structure's device address.
     static constexpr std::uint32_t kByAddress = 0xFFFFFFFF;
 
     friend bool operator==(const Bindings&, const Bindings&) = default;
