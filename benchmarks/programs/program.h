@@ -1,4 +1,5 @@
-// The programs that measure Glint share this: their main function, options and the statistics that they print.
+// The programs that measure Glint share this: their main function, options and the statistics that they
+// print.
 #pragma once
 
 #include <glint/result.h>

@@ -94,9 +94,9 @@ TEST_F(Pipelines, RefuseFilesThatAreNoReports) {
     EXPECT_EQ(run({"inspect", "package", "--budget", "budget.json"}).exit, 2) << "needs --pipelines";
 }
 
-// Compiles three packages with the compilers of GPUs. The limits are those of today's shaders (5 of 16 subgroups
-// in flight; 10 are the aim): a shader that needs
-// more registers, that spills or that takes memory for them is slower on every GPU of the family.
+// Compiles three packages with the compilers of GPUs. The limits are those of today's shaders (5 of 16
+// subgroups in flight; 10 are the aim): a shader that needs more registers, that spills or that takes memory
+// for them is slower on every GPU of the family.
 class PipelineBudgets : public Pipelines {
 protected:
     void SetUp() override {

@@ -176,8 +176,8 @@ bool sameBits(const LinearImage& a, const LinearImage& b) {
 
 // Returns the errors of all pictures, on at most `jobs` threads. The first picture is the default's. A
 // picture that equals the default's gets its errors.
-std::vector<image::ImageErrors> errorsOf(std::span<const LinearImage* const> images,
-                                         const Reference& truth, int jobs) {
+std::vector<image::ImageErrors> errorsOf(std::span<const LinearImage* const> images, const Reference& truth,
+                                         int jobs) {
     std::vector<image::ImageErrors> errors(images.size());
     base::runParallel(images.size(), jobs, [&](std::size_t i) {
         if (i == 0 || !sameBits(*images[i], *images[0])) {
@@ -218,9 +218,9 @@ double ratio(double x, double y) {
 // milliseconds before each picture, so that clocks are up.
 class Measurer {
 public:
-    // `base` is the default. Every batch adds times to it, and the first batch adds its errors. `filter` is for
-    // points with filteredFrames. Of `report` the reference counts, and the members that the caller of runBench()
-    // has set. All arguments must outlive the result. Has the errors of BenchBed::mount().
+    // `base` is the default. Every batch adds times to it, and the first batch adds its errors. `filter` is
+    // for points with filteredFrames. Of `report` the reference counts, and the members that the caller of
+    // runBench() has set. All arguments must outlive the result. Has the errors of BenchBed::mount().
     static Result<Measurer> create(const Observer& observer, BenchBed& bed, const FilterMaker* filter,
                                    const BenchReport& report, BenchPoint& base) {
         Measurer measurer(observer, bed, filter, report);
@@ -233,8 +233,7 @@ public:
     // "bench-point" and has no measurements.
     Status measure(std::span<BenchPoint> points) {
         // The loop runs at least once, for the default.
-        for (std::size_t begin = 0; begin < std::max<std::size_t>(points.size(), 1);
-             begin += report_.batch) {
+        for (std::size_t begin = 0; begin < std::max<std::size_t>(points.size(), 1); begin += report_.batch) {
             std::vector<Entry> entries;
             const std::size_t end = std::min(begin + report_.batch, points.size());
             for (std::size_t i = begin; i < end; ++i) {
@@ -268,9 +267,8 @@ private:
         : observer_(observer), bed_(bed), filter_(filter), report_(report) {}
 
     Result<Entry> mount(BenchPoint& point) const {
-        GLINT_TRY(auto mount, point.filteredFrames > 0
-                                  ? bed_.mountFiltered(*filter_, point.filteredFrames)
-                                  : bed_.mount(point.configuration, point.package));
+        GLINT_TRY(auto mount, point.filteredFrames > 0 ? bed_.mountFiltered(*filter_, point.filteredFrames)
+                                                       : bed_.mount(point.configuration, point.package));
         // Drivers may compile a pipeline when it first runs.
         GLINT_TRY([[maybe_unused]] const auto first, mount.exposeSamples(0, 1));
         point.footprint = mount.renderer().footprint();
@@ -298,7 +296,8 @@ private:
         }
         const auto means =
             base::mapped<const LinearImage*>(all, [](const Entry* entry) { return &entry->mean; });
-        const std::vector<image::ImageErrors> errors = errorsOf(means, report_.reference, bed_.base().compile.jobs);
+        const std::vector<image::ImageErrors> errors =
+            errorsOf(means, report_.reference, bed_.base().compile.jobs);
         for (std::size_t i = baseIsKnown_ ? 1 : 0; i < all.size(); ++i) {
             all[i]->point->errorOfMean = errors[i];
         }
@@ -323,7 +322,8 @@ private:
     void keep(std::span<Entry*> entries, std::uint32_t round) {
         const auto images = base::mapped<const LinearImage*>(
             entries, [](const Entry* entry) { return &entry->exposure.image; });
-        const std::vector<image::ImageErrors> errors = errorsOf(images, report_.reference, bed_.base().compile.jobs);
+        const std::vector<image::ImageErrors> errors =
+            errorsOf(images, report_.reference, bed_.base().compile.jobs);
         const double baseMs = entries[0]->exposure.milliseconds;
         const double baseHitMs = entries[0]->exposure.hitMs;
         for (std::size_t i = 0; i < entries.size(); ++i) {

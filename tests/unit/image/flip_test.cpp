@@ -1,5 +1,4 @@
 #include "image/compare.h"
-
 #include "image/tone.h"
 #include "unit/image/flip_oracle.h"
 
