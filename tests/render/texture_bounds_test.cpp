@@ -85,7 +85,7 @@ TEST(TexelBoundsOfDevice, EncloseEveryLookup) {
                 std::has_single_bit(static_cast<unsigned>(image.height))) {
                 continue;
             }
-            made[i] = {image.width, image.height, gltf::PixelFormat::Rgba8, 1, image.pixels};
+            made[i] = {{image.width, image.height}, gltf::PixelFormat::Rgba8, image.pixels};
             gltf::completeLevels(made[i], gltf::filtersOf(gltf::LevelFilter::Color));
             data.images[i].pixels = made[i].bytes;
             data.images[i].levels = static_cast<std::uint32_t>(made[i].levels);
@@ -104,7 +104,7 @@ TEST(TexelBoundsOfDevice, EncloseEveryLookup) {
     std::size_t tight = 0;
     for (std::size_t material = 0; material < scene.materials.size(); ++material) {
         const gltf::Image& image = scene.images[material];
-        const gltf::TexelBounds bounds({image.width, image.height, gltf::PixelFormat::Rgba8, 1, image.pixels},
+        const gltf::TexelBounds bounds({{image.width, image.height}, gltf::PixelFormat::Rgba8, image.pixels},
                                        gltf::levelRulesOf(image, {.isColor = true}));
         for (std::size_t k = material * kLookups; k < (material + 1) * kLookups; ++k) {
             const gpu::RayRecord& ray = rays[k];
