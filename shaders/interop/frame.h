@@ -89,7 +89,7 @@ struct RayRecord {
 // The next ray takes the place of the last one in the sample's records. 20 bytes.
 struct PathState {
     vec3 throughput;  // factor of the radiance that the ray finds, since the primary surface
-    uint media[2];    // volumes that the ray is in (hit/media.glsl)
+    uint media[2];    // volumes that the ray is in (materials/base/media.glsl)
 };
 
 // A ray of a host's own that only asks whether something is in its way. 32 bytes.

@@ -1,6 +1,6 @@
 // The media of Glint's own base, as rays need them that go through.
 #include "bsdf/attenuation.glsl"
-#include "hit/media.glsl"
+#include "materials/base/media.glsl"
 #include "materials/volume/nesting.glsl"
 
 // The share of light that passes a length, in metres, of the innermost medium.

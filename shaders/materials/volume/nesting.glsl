@@ -1,5 +1,5 @@
 // The indices on both sides of the surface of a volume, which may lie within another one.
-#include "hit/media.glsl"
+#include "materials/base/media.glsl"
 #include "host/material.glsl"
 #include "materials/dispersion/dispersion.glsl"
 #include "materials/ior/ior.glsl"
