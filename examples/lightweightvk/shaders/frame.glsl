@@ -12,7 +12,7 @@ struct Object {
     Words indices, pad;
 };
 layout(buffer_reference, std430) readonly buffer Objects { Object data[]; };
-struct Ray {  // glint::EngineRay
+struct Ray {  // glint::RaySteps::Ray
     float origin[3];
     uint slot;
     float direction[3], coneWidth, coneSpread;
