@@ -747,6 +747,7 @@ TEST_P(TexturesOfAllDimensions, MaterialsReadThemAndBuffers) {
 
     // An image that is declared as a cube must be one.
     session::SceneViewData data = session::makeSceneView(scene);
+    data.images = images;
     data.images[3] = {1, 1, kWhiteTexel};
     const Diagnostic refused = mustFail(GpuScene::upload(sharedContext(), *package, data.view()));
     EXPECT_EQ(refused.id, "texture-dimension");
