@@ -52,8 +52,7 @@ public:
             VkDeviceAddress texCoords0 = 0;
             VkDeviceAddress texCoords1 = 0;
             VkDeviceAddress colors = 0;
-            VkDeviceAddress attributes =
-                0;  // of packs: the floats of Package::attributes(), vertex by vertex
+            VkDeviceAddress attributes = 0;  // of packs: floats of Package::attributes(), vertex by vertex
             // Bits for a host's own functions (`glint compile --host`), such as the format of its vertices.
             // They are the upper half of GeometryRecord::flags.
             std::uint16_t hostFlags = 0;
@@ -184,7 +183,7 @@ public:
     // Sets the host's own material of a number, and records the copy of its record alone. A number beyond
     // those of the present content adds it, and all numbers between have no material. An empty record removes
     // the material. Takes constant time, unless the number gets another material of the package or none: then
-    // no geometry may name it. The next update() with an View replaces all materials. Errors:
+    // no geometry may name it. The next update() with a View replaces all materials. Errors:
     // "scene-material", "texture-trusted", "engine-scene" (a geometry names the number, the scene is shared,
     // or `frame` has fallen), and those of memory.
     Status updateMaterial(VkCommandBuffer commands, std::uint32_t number, const View::Material& material,
