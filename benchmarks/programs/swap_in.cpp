@@ -35,6 +35,7 @@ struct Arguments {
     bool skipsAllFirst = false;
     bool replaces = false;
     bool noDraft = false;
+    bool defersShadows = false;
     std::string packageFolder;
 };
 
@@ -81,6 +82,9 @@ Result<Bed> makeBed(const Arguments& arguments) {
     settings.tracers = bed.context->handles().tracers;
     settings.plan.merge = compiler::MergePolicy::None;
     settings.plan.fallback = true;
+    if (arguments.defersShadows) {
+        settings.shadows = package::ShadowPlacement::Deferred;
+    }
     settings.emitGlsl = !arguments.packageFolder.empty();
     const bool coherent = options.coherence == synthetic::Coherence::Coherent;
     settings.effects = {false,
@@ -271,6 +275,8 @@ int main(int count, char** words) {
     app.add_option("--threads", arguments.threads, "threads that make pipelines; 0: one for each core");
     app.add_option("--after", arguments.after, "frames after the last pipeline")->capture_default_str();
     app.add_flag("--no-draft", arguments.noDraft, "wait for the fixed passes and the fallback");
+    app.add_flag("--deferred-shadows", arguments.defersShadows,
+                 "trace the shadow rays of hits in a pass of their own, so that cases are compute shaders");
     app.add_option("--package", arguments.packageFolder, "also write the package to this folder");
     app.add_flag("--background-only", arguments.skipsAllFirst,
                  "do not measure pipelines that are made first");
