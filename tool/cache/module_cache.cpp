@@ -25,8 +25,8 @@ std::string packModule(const CachedModule& module) {
           std::uint64_t{counts.functions}}) {
         packer.add(count);
     }
-    packer.add(std::string_view(reinterpret_cast<const char*>(module.spirv.data()),
-                                module.spirv.size() * sizeof(std::uint32_t)));
+    const std::span<const std::uint8_t> bytes = module.bytes();
+    packer.add(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
     return packer.take();
 }
 

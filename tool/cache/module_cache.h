@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,10 @@ namespace glint::compiler {
 struct CachedModule {
     std::vector<std::uint32_t> spirv;
     SpirvStatistics statistics;
+
+    std::span<const std::uint8_t> bytes() const {
+        return {reinterpret_cast<const std::uint8_t*>(spirv.data()), spirv.size() * sizeof(std::uint32_t)};
+    }
 };
 
 std::string packModule(const CachedModule& module);

@@ -152,8 +152,7 @@ bool addFiles(std::vector<compiler::FileState>& files, std::span<const fs::path>
 
 std::vector<compiler::FileState> filesOf(const compiler::CompiledPackage& package, const fs::path& folder) {
     return base::mapped<compiler::FileState>(package.files, [&](const compiler::PackageFile& file) {
-        return compiler::FileState{
-            (folder / file.name).string(), file.bytes.size(), base::hashBytes(file.bytes), {}};
+        return compiler::FileState{(folder / file.name).string(), file.bytes.size(), file.hash, {}};
     });
 }
 

@@ -32,10 +32,11 @@ namespace {
 // --- All results in one step: all files are complete on disk before any of them is moved into place ---
 
 // A full disk leaves everything as it was. Interruptions wait until this is done. Outputs without a name are
-// not written; the build says whether the lock file is. Has the errors of writePackage(),
-// stageEmbeddedSource() and makeDepfile(), and "file-write".
+// not written; the build says whether the lock file is. `written` is that of writePackage(). Has the errors
+// of writePackage(), stageEmbeddedSource() and makeDepfile(), and "file-write".
 Status writeOutputs(const compiler::Build& build, const compiler::CompiledPackage& package,
-                    const CompileArguments& arguments, std::span<const std::string> dependencies) {
+                    const CompileArguments& arguments, std::span<const std::string> dependencies,
+                    compiler::WrittenPackage* written) {
     const HeldSignals held;
     // The files outside the package's folder, in the order in which they are moved into place.
     std::vector<base::StagedFile> staged;
@@ -58,7 +59,7 @@ Status writeOutputs(const compiler::Build& build, const compiler::CompiledPackag
         GLINT_TRY_DO(stage(arguments.depfile.file, text));
     }
     if (!arguments.output.empty()) {
-        GLINT_TRY_DO(writePackage(package, arguments.output));
+        GLINT_TRY_DO(writePackage(package, arguments.output, written));
     }
     for (base::StagedFile& file : staged) {
         GLINT_TRY_DO(file.commit());
@@ -298,37 +299,53 @@ bool addOutputs(const compiler::CompiledPackage& package, const CompileArguments
     return addFiles(run.outputs, embedded);
 }
 
-// The scenes of a run, and all decisions about them.
-struct Resolved {
-    const materials::MaterialModel* model = nullptr;
-    std::vector<gltf::Scene> scenes;
-    compiler::Build build;
-};
+// Returns whether the files are GLSL of the packs of a model.
+bool areGlsl(std::span<const std::string> files, const materials::MaterialModel& model) {
+    return std::ranges::all_of(files, [&](const std::string& path) {
+        const auto found = std::ranges::find(model.files, path, &materials::PackFile::path);
+        return found != model.files.end() && !found->isDeclaration;
+    });
+}
 
-Result<Resolved> readAndResolve(const Console& console, const CompileArguments& arguments,
-                                CompileCache& cache,
-                                const std::function<void(const std::vector<Diagnostic>&)>& report) {
-    GLINT_TRY_DO(checkOutputs(arguments));
+// Reads and decides. If the run before has `earlier`, and only GLSL of packs changed since, its scenes and
+// decisions hold: these follow from declarations.
+Result<std::unique_ptr<Resolved>> readAndResolve(
+    const Console& console, const CompileArguments& arguments, CompileCache& cache,
+    std::unique_ptr<Resolved> earlier, const std::function<void(const std::vector<Diagnostic>&)>& report) {
+    if (earlier == nullptr) {
+        GLINT_TRY_DO(checkOutputs(arguments));
+    }
     console.progress("reading " + base::join(arguments.scenes));
     GLINT_TRY(const auto import,
               session::importOptions(arguments.settings, session::ImageReading::None, cache.store()));
-    Resolved resolved;
-    resolved.model = import.materialModel;
-    GLINT_TRY(resolved.scenes, readScenes(arguments.scenes, import));
-    report(warningsOf(resolved.scenes));
+    if (earlier != nullptr && haveSameDeclarations(*earlier->model, *import.materialModel)) {
+        earlier->model = earlier->build.plan.model = import.materialModel;
+        earlier->build.milliseconds = 0.0;
+        earlier->build.settings.compile.progress = console.countTo("compiling");
+        report(earlier->diagnostics);
+        return earlier;
+    }
+    auto resolved = std::make_unique<Resolved>();
+    const auto keep = [&](const std::vector<Diagnostic>& diagnostics) {
+        resolved->diagnostics.insert(resolved->diagnostics.end(), diagnostics.begin(), diagnostics.end());
+        report(diagnostics);
+    };
+    resolved->model = import.materialModel;
+    GLINT_TRY(resolved->scenes, readScenes(arguments.scenes, import));
+    keep(warningsOf(resolved->scenes));
     GLINT_TRY(const auto target, measure::targetOf(arguments.settings));
     compiler::Settings asked = arguments.settings;
     asked.compile.progress = console.countTo("compiling");
-    GLINT_TRY(resolved.build, compiler::resolve(resolved.scenes, asked, target));
-    const compiler::Build& build = resolved.build;
+    GLINT_TRY(resolved->build, compiler::resolve(resolved->scenes, asked, target));
+    const compiler::Build& build = resolved->build;
     if (build.lockText) {
         GLINT_TRY_DO(base::checkOutputFile(build.settings.lock.file));
     }
-    report(build.messages);
+    keep(build.messages);
     if (const std::optional<compiler::StrategyAdvice>& advice = build.settings.compile.strategyChoice) {
         console.detail(fmt::format("strategy {}: {}", advice->choice.strategy, advice->choice.why));
     }
-    report(idleSettings(build));
+    keep(idleSettings(build));
     return resolved;
 }
 
@@ -350,7 +367,15 @@ Result<int> compileOnce(const Console& console, const CompileArguments& argument
         run.diagnostics.insert(run.diagnostics.end(), diagnostics.begin(), diagnostics.end());
         console.report(diagnostics);
     };
-    GLINT_TRY(const auto resolved, readAndResolve(console, arguments, cache, report));
+    std::unique_ptr<Resolved> earlier = watched != nullptr ? std::move(watched->resolved) : nullptr;
+    if (earlier != nullptr && !areGlsl(watched->changed, *earlier->model)) {
+        earlier.reset();
+    }
+    GLINT_TRY(auto own, readAndResolve(console, arguments, cache, std::move(earlier), report));
+    const Resolved& resolved = *own;
+    if (watched != nullptr) {
+        watched->resolved = std::move(own);
+    }
     if (console.refused()) {
         return kExitFailed;
     }
@@ -391,7 +416,8 @@ Result<int> compileOnce(const Console& console, const CompileArguments& argument
               compilePackage(build, cache.modules(), watched != nullptr ? &watched->warm : nullptr));
     console.progress("writing " + outputsOf(arguments));
     const base::Clock::time_point compiled = base::Clock::now();
-    GLINT_TRY_DO(writeOutputs(build, package, arguments, dependencies));
+    GLINT_TRY_DO(writeOutputs(build, package, arguments, dependencies,
+                              watched != nullptr ? &watched->written : nullptr));
     if (watched != nullptr) {
         describeRun(package, *watched);
         watched->writeMs = package.tablesMs + base::millisecondsSince(compiled);

@@ -1,6 +1,7 @@
 #include "emit/compile.h"
 
 #include "base/clock.h"
+#include "base/parallel.h"
 #include "emit/context.h"
 #include "emit/glsl/passes.h"
 #include "emit/material_code.h"
@@ -33,9 +34,9 @@ base::Bytes toBytes(std::string_view text) {
     return {text.begin(), text.end()};
 }
 
-base::Bytes toBytes(const std::vector<std::uint32_t>& words) {
-    const auto* const first = reinterpret_cast<const std::uint8_t*>(words.data());
-    return {first, first + words.size() * sizeof(std::uint32_t)};
+base::SharedArray<std::uint8_t> bytesOf(const base::SharedArray<std::uint32_t>& words) {
+    return {words.owner(),
+            {reinterpret_cast<const std::uint8_t*>(words.data()), words.size() * sizeof(std::uint32_t)}};
 }
 
 // Adds the modules' files. Modules with equal SPIR-V share one file.
@@ -43,7 +44,7 @@ void addModuleFiles(CompiledPackage& package, const std::string& source, bool em
     std::set<std::string_view> written;
     for (const CompiledModule& module : package.modules) {
         if (written.insert(module.file).second) {
-            package.files.push_back({module.file, toBytes(module.spirv)});
+            package.files.push_back({module.file, bytesOf(module.spirv), module.hash});
             package.spirvBytes += module.statistics.bytes;
             ++package.uniqueSpirv;
         }
@@ -93,11 +94,20 @@ Result<CompiledPackage> compile(const Build& build, ModuleCache* cache, WarmModu
 
     // The manifest comes last, because it lists the other files.
     addModuleFiles(package, scenes.fileNames(), settings.emitGlsl);
-    package.files.push_back(
-        {package::kTablesFile, makeTables(scenes, package.plan, package.modules, settings)});
+    base::Bytes tables;
+    Result<std::string> header = std::string();
+    base::runParallel(settings.emitHeader ? 2 : 1, settings.jobs, [&](std::size_t i) {
+        if (i == 0) {
+            tables = makeTables(scenes, package.plan, package.modules, settings);
+        } else {
+            header = makeHeader(scenes, package.plan, prepared.sources, settings.plan);
+        }
+        return true;
+    });
+    package.files.push_back({package::kTablesFile, std::move(tables)});
     if (settings.emitHeader) {
-        GLINT_TRY(auto header, makeHeader(scenes, package.plan, prepared.sources, settings.plan));
-        package.files.push_back({package::kHeaderFile, toBytes(header)});
+        GLINT_TRY(const auto text, std::move(header));
+        package.files.push_back({package::kHeaderFile, toBytes(text)});
     }
     if (settings.emitLibrary || settings.emitLinkable) {
         GLINT_TRY(auto library, makeLibrary(scenes, package.plan, settings, cache));

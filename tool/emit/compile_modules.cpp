@@ -24,12 +24,12 @@ namespace {
 
 // The compiled form of one text, which several modules may have.
 struct CompiledText {
-    std::shared_ptr<const CachedModule> module;
+    std::shared_ptr<const HashedModule> module;
     bool compiled = false;
 };
 
 CompiledText textOf(CachedModule module, bool compiled) {
-    return {std::make_shared<const CachedModule>(std::move(module)), compiled};
+    return {std::make_shared<const HashedModule>(std::move(module)), compiled};
 }
 
 ShaderSource shaderOf(const ModuleSource& source) {
@@ -60,10 +60,9 @@ CompiledModule makeCompiled(ModuleSource& source, const CompiledText& text, bool
     module.file = spirvFileName(source);
     module.name = std::move(source.name);
     module.glsl = {source.glsl, &source.glsl->unit};
-    module.spirv = text.module->spirv;
-    module.statistics = text.module->statistics;
-    module.hash = base::hashBytes({reinterpret_cast<const std::uint8_t*>(module.spirv.data()),
-                                   module.spirv.size() * sizeof(std::uint32_t)});
+    module.spirv = {text.module, text.module->module.spirv};
+    module.statistics = text.module->module.statistics;
+    module.hash = text.module->hash;
     module.compiled = text.compiled && isFirst;
     return module;
 }
@@ -246,7 +245,7 @@ private:
             if (!results_[part]->ok()) {
                 return results_[part]->error();
             }
-            parts.push_back((*results_[part])->module.get());
+            parts.push_back(&(*results_[part])->module->module);
         }
         // The joins that wait or run share the threads.
         const int idle = jobs_ / std::max(1, ++joins_);

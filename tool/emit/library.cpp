@@ -183,13 +183,12 @@ Result<PackageFile> makeLinkableFile(const std::string& library, const std::stri
             cache->put(text, *module);
         }
     }
-    const auto* const first = reinterpret_cast<const std::uint8_t*>(module->spirv.data());
-    return PackageFile{std::string(kLibraryFolder) + source.name,
-                       {first, first + module->spirv.size() * sizeof(std::uint32_t)}};
+    const std::span<const std::uint8_t> bytes = module->bytes();
+    return PackageFile(std::string(kLibraryFolder) + source.name, base::Bytes(bytes.begin(), bytes.end()));
 }
 
 PackageFile fileOf(const std::string& name, std::string_view text) {
-    return {std::string(kLibraryFolder) + name, {text.begin(), text.end()}};
+    return {std::string(kLibraryFolder) + name, base::Bytes(text.begin(), text.end())};
 }
 
 }  // namespace
@@ -197,11 +196,11 @@ PackageFile fileOf(const std::string& name, std::string_view text) {
 Result<std::vector<PackageFile>> makeLibrary(const gltf::SceneList& scenes, const Plan& plan,
                                              const CompileSettings& settings, const ModuleCache* cache) {
     GLINT_TRY(const auto sources, librarySources(scenes, plan, settings));
-    MaterialCodeOfCases codeOfCases(sources, plan);
+    MaterialCodeOfCases codeOfCases(plan);
     std::vector<PackageFile> files{fileOf("glint_host.glsl", hostText(sources))};
     const auto add = [&](const mustache::data& context, materials::FeatureMask features,
                          const std::string& name) -> Status {
-        GLINT_TRY(const auto code, codeOfCases.find(features));
+        GLINT_TRY(const auto code, codeOfCases.find(sources, features));
         GLINT_TRY(const auto text, makeFile(sources, *code, context, name));
         files.push_back(fileOf(name, text));
         return okStatus();

@@ -315,9 +315,9 @@ Diagnostic explainGlslError(Diagnostic error, const materials::MaterialModel& mo
     return error;
 }
 
-MaterialCodeOfCases::MaterialCodeOfCases(const SourceSet& sources, const Plan& plan)
-    : sources_(sources),
-      model_(*plan.model),
+MaterialCodeOfCases::MaterialCodeOfCases(const Plan& plan)
+    : model_(*plan.model),
+      records_(plan.records),
       layout_(materialLayoutOf(plan)),
       ofMasks_(maskCodeFeatures(*plan.model)) {
     for (const materials::FeatureCode& code : model_.code) {
@@ -325,18 +325,25 @@ MaterialCodeOfCases::MaterialCodeOfCases(const SourceSet& sources, const Plan& p
     }
 }
 
-Result<const SourceSet*> MaterialCodeOfCases::find(const materials::FeatureMask& used) {
-    const auto [place, isNew] = made_.try_emplace(used & withCode_);
-    if (isNew) {
-        GLINT_TRY_DO(addMaterialCode(sources_, model_, used, place->second));
-        if (!model_.models.empty()) {
-            // Whatever the case, rays meet surfaces whose opacity is the code of another one.
-            const materials::FeatureMask named = model_.withBases(used | ofMasks_);
-            place->second.add("generated/features.glsl", model_.featureDefines(named));
-            place->second.add("generated/material_record.glsl", recordDeclarations(layout_, named));
-        }
+bool MaterialCodeOfCases::isOf(const Plan& plan) const {
+    return haveSameDeclarations(model_, *plan.model) && records_ == plan.records;
+}
+
+Result<const SourceSet*> MaterialCodeOfCases::find(const SourceSet& sources,
+                                                   const materials::FeatureMask& used) {
+    const materials::FeatureMask withCode = used & withCode_;
+    if (const auto known = made_.find(withCode); known != made_.end()) {
+        return &known->second;
     }
-    return &place->second;
+    SourceSet files;
+    GLINT_TRY_DO(addMaterialCode(sources, model_, used, files));
+    if (!model_.models.empty()) {
+        // Whatever the case, rays meet surfaces whose opacity is the code of another one.
+        const materials::FeatureMask named = model_.withBases(used | ofMasks_);
+        files.add("generated/features.glsl", model_.featureDefines(named));
+        files.add("generated/material_record.glsl", recordDeclarations(layout_, named));
+    }
+    return &made_.emplace(withCode, std::move(files)).first->second;
 }
 
 }  // namespace glint::compiler

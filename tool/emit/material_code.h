@@ -9,6 +9,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 namespace glint::compiler {
 
@@ -38,16 +39,18 @@ Diagnostic explainGlslError(Diagnostic error, const materials::MaterialModel& mo
 // other features, so that a change of a feature's GLSL leaves the shaders of other cases as they are.
 class MaterialCodeOfCases {
 public:
-    // Both must outlive this.
-    MaterialCodeOfCases(const SourceSet& sources, const Plan& plan);
+    // The model of the plan must outlive this.
+    explicit MaterialCodeOfCases(const Plan& plan);
 
-    // Returns the files for keys with features of `used` alone. They are valid as long as this. Has the
-    // errors of renderTemplate().
-    Result<const SourceSet*> find(const materials::FeatureMask& used);
+    // Returns whether those of another plan would have the same files.
+    bool isOf(const Plan& plan) const;
+    // Returns the files for keys with features of `used` alone. They are valid as long as this. `sources` has
+    // the templates. Has the errors of renderTemplate().
+    Result<const SourceSet*> find(const SourceSet& sources, const materials::FeatureMask& used);
 
 private:
-    const SourceSet& sources_;
     const materials::MaterialModel& model_;
+    std::vector<RecordUse> records_;  // of the plan, on which the layout depends
     MaterialLayout layout_;
     materials::FeatureMask ofMasks_;                    // maskCodeFeatures()
     materials::FeatureMask withCode_ = 0;               // all features that have code

@@ -10,6 +10,7 @@
 #include <interop/scene.h>
 #include <map>
 #include <numeric>
+#include <optional>
 
 namespace glint::compiler {
 
@@ -139,16 +140,16 @@ public:
         }
     }
 
-    // Each returns which of the uses have it.
-    std::vector<bool> ofParameter(int parameter) const {
+    // Each returns which of the uses have it, ascending.
+    std::vector<std::size_t> ofParameter(int parameter) const {
         return which(model_.parameters[static_cast<std::size_t>(parameter)].feature,
                      [&](const RecordUse& use) { return hasParameter(use, parameter); });
     }
-    std::vector<bool> ofDerived(const materials::DerivedField& field) const {
+    std::vector<std::size_t> ofDerived(const materials::DerivedField& field) const {
         return which(field.feature,
                      [&](const RecordUse& use) { return isUsed(model_, field.feature, use.used); });
     }
-    std::vector<bool> ofTexture(int texture) const {
+    std::vector<std::size_t> ofTexture(int texture) const {
         const int feature = model_.textures[static_cast<std::size_t>(texture)].feature;
         return which(feature, [&](const RecordUse& use) {
             return isUsed(model_, feature, use.used) || takesFrameOf(model_, texture, use.used);
@@ -158,14 +159,16 @@ public:
 private:
     // What belongs to a feature of a model is in no records but those of the model.
     template <typename Has>
-    std::vector<bool> which(int feature, const Has& has) const {
-        std::vector<bool> uses(uses_.size());
+    std::vector<std::size_t> which(int feature, const Has& has) const {
+        std::vector<std::size_t> uses;
         const int owner = feature < 0 ? -1 : model_.features[static_cast<std::size_t>(feature)].model;
         const auto only = useOf_.find(owner);
-        const std::size_t first = owner < 0 ? 0 : only != useOf_.end() ? only->second : uses.size();
-        const std::size_t end = owner < 0 ? uses.size() : std::min(first + 1, uses.size());
+        const std::size_t first = owner < 0 ? 0 : only != useOf_.end() ? only->second : uses_.size();
+        const std::size_t end = owner < 0 ? uses_.size() : std::min(first + 1, uses_.size());
         for (std::size_t i = first; i < end; ++i) {
-            uses[i] = has(uses_[i]);
+            if (has(uses_[i])) {
+                uses.push_back(i);
+            }
         }
         return uses;
     }
@@ -205,16 +208,14 @@ public:
     explicit Overlay(std::size_t uses) : taken_(uses) {}
 
     // Returns the first place with `count` units that are free in all of `uses`.
-    std::size_t place(const std::vector<bool>& uses, std::size_t count) {
+    std::size_t place(const std::vector<std::size_t>& uses, std::size_t count) {
         std::size_t first = 0;
         for (std::size_t end = first; end < first + count; ++end) {
             first = isTaken(uses, end) ? end + 1 : first;
         }
-        for (std::size_t use = 0; use < uses.size(); ++use) {
-            if (uses[use]) {
-                taken_[use].resize(std::max(taken_[use].size(), first + count));
-                std::fill_n(taken_[use].begin() + static_cast<std::ptrdiff_t>(first), count, true);
-            }
+        for (const std::size_t use : uses) {
+            taken_[use].resize(std::max(taken_[use].size(), first + count));
+            std::fill_n(taken_[use].begin() + static_cast<std::ptrdiff_t>(first), count, true);
         }
         end_ = std::max(end_, first + count);
         return first;
@@ -224,25 +225,19 @@ public:
     }
 
 private:
-    bool isTaken(const std::vector<bool>& uses, std::size_t unit) const {
-        for (std::size_t use = 0; use < uses.size(); ++use) {
-            if (uses[use] && unit < taken_[use].size() && taken_[use][unit]) {
-                return true;
-            }
-        }
-        return false;
+    bool isTaken(const std::vector<std::size_t>& uses, std::size_t unit) const {
+        return std::ranges::any_of(
+            uses, [&](std::size_t use) { return unit < taken_[use].size() && taken_[use][unit]; });
     }
 
     std::vector<std::vector<bool>> taken_;  // by use, then by unit
     std::size_t end_ = 0;
 };
 
-std::vector<int> modelsOf(std::span<const RecordUse> uses, const std::vector<bool>& which) {
+std::vector<int> modelsOf(std::span<const RecordUse> uses, const std::vector<std::size_t>& which) {
     std::vector<int> models;
-    for (std::size_t i = 0; i < uses.size(); ++i) {
-        if (which[i]) {
-            models.insert(models.end(), uses[i].models.begin(), uses[i].models.end());
-        }
+    for (const std::size_t i : which) {
+        models.insert(models.end(), uses[i].models.begin(), uses[i].models.end());
     }
     std::ranges::sort(models);
     return models;
@@ -276,11 +271,14 @@ MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, std::sp
     MaterialLayout layout;
     layout.model = &model;
     const RecordNeeds needs(model, uses);
-    std::vector<std::vector<bool>> usesOfField;
-    const auto add = [&](RecordField field, std::vector<bool> which) {
+    std::vector<std::vector<std::size_t>> usesOfField;
+    const auto add = [&](RecordField field, std::vector<std::size_t> which) {
         field.models = modelsOf(uses, which);
         if (!field.models.empty()) {
             layout.byName.emplace(field.name, layout.fields.size());
+            for (const int one : field.models) {
+                layout.byModel[one].fields.push_back(layout.fields.size());
+            }
             layout.fields.push_back(std::move(field));
             usesOfField.push_back(std::move(which));
         }
@@ -304,11 +302,14 @@ MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, std::sp
              .derived = static_cast<int>(i)},
             needs.ofDerived(field));
     }
-    std::vector<std::vector<bool>> usesOfTexture;
+    std::vector<std::vector<std::size_t>> usesOfTexture;
     for (std::size_t i = 0; i < model.textures.size(); ++i) {
-        std::vector<bool> which = needs.ofTexture(static_cast<int>(i));
+        std::vector<std::size_t> which = needs.ofTexture(static_cast<int>(i));
         std::vector<int> models = modelsOf(uses, which);
         if (!models.empty()) {
+            for (const int one : models) {
+                layout.byModel[one].textures.push_back(layout.textures.size());
+            }
             layout.textures.push_back({static_cast<int>(i), 0, std::move(models)});
             usesOfTexture.push_back(std::move(which));
         }
@@ -318,14 +319,11 @@ MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, std::sp
         layout.turnsFrames = layout.turnsFrames || (use.used & model.mask(Role::TurnedFrames)) != 0;
     }
     // What all have comes first, then what most have, so that little room is lost between the rest.
-    const auto byUses = [](const std::vector<std::vector<bool>>& which) {
+    const auto byUses = [](const std::vector<std::vector<std::size_t>>& which) {
         std::vector<std::size_t> order(which.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
-        std::vector<std::ptrdiff_t> counts;
-        for (const std::vector<bool>& one : which) {
-            counts.push_back(std::count(one.begin(), one.end(), true));
-        }
-        std::ranges::stable_sort(order, std::ranges::greater(), [&](std::size_t i) { return counts[i]; });
+        std::ranges::stable_sort(order, std::ranges::greater(),
+                                 [&](std::size_t i) { return which[i].size(); });
         return order;
     };
     Overlay numbers(uses.size());
@@ -355,18 +353,21 @@ MaterialLayout materialLayoutOf(const Plan& plan) {
 std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material,
                                              const MaterialLayout& layout) {
     std::vector<std::uint8_t> record(layout.bytes);
-    materials::Material plain = material;
-    plain.ranges.clear();
+    std::optional<materials::Material> copy;
+    if (!material.ranges.empty()) {
+        copy = material;
+        copy->ranges.clear();
+    }
+    const materials::Material& plain = copy ? *copy : material;
     const materials::PrimitiveInputs primitive;
     const materials::KeyOptions options;
     const materials::FeatureMask key = 0;
     const materials::MaterialFacts facts(plain, primitive, options, key,
                                          materials::MaterialFacts::Textures::Ignored);
-    const int model = modelOf(material);
-    for (const RecordField& field : layout.fields) {
-        if (!has(field.models, model)) {
-            continue;
-        }
+    const auto known = layout.byModel.find(modelOf(material));
+    const MaterialLayout::Rows rows = known != layout.byModel.end() ? known->second : MaterialLayout::Rows();
+    for (const std::size_t place : rows.fields) {
+        const RecordField& field = layout.fields[place];
         const double* const values =
             field.parameter < 0
                 ? nullptr
@@ -382,12 +383,12 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
             std::memcpy(&record[field.offset + kNumberBytes * std::size_t{i}], &word, sizeof word);
         }
     }
-    for (const TextureSlot& row : layout.textures) {
+    for (const std::size_t place : rows.textures) {
+        const TextureSlot& row = layout.textures[place];
         const auto index = static_cast<std::size_t>(row.texture);
         const materials::TextureInfo& info = material.textures[index];
-        if (has(row.models, model) &&
-            (info.texture >= 0 ||
-             (layout.turnsFrames && row.texture == layout.model->textureOf(Role::TangentFrame)))) {
+        if (info.texture >= 0 ||
+            (layout.turnsFrames && row.texture == layout.model->textureOf(Role::TangentFrame))) {
             const gpu::TextureRecord texture = transformed(info.transform);
             std::memcpy(&record[layout.textureOffset + static_cast<std::size_t>(row.slot) * sizeof texture],
                         &texture, sizeof texture);

@@ -52,6 +52,12 @@ struct MaterialLayout {
     std::uint32_t bytes = 0;
     bool turnsFrames = false;                                  // Some key has turnedFrames.
     std::map<std::string, std::size_t, std::less<>> byName{};  // indices into `fields`
+    // By model: ascending indices into `fields` and into `textures` of what its records have.
+    struct Rows {
+        std::vector<std::size_t> fields{};
+        std::vector<std::size_t> textures{};
+    };
+    std::map<int, Rows> byModel{};
 
     std::uint32_t ownFloats() const {
         return (textureOffset - ownOffset) / 4;

@@ -114,7 +114,8 @@ private:
         if (made) {
             return made;
         }
-        GLINT_TRY(auto code, codeOfCases_.find(shaderCase.always | shaderCase.sometimes | ofEmitters_));
+        GLINT_TRY(auto code,
+                  codeOfCases_.find(sources_, shaderCase.always | shaderCase.sometimes | ofEmitters_));
         kainjow::mustache::data context = context_;
         addCase(context, scenes_, *plan_.model, shaderCase);
         GLINT_TRY(auto text, renderTemplate(sources_, kPartTemplate, context));
@@ -280,7 +281,8 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
                                                     const SourceSet& sources, const CompileSettings& settings,
                                                     WarmModules* warm) {
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
-    MaterialCodeOfCases codeOfCases(sources, plan);
+    std::optional<MaterialCodeOfCases> ownCode;
+    MaterialCodeOfCases& codeOfCases = warm != nullptr ? warm->codeOfCases(plan) : ownCode.emplace(plan);
     const materials::FeatureMask ofEmitters = emitterMask(plan, settings);
     const SourceSet none;
     const Case fallback = fallbackCase(plan);
@@ -301,7 +303,7 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
             const Case shaderCase = info.shadesFirst() ? firstCase(plan, hitCase) : hitCase;
             addCase(context, scenes, *plan.model, shaderCase);
             context.set("skipsMisses", ofFallback);
-            GLINT_TRY(own, codeOfCases.find(shaderCase.always | shaderCase.sometimes | ofEmitters));
+            GLINT_TRY(own, codeOfCases.find(sources, shaderCase.always | shaderCase.sometimes | ofEmitters));
         } else if (key.role == ModuleRole::EffectRays) {
             addEffect(context, *plan.model, plan.effects.effects, key.index);
         }

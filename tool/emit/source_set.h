@@ -26,6 +26,12 @@ public:
     // Returns a number that differs between texts of the file, or nothing if there is no such file.
     std::optional<std::uint64_t> markOf(std::string_view name) const;
     SourceLookup lookup() const;
+    // Returns a number that differs between sets.
+    std::uint64_t mark() const {
+        return mark_;
+    }
+    // Returns the names of all files with their marks, ascending.
+    std::vector<std::pair<std::string, std::uint64_t>> marks() const;
 
 private:
     struct File {
@@ -36,6 +42,7 @@ private:
         using is_transparent = void;
     };
     std::unordered_map<std::string, File, NameHash, std::equal_to<>> files_;
+    std::uint64_t mark_ = 0;
 };
 
 // Identifies a text of a module (makeModuleText()), or a part of one.

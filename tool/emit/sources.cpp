@@ -19,7 +19,17 @@ namespace glint::compiler {
 
 void SourceSet::add(std::string name, std::string text) {
     const std::uint64_t mark = base::hashBytes(text);
+    mark_ = base::hashBytes(fmt::format("{:x} {:x} {}", mark_, mark, name));
     files_.insert_or_assign(std::move(name), File{std::move(text), mark});
+}
+
+std::vector<std::pair<std::string, std::uint64_t>> SourceSet::marks() const {
+    std::vector<std::pair<std::string, std::uint64_t>> marks;
+    for (const auto& [name, file] : files_) {
+        marks.emplace_back(name, file.mark);
+    }
+    std::ranges::sort(marks);
+    return marks;
 }
 
 std::optional<std::string_view> SourceSet::find(std::string_view name) const {

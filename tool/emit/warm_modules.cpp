@@ -5,6 +5,7 @@
 #include "emit/glsl/passes.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -23,6 +24,28 @@ TextHash hashOfText(std::string_view text) {
     return {base::hashBytes(base::asBytes(text)), base::hashBytes(base::asBytes(text), 1)};
 }
 
+void WarmModules::takeSources(const SourceSet& sources) {
+    auto marks = sources.marks();
+    changed_.clear();
+    std::ranges::set_symmetric_difference(marks_, marks, std::back_inserter(changed_));
+    marks_ = std::move(marks);
+    ++sources_;
+}
+
+bool WarmModules::isOf(const Glsl& candidate, const IncludedFiles& files) const {
+    // Few files change between two runs, and modules include many.
+    if (candidate.sources + 1 == sources_ && candidate.own == files.markOfOwn() &&
+        std::ranges::none_of(changed_, [&](const auto& changed) {
+            const auto read =
+                std::ranges::lower_bound(candidate.read, changed.first, {}, &Read::value_type::first);
+            return read != candidate.read.end() && read->first == changed.first;
+        })) {
+        return true;
+    }
+    return std::ranges::all_of(candidate.read,
+                               [&](const auto& file) { return files.markOf(file.first) == file.second; });
+}
+
 std::shared_ptr<const PreparedGlsl> WarmModules::findGlsl(std::string_view name, std::string_view text,
                                                           const IncludedFiles& files) {
     const Key key = warmKeyOf(name, text);
@@ -32,23 +55,24 @@ std::shared_ptr<const PreparedGlsl> WarmModules::findGlsl(std::string_view name,
         return nullptr;
     }
     for (Glsl& candidate : known->second) {
-        const bool same = std::ranges::all_of(
-            candidate.read, [&](const auto& file) { return files.markOf(file.first) == file.second; });
-        if (same) {
+        if (isOf(candidate, files)) {
             candidate.used = run_;
+            candidate.own = files.markOfOwn();
+            candidate.sources = sources_;
             return candidate.glsl;
         }
     }
     return nullptr;
 }
 
-void WarmModules::putGlsl(std::string_view name, std::string_view text, Read read,
+void WarmModules::putGlsl(std::string_view name, std::string_view text, Read read, const IncludedFiles& files,
                           std::shared_ptr<const PreparedGlsl> glsl) {
     const std::lock_guard lock(mutex_);
-    glsl_[warmKeyOf(name, text)].push_front({std::move(read), std::move(glsl), run_});
+    glsl_[warmKeyOf(name, text)].push_front(
+        {std::move(read), std::move(glsl), run_, files.markOfOwn(), sources_});
 }
 
-std::shared_ptr<const CachedModule> WarmModules::findModule(const TextHash& text) {
+std::shared_ptr<const HashedModule> WarmModules::findModule(const TextHash& text) {
     const std::lock_guard lock(mutex_);
     const auto known = modules_.find(text);
     if (known == modules_.end()) {
@@ -58,9 +82,16 @@ std::shared_ptr<const CachedModule> WarmModules::findModule(const TextHash& text
     return known->second.module;
 }
 
-void WarmModules::putModule(const TextHash& text, std::shared_ptr<const CachedModule> module) {
+void WarmModules::putModule(const TextHash& text, std::shared_ptr<const HashedModule> module) {
     const std::lock_guard lock(mutex_);
     modules_[text] = {std::move(module), run_};
+}
+
+MaterialCodeOfCases& WarmModules::codeOfCases(const Plan& plan) {
+    if (!codeOfCases_ || !codeOfCases_->isOf(plan)) {
+        codeOfCases_.emplace(plan);
+    }
+    return *codeOfCases_;
 }
 
 void WarmModules::endRun() {
@@ -133,12 +164,15 @@ Status ModuleDrafts::finish(const Draft& draft) const {
     if (warm_ != nullptr) {
         std::ranges::sort(read);
         read.erase(std::unique(read.begin(), read.end()), read.end());
-        warm_->putGlsl(draft.origin, draft.text, std::move(read), module.glsl);
+        warm_->putGlsl(draft.origin, draft.text, std::move(read), files, module.glsl);
     }
     return okStatus();
 }
 
 Status ModuleDrafts::finish(int jobs) {
+    if (warm_ != nullptr) {
+        warm_->takeSources(sources_);
+    }
     std::vector<Status> results(drafts_.size(), okStatus());
     base::runParallel(drafts_.size(), jobs, [&](std::size_t i) {
         results[i] = finish(drafts_[i]);

@@ -2,8 +2,10 @@
 // the next one of the same process.
 #pragma once
 
+#include "base/files.h"
 #include "cache/module_cache.h"
 #include "emit/glsl/passes.h"
+#include "emit/material_code.h"
 #include "emit/source_set.h"
 
 #include <glint/result.h>
@@ -35,10 +37,23 @@ public:
         const std::optional<std::uint64_t> found = own_.markOf(name);
         return found ? found : others_.markOf(name);
     }
+    // Returns SourceSet::mark() of those that hide others.
+    std::uint64_t markOfOwn() const {
+        return own_.mark();
+    }
 
 private:
     const SourceSet& own_;
     const SourceSet& others_;
+};
+
+// A compiled module with the hash of its bytes.
+struct HashedModule {
+    explicit HashedModule(CachedModule compiled)
+        : module(std::move(compiled)), hash(base::hashBytes(module.bytes())) {}
+
+    CachedModule module;
+    std::uint64_t hash = 0;
 };
 
 // Keeps the GLSL and the SPIR-V of modules whose inputs stay the same from run to run. A module's GLSL is
@@ -52,15 +67,21 @@ public:
     // The files that a module asked for, by name, each with SourceSet::markOf() of it.
     using Read = std::vector<std::pair<std::string, std::optional<std::uint64_t>>>;
 
+    // Takes the files that the modules of a run share. Call it before those are looked up.
+    void takeSources(const SourceSet& sources);
     // Returns what was put for the same text, name and included files.
     std::shared_ptr<const PreparedGlsl> findGlsl(std::string_view name, std::string_view text,
                                                  const IncludedFiles& files);
-    void putGlsl(std::string_view name, std::string_view text, Read read,
+    void putGlsl(std::string_view name, std::string_view text, Read read, const IncludedFiles& files,
                  std::shared_ptr<const PreparedGlsl> glsl);
 
     // Returns null if there is none.
-    std::shared_ptr<const CachedModule> findModule(const TextHash& text);
-    void putModule(const TextHash& text, std::shared_ptr<const CachedModule> module);
+    std::shared_ptr<const HashedModule> findModule(const TextHash& text);
+    void putModule(const TextHash& text, std::shared_ptr<const HashedModule> module);
+
+    // Returns the material code of the plan's cases, with what earlier runs have made of it as long as
+    // nothing that decides about it changes. It is for one run at a time.
+    MaterialCodeOfCases& codeOfCases(const Plan& plan);
 
     // Drops what was not used lately. Call it between runs.
     void endRun();
@@ -68,20 +89,28 @@ public:
 private:
     using Key = TextHash;
     struct Glsl {
-        Read read;
+        Read read;  // ascending
         std::shared_ptr<const PreparedGlsl> glsl;
         std::uint64_t used = 0;  // run
+        // The files were these when it was used.
+        std::uint64_t own = 0;      // IncludedFiles::markOfOwn()
+        std::uint64_t sources = 0;  // number of takeSources()
     };
+    bool isOf(const Glsl& candidate, const IncludedFiles& files) const;
     struct Module {
-        std::shared_ptr<const CachedModule> module;
+        std::shared_ptr<const HashedModule> module;
         std::uint64_t used = 0;
     };
 
     std::mutex mutex_;
     std::uint64_t run_ = 0;
+    std::uint64_t sources_ = 0;                                   // how often they were taken
+    std::vector<std::pair<std::string, std::uint64_t>> marks_;    // of the last ones
+    std::vector<std::pair<std::string, std::uint64_t>> changed_;  // marks before and after
     // Several texts of included files for one text of a module, the latest first.
     std::map<Key, std::list<Glsl>> glsl_;
     std::map<Key, Module> modules_;
+    std::optional<MaterialCodeOfCases> codeOfCases_;
 };
 
 // --- Modules between their templates and their GLSL: flattening and pruning, on several threads ---

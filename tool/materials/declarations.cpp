@@ -285,6 +285,7 @@ MaterialModel ModelBuilder::build() {
             parameter.scaledByChannels = own.scaledByChannels;
         }
     }
+    model_.indexBehaviours();
     std::vector<DeclaredCode> code;
     std::map<int, FeatureMask> replacedBy = replacing();
     for (const File& file : files_) {

@@ -278,6 +278,29 @@ void MaterialModel::indexBits() {
     }
 }
 
+void MaterialModel::indexBehaviours() {
+    for (std::size_t i = 0; i < behaviours.size(); ++i) {
+        // Without the object, the material reads the one that it replaces.
+        MaterialObject& object = objects[static_cast<std::size_t>(behaviours[i].object)];
+        (object.replaces < 0 ? commonBehaviours : object.behaviours).push_back(static_cast<int>(i));
+    }
+}
+
+bool haveSameDeclarations(const MaterialModel& a, const MaterialModel& b) {
+    const auto declarationsOf = [](const MaterialModel& model) {
+        std::vector<const PackFile*> files;
+        for (const PackFile& file : model.files) {
+            if (file.isDeclaration) {
+                files.push_back(&file);
+            }
+        }
+        return files;
+    };
+    return &a == &b ||
+           std::ranges::equal(declarationsOf(a), declarationsOf(b),
+                              [](const PackFile* one, const PackFile* other) { return *one == *other; });
+}
+
 std::vector<int> MaterialModel::indicesOf(const FeatureMask& mask) const {
     std::vector<int> indices;
     mask.forEach([&](int bit) {

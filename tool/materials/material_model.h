@@ -218,6 +218,8 @@ struct MaterialObject {
     std::vector<int> parameters{};
     std::vector<int> textures{};
     std::vector<int> fills{};  // indices into MaterialModel::parameters, ascending: those that its own set
+    // Indices into MaterialModel::behaviours, ascending: its rules, which count only if a file gives it.
+    std::vector<int> behaviours{};
 };
 
 // A parameter of a material: adjacent numbers of Material::values, those of an array's elements one after the
@@ -468,6 +470,9 @@ struct PackFile {
     std::string path;
     std::uint64_t bytes = 0;
     std::uint64_t hash = 0;  // base::hashBytes()
+    bool isDeclaration = false;
+
+    bool operator==(const PackFile&) const = default;
 };
 
 // A feature in the order in which the features of a key are decided. A key that lacks `needs` lacks it, too.
@@ -489,6 +494,7 @@ public:
     std::vector<int> commonSteps;             // indices into `order`, ascending: those of every material
     std::vector<Exclusion> exclusions;
     std::vector<BehaviourRule> behaviours;
+    std::vector<int> commonBehaviours;       // indices into `behaviours`, ascending: those of no such object
     std::vector<EffectDeclaration> effects;  // by the number of their bit
     std::vector<FeatureCode> code;           // in the order in which it runs
     std::vector<ModelSource> sources;        // GLSL of packs; that of Glint's own features is embedded
@@ -517,6 +523,8 @@ public:
     void indexAllNames();
     // Makes indicesOf() know the bits of all features.
     void indexBits();
+    // Fills in the indices into `behaviours`.
+    void indexBehaviours();
     // The same for what materials of a model of a pack mean by a name: a thing of the model, or else one that
     // all models share. `model` is an index into `models`; -1: of glTF's bases.
     int findParameter(std::string_view name, int model) const;
@@ -605,6 +613,9 @@ private:
     NameIndex objectIndex_;
     std::array<int, kFirstOfModels> ofSharedBit_{};  // index of the feature of each bit that all models share
 };
+
+// Returns whether two models are of the same declarations. Their GLSL may differ.
+bool haveSameDeclarations(const MaterialModel& a, const MaterialModel& b);
 
 // Returns the name, unique in all declarations, of what a model of a pack declares by `name`. It begins with
 // the name of the model: "toonEdge" of "edge", and also of "toonEdge". An empty `scope` stands for what all

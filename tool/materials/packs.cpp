@@ -65,10 +65,23 @@ bool isPackFile(const fs::path& path) {
            hasExtension(path, ".spv");
 }
 
-// The order of paths, without their components.
-bool isBefore(const fs::path& a, const fs::path& b) {
+// Sorts paths without looking at their components, and leaves one of several that are equal.
+void sortUnique(std::vector<fs::path>& paths) {
     const auto rank = [](char c) { return c == '/' ? 0 : static_cast<unsigned char>(c); };
-    return std::ranges::lexicographical_compare(a.generic_string(), b.generic_string(), {}, rank, rank);
+    std::vector<std::pair<std::string, std::size_t>> order;
+    for (const fs::path& path : paths) {
+        order.emplace_back(path.generic_string(), order.size());
+    }
+    std::ranges::sort(order, [&](const auto& a, const auto& b) {
+        return std::ranges::lexicographical_compare(a.first, b.first, {}, rank, rank);
+    });
+    std::vector<fs::path> sorted;
+    for (const auto& [text, place] : order) {
+        if (sorted.empty() || sorted.back() != paths[place]) {
+            sorted.push_back(std::move(paths[place]));
+        }
+    }
+    paths = std::move(sorted);
 }
 
 // Adds the files of one folder.
@@ -102,6 +115,14 @@ std::array<std::string_view, 8> filesOf(const FeatureCode& code) {
 
 using Sources = std::map<std::string_view, const ModelSource*>;  // by name
 
+Sources sourcesOf(const MaterialModel& model) {
+    Sources sources;
+    for (const ModelSource& source : model.sources) {
+        sources.emplace(source.name, &source);
+    }
+    return sources;
+}
+
 // Returns "file:line" of a place in a source.
 std::string lineOf(const ModelSource& source, std::size_t place) {
     const auto end = source.text.begin() + static_cast<std::ptrdiff_t>(place);
@@ -134,10 +155,16 @@ Status checkCode(const MaterialModel& model, const Sources& sources) {
 }
 
 // Refuses a read of a texture in a file that never asks whether the key has it: the record of a material
-// without the texture would give another one.
-Status checkReads(const MaterialModel& model) {
+// without the texture would give another one. `checked`, which may be null, is a model of the same
+// declarations whose files are not looked at again.
+Status checkReads(const MaterialModel& model, const MaterialModel* checked) {
     static const std::regex kRead(R"(sample(Slot|SlotAt|Point)\s*\(\s*\w+\s*,\s*k([A-Z]\w*))");
+    const Sources known = checked != nullptr ? sourcesOf(*checked) : Sources();
     for (const ModelSource& source : model.sources) {
+        if (const auto same = known.find(source.name);
+            same != known.end() && same->second->text == source.text) {
+            continue;
+        }
         // A search for the word is much faster than one for the expression.
         const std::size_t first = std::min(source.text.find("sample"), source.text.size());
         const auto begin = source.text.begin() + static_cast<std::ptrdiff_t>(first);
@@ -210,13 +237,10 @@ Status checkValues(const MaterialModel& model, const Sources& sources) {
     return okStatus();
 }
 
-Status checkSources(const MaterialModel& model) {
-    Sources sources;
-    for (const ModelSource& source : model.sources) {
-        sources.emplace(source.name, &source);
-    }
+Status checkSources(const MaterialModel& model, const MaterialModel* checked) {
+    const Sources sources = sourcesOf(model);
     GLINT_TRY_DO(checkCode(model, sources));
-    GLINT_TRY_DO(checkReads(model));
+    GLINT_TRY_DO(checkReads(model, checked));
     return checkValues(model, sources);
 }
 
@@ -239,7 +263,7 @@ public:
         }
         model->sources = std::move(sources);
         model->files = std::move(read);
-        GLINT_TRY_DO(checkSources(*model));
+        GLINT_TRY_DO(checkSources(*model, isSame ? &models_.back() : nullptr));
         parsed_ = std::move(parsed);
         return &models_.emplace_back(std::move(*model));
     }
@@ -257,8 +281,7 @@ Result<std::vector<fs::path>> packFiles(std::span<const std::string> folders) {
     for (const std::string& folder : folders) {
         GLINT_TRY_DO(addFolder(folder, files));
     }
-    std::ranges::sort(files, isBefore);
-    files.erase(std::unique(files.begin(), files.end()), files.end());
+    sortUnique(files);
     return files;
 }
 
@@ -278,8 +301,9 @@ Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> fold
     for (const fs::path& file : files) {
         GLINT_TRY(const auto bytes, base::readFile(file, kMaxFileBytes));
         std::string text(bytes.begin(), bytes.end());
-        read.push_back({file.string(), text.size(), base::hashBytes(text)});
-        if (!hasExtension(file, ".json")) {
+        const bool isDeclaration = hasExtension(file, ".json");
+        read.push_back({file.string(), text.size(), base::hashBytes(text), isDeclaration});
+        if (!isDeclaration) {
             sources.push_back({file.generic_string(), std::move(text)});
         } else {
             declarations.push_back(

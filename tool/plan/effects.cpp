@@ -60,13 +60,25 @@ std::string filledIn(std::string text, std::string_view placeholder, double valu
     return text;
 }
 
-// Evaluates the declared behaviours of one surface.
+// Returns whether a condition or number may depend on the features of a key.
+bool readsKey(const materials::MaterialModel& model, const materials::Expression& expression) {
+    using materials::Fact;
+    constexpr Fact kOfKeys[] = {Fact::ReadsTexCoord0, Fact::ReadsTexCoord1, Fact::MovesTextures,
+                                Fact::NeedsTangents,  Fact::TurnsTangents,  Fact::ChangesOpacity,
+                                Fact::ModelOfPack};
+    return std::ranges::any_of(expression.symbols(), [&](int symbol) {
+        return (symbol >= model.symbolOfFeature(0) && symbol < model.symbolOfTexture(0)) ||
+               std::ranges::any_of(kOfKeys, [&](Fact fact) { return symbol == model.symbolOf(fact); });
+    });
+}
+
+// Evaluates the declared behaviours of one surface. Its key is made only if one of them asks for it, because
+// few do.
 class SurfaceBehaviour {
 public:
     explicit SurfaceBehaviour(const Surface& surface)
         : material_(*surface.material),
           primitive_(*surface.primitive),
-          key_(makeKey(material_, *surface.primitive, {.alpha = package::AlphaPolicy::Tested})),
           facts_(material_, *surface.primitive, options_, key_),
           blind_(material_, *surface.primitive, options_, key_, materials::MaterialFacts::Textures::Unknown),
           factors_(material_, *surface.primitive, options_, key_,
@@ -75,7 +87,8 @@ public:
     // Returns why the surface may behave so, or an empty text. A rougher reflection than `limit` does not
     // count.
     std::string why(materials::Behaviour behaviour, double limit) const {
-        for (const materials::BehaviourRule& rule : material_.model().behaviours) {
+        for (const int index : rules()) {
+            const materials::BehaviourRule& rule = ruleAt(index);
             if (rule.does != behaviour || !holds(rule)) {
                 continue;
             }
@@ -96,7 +109,8 @@ public:
     // Returns which textures keep the reflection rougher than `limit`, in words, or an empty text if it is
     // rougher with any contents.
     std::string roughenedBy(double limit) const {
-        for (const materials::BehaviourRule& rule : material_.model().behaviours) {
+        for (const int index : rules()) {
+            const materials::BehaviourRule& rule = ruleAt(index);
             if (rule.roughness && holds(rule) && rule.roughness->number(blind_).of[0].low <= limit &&
                 rule.roughness->number(facts_).of[0].low > limit) {
                 return whatTexturesHold(material_, primitive_, *rule.roughness, HeldBy::All);
@@ -106,12 +120,13 @@ public:
     }
 
     bool has(int feature) const {
-        return feature < 0 || key_.has(material_.model().features[static_cast<std::size_t>(feature)].bit);
+        return feature < 0 || key().has(material_.model().features[static_cast<std::size_t>(feature)].bit);
     }
 
     double leastRoughness() const {
         double least = materials::kUnlimited;
-        for (const materials::BehaviourRule& rule : material_.model().behaviours) {
+        for (const int index : rules()) {
+            const materials::BehaviourRule& rule = ruleAt(index);
             if (rule.roughness && holds(rule)) {
                 least = std::min(least, rule.roughness->number(factors_).of[0].low);
             }
@@ -120,14 +135,44 @@ public:
     }
 
 private:
+    const materials::BehaviourRule& ruleAt(int index) const {
+        return material_.model().behaviours[static_cast<std::size_t>(index)];
+    }
+    // Returns the rules of what the material has, in their order.
+    std::vector<int> rules() const {
+        const materials::MaterialModel& model = material_.model();
+        std::vector<int> rules = model.commonBehaviours;
+        for (const int object : material_.given) {
+            const std::vector<int>& own = model.objects[static_cast<std::size_t>(object)].behaviours;
+            rules.insert(rules.end(), own.begin(), own.end());
+        }
+        std::ranges::sort(rules);
+        return rules;
+    }
+    const materials::FeatureMask& key() const {
+        if (!hasKey_) {
+            key_ = makeKey(material_, primitive_, {.alpha = package::AlphaPolicy::Tested});
+            hasKey_ = true;
+        }
+        return key_;
+    }
     bool holds(const materials::BehaviourRule& rule) const {
-        return material_.reads(rule.object) && rule.when.holds(facts_) != materials::Certainty::False;
+        if (!material_.reads(rule.object)) {
+            return false;
+        }
+        const materials::MaterialModel& model = material_.model();
+        if (readsKey(model, rule.when) || (rule.roughness && readsKey(model, *rule.roughness)) ||
+            (rule.value && readsKey(model, *rule.value))) {
+            key();
+        }
+        return rule.when.holds(facts_) != materials::Certainty::False;
     }
 
     const materials::Material& material_;
     const materials::PrimitiveInputs& primitive_;
     materials::KeyOptions options_{};
-    materials::FeatureMask key_;
+    mutable bool hasKey_ = false;
+    mutable materials::FeatureMask key_;  // the facts read it
     materials::MaterialFacts facts_;
     materials::MaterialFacts blind_;  // ignores the contents of textures
     materials::MaterialFacts factors_;
@@ -172,8 +217,9 @@ std::string sampledModel(std::span<const Surface> surfaces) {
                 return effect.kind == package::EffectKind::Rays && !effect.call.byAll &&
                        effect.call.behaviour == materials::Behaviour::Scatters;
             });
+        const SurfaceBehaviour behaviour(surface);
         const auto code = std::ranges::find_if(model.code, [&](const materials::FeatureCode& one) {
-            return one.isSampled && SurfaceBehaviour(surface).has(one.feature);
+            return one.isSampled && behaviour.has(one.feature);
         });
         if (sender != model.effects.end() && code != model.code.end()) {
             return fmt::format(" ({} has the model {}, whose rays are those of {})",

@@ -86,6 +86,8 @@ struct RecordUse {
     std::vector<int> models;          // ascending indices into MaterialModel::models; -1: glTF's bases
     materials::FeatureMask used = 0;  // features that their keys may have
     bool masks = false;               // alphaMode of some is not OPAQUE
+
+    bool operator==(const RecordUse&) const = default;
 };
 
 // The keys and cases are those of hits. Primary surfaces keep every lobe (KeyOptions::keptLobes): the key of

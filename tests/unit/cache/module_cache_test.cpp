@@ -61,7 +61,7 @@ TEST_F(Modules, ComeFromTheCacheAsTheyWereCompiled) {
 TEST_F(Modules, CommentsPlacesAndNamesDoNotCountWithoutDebugInfo) {
     compiler::ModuleCache cache(store(), "compiler");
     EXPECT_EQ(compile({testing::makeTinyModule(0, "data.x = 1u;")}, &cache), 1);
-    const std::vector<std::uint32_t> words = modules_[0].spirv;
+    const base::SharedArray<std::uint32_t> words = modules_[0].spirv;
     EXPECT_EQ(
         compile({testing::makeTinyModule(5, "// Brass\n\n    data.x = /* one */ 1u;  // Gold")}, &cache), 0);
     EXPECT_EQ(modules_[0].spirv, words);
@@ -98,7 +98,7 @@ TEST_F(Modules, CollisionsAreCompiled) {
         {folder.path(), 1ULL << 24, [](std::string_view) { return std::uint64_t{1}; }});
     compiler::ModuleCache cache(colliding, "compiler");
     EXPECT_EQ(compile({testing::makeTinyModule(0, "data.x = 1u;")}, &cache), 1);
-    const std::vector<std::uint32_t> words = modules_[0].spirv;
+    const base::SharedArray<std::uint32_t> words = modules_[0].spirv;
     EXPECT_EQ(compile({testing::makeTinyModule(0, "data.x = 2u;")}, &cache), 1);
     EXPECT_NE(modules_[0].spirv, words);
 }

@@ -98,9 +98,11 @@ TEST_F(EmbedSource, FilesThatStayTheSameKeepTheirTime) {
     EXPECT_EQ(fs::last_write_time(source), early);
 
     // The tables change, but the declaration stays.
-    base::Bytes& tables =
-        std::ranges::find(package_.files, "tables.bin", &compiler::PackageFile::name)->bytes;
-    tables.back() ^= 1;
+    compiler::PackageFile& tables =
+        *std::ranges::find(package_.files, "tables.bin", &compiler::PackageFile::name);
+    base::Bytes changed(tables.bytes.begin(), tables.bytes.end());
+    changed.back() ^= 1;
+    tables = {"tables.bin", std::move(changed)};
     ASSERT_TRUE(write(source));
     EXPECT_NE(fs::last_write_time(source), early);
     EXPECT_EQ(fs::last_write_time(folder_.path() / "a.h"), early);

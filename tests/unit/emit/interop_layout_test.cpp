@@ -34,7 +34,7 @@ struct ReflectedStruct {
 };
 
 // Returns the structures by type ID: names, offsets, and the strides of arrays of them.
-std::map<std::uint32_t, ReflectedStruct> reflect(const std::vector<std::uint32_t>& words) {
+std::map<std::uint32_t, ReflectedStruct> reflect(std::span<const std::uint32_t> words) {
     std::map<std::uint32_t, ReflectedStruct> structs;
     std::map<std::uint32_t, std::uint32_t> strideOf;
     std::map<std::uint32_t, std::uint32_t> elementOf;

@@ -50,7 +50,7 @@ TEST(MaterialCompiler, CompilesOnlyWhatIsNew) {
     const auto filesOf = [](const compiler::CompiledMaterials& compiled) {
         std::map<std::string, base::Bytes> files;
         for (const compiler::PackageFile& file : compiled.package.files) {
-            files[file.name] = file.bytes;
+            files[file.name].assign(file.bytes.begin(), file.bytes.end());
         }
         return files;
     };

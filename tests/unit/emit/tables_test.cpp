@@ -28,7 +28,7 @@ using package::SectionKind;
 // Reads tables.bin by its own description.
 class TableReader {
 public:
-    explicit TableReader(const base::Bytes& bytes) : bytes_(bytes) {
+    explicit TableReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {
         std::memcpy(&header, bytes.data(), sizeof header);
         for (std::uint32_t i = 0; i < header.sectionCount; ++i) {
             package::PackageSection section{};
@@ -54,7 +54,7 @@ public:
     package::PackageHeader header{};
 
 private:
-    const base::Bytes& bytes_;
+    std::span<const std::uint8_t> bytes_;
     std::map<SectionKind, package::PackageSection> sections_;
 };
 

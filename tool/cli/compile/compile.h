@@ -8,7 +8,10 @@
 #include "cli/report.h"
 #include "emit/compile.h"
 #include "emit/module_files.h"
+#include "emit/package/compiled_package.h"
 #include "emit/warm_modules.h"
+#include "gltf/scene.h"
+#include "resolve/build.h"
 
 #include <CLI/CLI.hpp>
 
@@ -17,6 +20,7 @@
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -92,11 +96,24 @@ std::optional<CompileSummary> unpackSummary(std::string_view bytes, bool withJso
 
 // --- glint compile --watch: compiles again when an input changes ---
 
+// The scenes of a run, and all decisions about them.
+struct Resolved {
+    const materials::MaterialModel* model = nullptr;
+    std::vector<gltf::Scene> scenes;
+    compiler::Build build;
+    std::vector<Diagnostic> diagnostics;  // about them
+};
+
 // The data that the watch and one run of the compiler exchange.
 struct WatchedRun {
-    explicit WatchedRun(compiler::WarmModules& memory) : warm(memory) {}
+    WatchedRun(compiler::WarmModules& memory, compiler::WrittenPackage& output,
+               std::vector<std::string> files, std::unique_ptr<Resolved> earlier)
+        : warm(memory), written(output), changed(std::move(files)), resolved(std::move(earlier)) {}
 
     compiler::WarmModules& warm;
+    compiler::WrittenPackage& written;
+    std::vector<std::string> changed;    // since the run before this one
+    std::unique_ptr<Resolved> resolved;  // before a run, that of the one before; null if it has none
     // The files that were read; empty if the run failed before it knew them.
     std::vector<base::InputFile> inputs;
     // Wall clock: reading and checking, planning and making GLSL, making SPIR-V, and making and writing

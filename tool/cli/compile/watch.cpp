@@ -120,7 +120,7 @@ std::vector<std::string> withoutFolders(std::vector<std::string> changed) {
 
 std::uint64_t hashOfTables(const compiler::CompiledPackage& package) {
     const auto tables = std::ranges::find(package.files, package::kTablesFile, &compiler::PackageFile::name);
-    return tables == package.files.end() ? 0 : base::hashBytes(tables->bytes);
+    return tables == package.files.end() ? 0 : tables->hash;
 }
 
 class Watch {
@@ -130,7 +130,7 @@ public:
 
     void run() {
         watchFiles(true);
-        compile("first run");
+        compile("first run", {});
         while (interrupted == 0) {
             std::this_thread::sleep_for(kPause);
             std::vector<std::string> changed = watch_.changed();
@@ -139,7 +139,7 @@ public:
             }
             if (!changed.empty() && interrupted == 0) {
                 takeSettings(changed);
-                compile(base::firstOf(withoutFolders(std::move(changed)), kNamed));
+                compile(base::firstOf(withoutFolders(changed), kNamed), changed);
             }
         }
     }
@@ -199,17 +199,18 @@ private:
         settingsError_ = again ? std::nullopt : std::optional(again.error());
     }
 
-    void compile(const std::string& why) {
+    void compile(const std::string& why, std::vector<std::string> changed) {
         const base::Clock::time_point start = base::Clock::now();
         // Warnings that count as errors are those of this run.
         const Console own(console_.options());
-        WatchedRun run(warm_);
+        WatchedRun run(warm_, written_, std::move(changed), std::move(resolved_));
         bool done = false;
         if (settingsError_) {
             own.report(*settingsError_);
         } else {
             const Result<int> code = compileOnce_(own, arguments_, run);
             done = code && *code == kExitDone;
+            resolved_ = std::move(run.resolved);
             if (!code) {
                 own.report(code.error());
             }
@@ -268,6 +269,8 @@ private:
     CompileArguments arguments_;
     const CompileOnce& compileOnce_;
     compiler::WarmModules warm_;
+    compiler::WrittenPackage written_;
+    std::unique_ptr<Resolved> resolved_;  // of the last run, if that came so far
     base::InputWatch watch_;
     std::vector<base::InputFile> inputs_;  // of the last run that knew them
     std::vector<std::string> listed_;      // knownInputs() at the last run

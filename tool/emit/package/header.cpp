@@ -300,7 +300,7 @@ bool isRead(const PackageFile& file) {
 }
 
 // Reads a word in little-endian order; bytes beyond the end are 0.
-std::uint64_t wordAt(const base::Bytes& bytes, std::size_t offset) {
+std::uint64_t wordAt(std::span<const std::uint8_t> bytes, std::size_t offset) {
     std::uint64_t word = 0;
     for (std::size_t i = std::min(bytes.size(), offset + kWordBytes); i > offset; --i) {
         word = word << 8U | bytes[i - 1];

@@ -357,7 +357,7 @@ Manifest manifestOf(const gltf::SceneList& scenes, const CompiledPackage& packag
         manifest.dropped.push_back({feature.feature, placesOf(scenes, feature.materials), feature.reason});
     }
     for (const PackageFile& file : package.files) {
-        manifest.files.push_back(fileOf(file.name, file.bytes.size(), base::hashBytes(file.bytes)));
+        manifest.files.push_back(fileOf(file.name, file.bytes.size(), file.hash));
     }
     return manifest;
 }

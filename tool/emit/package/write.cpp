@@ -22,6 +22,7 @@
 #include <string>
 #include <string_view>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <system_error>
 #include <thread>
 #include <unistd.h>
@@ -356,7 +357,7 @@ Status replaceInPlace(std::span<const PackageFile* const> arriving, const std::v
 // A manifest is small. A larger file of that name was not made by Glint.
 constexpr std::uint64_t kMaxManifestBytes = 1ULL << 28;
 
-using Names = std::set<std::string, std::less<>>;
+using Names = WrittenPackage::Names;
 
 // Returns the names of the files of the package in `folder`; empty if it holds none.
 Names packageFiles(const fs::path& folder) {
@@ -400,21 +401,23 @@ Result<Names> inspectFolder(const fs::path& folder) {
     return names;
 }
 
-bool holdsBytes(const fs::path& path, const base::Bytes& bytes) {
+bool holdsBytes(const fs::path& path, std::span<const std::uint8_t> bytes) {
     std::error_code error;
     if (!fs::is_regular_file(fs::symlink_status(path, error)) || fs::file_size(path, error) != bytes.size() ||
         error) {
         return false;
     }
     const Result<base::Bytes> present = base::readFile(path);
-    return present && *present == bytes;
+    return present && std::ranges::equal(*present, bytes);
 }
 
 // Returns the names of the files that the folder already has.
-Names unchangedFiles(const CompiledPackage& package, const fs::path& folder) {
+Names unchangedFiles(const CompiledPackage& package, const fs::path& folder, const WrittenPackage* written) {
     std::vector<std::uint8_t> holds(package.files.size());
     base::runParallel(holds.size(), 0, [&](std::size_t i) {
-        holds[i] = holdsBytes(folder / package.files[i].name, package.files[i].bytes) ? 1 : 0;
+        const PackageFile& file = package.files[i];
+        const bool isKnown = written != nullptr && written->holds(folder, file);
+        holds[i] = isKnown || holdsBytes(folder / file.name, file.bytes) ? 1 : 0;
         return true;
     });
     Names kept;
@@ -550,12 +553,18 @@ Status checkPackageFolder(const fs::path& folder) {
                                        possible.error().hint));
 }
 
-Status writePackage(const CompiledPackage& package, const fs::path& folder) {
-    GLINT_TRY(const auto resolved, resolveOutput(folder));
+namespace {
+
+// Writes to a folder that resolveOutput() returned.
+Status writeResolved(const CompiledPackage& package, const fs::path& resolved,
+                     const WrittenPackage* written) {
     GLINT_TRY(const auto lock, OutputLock::acquire(resolved));
     recoverInterrupted(resolved);
-    GLINT_TRY(const auto earlier, inspectFolder(resolved));
-    const Names kept = unchangedFiles(package, resolved);
+    Names earlier = written != nullptr ? written->names(resolved) : Names();
+    if (earlier.empty()) {
+        GLINT_TRY(earlier, inspectFolder(resolved));
+    }
+    const Names kept = unchangedFiles(package, resolved, written);
     if (isCurrent(package, kept, earlier, resolved)) {
         return okStatus();
     }
@@ -573,6 +582,56 @@ Status writePackage(const CompiledPackage& package, const fs::path& folder) {
     }
     Status swapped = staging->swapInto(resolved);
     return swapped ? swapped : orInPlace(package, kept, earlier, resolved, swapped.error());
+}
+
+}  // namespace
+
+std::optional<WrittenPackage::State> WrittenPackage::stateOf(const fs::path& path) {
+    struct stat status {};
+    if (lstat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) {
+        return std::nullopt;
+    }
+    constexpr std::int64_t kNanoseconds = 1'000'000'000;
+    return State{static_cast<std::int64_t>(status.st_mtim.tv_sec) * kNanoseconds + status.st_mtim.tv_nsec,
+                 static_cast<std::uint64_t>(status.st_size), static_cast<std::uint64_t>(status.st_ino)};
+}
+
+bool WrittenPackage::isUnchanged(const fs::path& folder, std::string_view name) const {
+    const auto known = files_.find(name);
+    return folder == folder_ && known != files_.end() && known->second.state &&
+           stateOf(folder / name) == known->second.state;
+}
+
+bool WrittenPackage::holds(const fs::path& folder, const PackageFile& file) const {
+    return isUnchanged(folder, file.name) && files_.find(file.name)->second.hash == file.hash;
+}
+
+WrittenPackage::Names WrittenPackage::names(const fs::path& folder) const {
+    Names names;
+    if (isUnchanged(folder, package::kManifestFile)) {
+        for (const auto& [name, file] : files_) {
+            names.insert(name);
+        }
+    }
+    return names;
+}
+
+void WrittenPackage::take(const CompiledPackage& package, const fs::path& folder) {
+    std::map<std::string, File, std::less<>> files;
+    for (const PackageFile& file : package.files) {
+        files.emplace(file.name, File{stateOf(folder / file.name), file.hash});
+    }
+    folder_ = folder;
+    files_ = std::move(files);
+}
+
+Status writePackage(const CompiledPackage& package, const fs::path& folder, WrittenPackage* written) {
+    GLINT_TRY(const auto resolved, resolveOutput(folder));
+    GLINT_TRY_DO(writeResolved(package, resolved, written));
+    if (written != nullptr) {
+        written->take(package, resolved);
+    }
+    return okStatus();
 }
 
 }  // namespace glint::compiler
