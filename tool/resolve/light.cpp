@@ -91,10 +91,9 @@ public:
                   decide(settings_.emissiveLights, [&] { return emits(); },
                          replaces(isOfSteps() ? kEmitterFilesOfSteps : std::span(kEmitterFiles)),
                          {"emissive-lights", "", "the lights or the geometry"}));
-        GLINT_TRY(
-            plan_.sky,
-            decide(settings_.skyLight, [&] { return settings_.skyLight == SkyLight::On || scatters(); },
-                   isOfSteps() || replaces(kSkyFiles), {"sky-light", " and a sky", "the lights or the sky"}));
+        GLINT_TRY(plan_.sky,
+                  decide(settings_.skyLight, [&] { return settings_.skyLight == SkyLight::On || scatters(); },
+                         replaces(kSkyFiles), {"sky-light", " and a sky", "the lights or the sky"}));
         GLINT_TRY(plan_.sized,
                   decide(settings_.sizedLights,
                          [&] { return settings_.sizedLights == SizedLights::On || settings_.sizesLights; },
@@ -183,14 +182,18 @@ private:
         if (asked == Choice::Off || (!isOn && isAutoOff) || !isUseful()) {
             return Choice::Off;
         }
-        const std::string why = ofHost                     ? fmt::format("{} are the host's", wording.ofHost)
+        const bool isUnlit = isOfSteps() && settings_.answer == package::HitAnswer::Surface;
+        const std::string why = ofHost    ? fmt::format("{} are the host's", wording.ofHost)
+                                : isUnlit ? "hits answer with surfaces, which the host lights"
                                 : lit_.effects.lights == 0 ? "the package has no effect shadow"
                                                            : "";
         if (isOn && !why.empty()) {
-            return makeError(std::string(wording.option), "",
-                             fmt::format("--{} needs shadow rays{} of Glint's own: {}", wording.option,
-                                         wording.needs, why),
-                             fmt::format("add the effect shadow, or leave out --{}", wording.option));
+            return makeError(
+                std::string(wording.option), "",
+                fmt::format("--{} needs shadow rays{} of Glint's own: {}", wording.option, wording.needs,
+                            why),
+                fmt::format("{}, or leave out --{}",
+                            isUnlit ? "use --answer radiance" : "add the effect shadow", wording.option));
         }
         return why.empty() ? Choice::On : Choice::Off;
     }

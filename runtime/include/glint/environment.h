@@ -44,6 +44,9 @@ public:
     Environment(const Environment&) = delete;
     Environment& operator=(const Environment&) = delete;
 
+    // The map with its sampler, for a host that binds it for RaySteps: a combined image sampler.
+    VkDescriptorImageInfo image() const;
+
     struct Statistics {
         // The size of the map on the device, which mirrors and the background show. It is between 256 x 128
         // and 2048 x 1024. Images outside of that range are resampled, which keeps their light.

@@ -472,9 +472,7 @@ Result<DescriptorSet> createFrameSet(Context::State& context, const FrameSize& s
         bind(gpu::kBindingLayers + i, frame.layers[i]);
     }
     if (environment != nullptr) {
-        write(gpu::kBindingEnvironment, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-              {environment->sampler.get(), environment->map.view.get(),
-               VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+        write(gpu::kBindingEnvironment, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, environment->image());
     }
     return made;
 }

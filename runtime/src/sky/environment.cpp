@@ -148,6 +148,10 @@ void Environment::complete(std::uint64_t frame) {
 Environment::Environment(std::shared_ptr<const State> state) : state_(std::move(state)) {}
 Environment::~Environment() = default;
 
+VkDescriptorImageInfo Environment::image() const {
+    return state_->image();
+}
+
 const Environment::Statistics& Environment::statistics() const {
     return state_->statistics;
 }
