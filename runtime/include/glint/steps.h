@@ -73,6 +73,11 @@ public:
             // move. Geometries with primitiveMaterials have none. Geometries with the same span share the
             // memory, 16 bytes a corner.
             std::span<const std::array<float, 3>> lightCorners{};
+            // The mean luminance (linear, 0 to 1) of the emissive texture's texels on each triangle, or one
+            // number for all. The hierarchy of lights then prefers triangles that show bright texels; samples
+            // read the texture itself, so that the numbers change the noise alone. A triangle with 0 is no
+            // light, which is right if all of its texels are black. If empty, the texture counts as white.
+            std::span<const float> lightTexels{};
         };
 
         // A texture of the package's scene (PackageScene::textures) as the host has it. Its view has the type
