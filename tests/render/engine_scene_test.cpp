@@ -84,8 +84,8 @@ struct Content {
 template <typename Change>
 Content contentOf(const Package& package, const gltf::Scene& scene, const Change& change) {
     session::SceneViewData data = session::makeSceneView(scene);
-    data.vertices = VertexForm::Full;
-    data.traversalOrder = TraversalOrder::Input;  // an engine's triangles are in its own order
+    data.vertices = SceneView::VertexForm::Full;
+    data.traversalOrder = SceneView::TraversalOrder::Input;  // an engine's triangles are in its own order
     change(data);
     const SceneView view = data.view();
     Content content;
@@ -765,10 +765,10 @@ TEST_P(TexturesOfAllDimensions, MaterialsReadThemAndBuffers) {
     const TextureHandle cube = editor.texture(textureAt(known.materials, 0, slot).textureIndex);
     EXPECT_EQ(mustFail(editor.replaceTexture(cube, {1, 1, kWhiteTexel})).id, "texture-dimension");
     const TextureHandle white = must(editor.addTexture({1, 1, kWhiteTexel}, false));
-    const MaterialKey key{kAttributeNormals | kAttributeTexCoords0, known.primitives[0].key,
-                          known.primitives[0].key};
+    const SceneEditor::MaterialKey key{kAttributeNormals | kAttributeTexCoords0, known.primitives[0].key,
+                                       known.primitives[0].key};
     for (const TextureHandle texture : {cube, white}) {
-        const TextureUse use{slot, texture};
+        const SceneEditor::TextureUse use{slot, texture};
         const auto added = editor.addMaterial({known.materials.part(0, 1).bytes, {&key, 1}, {&use, 1}});
         EXPECT_EQ(added ? "" : added.error().id, texture == cube ? "" : "texture-dimension");
     }

@@ -482,7 +482,7 @@ TEST(RaySteps, SampleTheSkyAsARendererDoes) {
                 << "samples make a difference";
             if (bounces > 1) {
                 FrameOptions frame = setup.frame;
-                const auto unsampled = must(Environment::create(sharedContext(), image));
+                const auto unsampled = must(Environment::create(sharedContext(), image, {}));
                 frame.environment = unsampled.get();
                 EXPECT_EQ(mustFail(steps->begin(VK_NULL_HANDLE, host.batchOf(frame, {}))).id,
                           "environment-unsampled");
