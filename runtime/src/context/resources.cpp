@@ -304,7 +304,7 @@ Result<AlignedBuffer> createAligned(Context::State& context, MemoryPool& pool, V
 
 namespace {
 
-// By TextureDimension.
+// By TextureEntry::Dimension.
 struct DimensionInfo {
     VkImageViewType view;
     VkImageType image;
