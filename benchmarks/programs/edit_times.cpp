@@ -128,7 +128,8 @@ Status measureEdits(const Arguments& arguments) {
     SceneView view = data.view();
     view.editable = true;
     view.moves = arguments.moves;
-    view.traversalOrder = arguments.sorted ? TraversalOrder::Halving : TraversalOrder::Input;
+    view.traversalOrder =
+        arguments.sorted ? SceneView::TraversalOrder::Halving : SceneView::TraversalOrder::Input;
     GLINT_TRY(const auto uploaded, GpuScene::upload(*context, *package, view));
     SceneEditor& editor = *uploaded->editor();
     fmt::print("{}: {} lamps of {} triangles, {} other objects{}\n\n", context->deviceName(), arguments.lamps,

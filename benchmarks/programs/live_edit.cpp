@@ -158,7 +158,8 @@ enum Part : std::uint8_t {
 // Follows one edit to its picture.
 class Follower {
 public:
-    Follower(const Compiler& compiler, PackageWatch& packages, Renderer& renderer, const FrameOptions& frame)
+    Follower(const Compiler& compiler, Package::Watch& packages, Renderer& renderer,
+             const FrameOptions& frame)
         : compiler_(compiler), packages_(packages), renderer_(renderer), frame_(frame) {
         frame_.timing = Timing::Passes;
     }
@@ -238,7 +239,7 @@ private:
     }
 
     const Compiler& compiler_;
-    PackageWatch& packages_;
+    Package::Watch& packages_;
     Renderer& renderer_;
     FrameOptions frame_;
     base::Clock::time_point start_;
@@ -302,7 +303,7 @@ Status measure(const Arguments& arguments) {
     const bool queries = (context->handles().tracers & package::kTracerRayQuery) != 0;
     const Compiler compiler(arguments, settings.package, queries ? "ray-query" : "ray-pipeline");
     fmt::print("<!-- {} -->\n", compiler.line(1));
-    PackageWatch packages(settings.package);
+    Package::Watch packages(settings.package);
     GLINT_TRY(auto first, session::givenPackage(settings));
     GLINT_TRY(const auto uploaded,
               session::DeviceScene::upload(*context, std::move(first), session::makeSceneView(scene)));

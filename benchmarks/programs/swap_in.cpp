@@ -156,7 +156,7 @@ Result<Course> follow(const Bed& bed, const RendererOptions& options, std::uint3
         if (frames++ == 0) {
             course.firstFrameMs = base::millisecondsSince(start);
         }
-        const PipelineProgress progress = renderer->pipelineProgress();
+        const Renderer::PipelineProgress progress = renderer->pipelineProgress();
         if (progress.error) {
             return *progress.error;
         }

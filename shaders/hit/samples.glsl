@@ -204,12 +204,17 @@ void storeLobeRay(uint target, float density, uint normal) {
 
 #if GLINT_SKY_LIGHT
 // The share of the sky's light that the ray of a sample brings if it leaves the scene. Samples of the sky bring the
-// rest.
+// rest. A host's own rays bring all of it.
 void storeSkyShare(uint target, float share) {
     GLINT_FRAME.skyShares.data[samplePlace(target)] = share;
 }
 
 float storedSkyShare(uint target) {
+#if GLINT_STEPS
+    if (isHostsList()) {
+        return 1.0;
+    }
+#endif
     return GLINT_FRAME.skyShares.data[samplePlace(target)];
 }
 #endif

@@ -6,14 +6,14 @@
 namespace glint {
 namespace {
 
-PipelineStatistics::Statistic number(const char* name, double value) {
+Renderer::PipelineStatistics::Statistic number(const char* name, double value) {
     return {name, "", value};
 }
 
 // The names are those of the drivers.
 TEST(PipelineFacts, MeanTheSameOnEveryDevice) {
     using inspect::factsOf;
-    const PipelineStatistics::Executable radv{
+    const Renderer::PipelineStatistics::Executable radv{
         "compute",
         "",
         VK_SHADER_STAGE_COMPUTE_BIT,
@@ -29,7 +29,7 @@ TEST(PipelineFacts, MeanTheSameOnEveryDevice) {
     EXPECT_EQ(amd.occupancy, 0.25);  // 4 of 16 subgroups of 64 lanes
     EXPECT_EQ(amd.cost, 1000.0);
 
-    const PipelineStatistics::Executable turnip{
+    const Renderer::PipelineStatistics::Executable turnip{
         "main",
         "",
         VK_SHADER_STAGE_COMPUTE_BIT,
@@ -45,7 +45,7 @@ TEST(PipelineFacts, MeanTheSameOnEveryDevice) {
     EXPECT_EQ(adreno.occupancy, 0.5);
     EXPECT_EQ(adreno.cost, 650.0);
 
-    const PipelineStatistics::Executable anv{
+    const Renderer::PipelineStatistics::Executable anv{
         "SIMD16 compute",
         "",
         VK_SHADER_STAGE_COMPUTE_BIT,
@@ -60,12 +60,13 @@ TEST(PipelineFacts, MeanTheSameOnEveryDevice) {
     EXPECT_EQ(arc.occupancy, 0.5);
     EXPECT_EQ(arc.cost, 2000.0);
 
-    const PipelineStatistics::Executable nvidia{"main",
-                                                "",
-                                                VK_SHADER_STAGE_COMPUTE_BIT,
-                                                32,
-                                                {number("Register Count", 96), number("Binary Size", 5000),
-                                                 number("Stack Size", 0), number("Local Memory Size", 16)}};
+    const Renderer::PipelineStatistics::Executable nvidia{
+        "main",
+        "",
+        VK_SHADER_STAGE_COMPUTE_BIT,
+        32,
+        {number("Register Count", 96), number("Binary Size", 5000), number("Stack Size", 0),
+         number("Local Memory Size", 16)}};
     const inspect::PipelineFacts other = factsOf(nvidia);
     EXPECT_EQ(other.registers, 96.0);
     EXPECT_EQ(other.codeBytes, 5000.0);
@@ -74,15 +75,16 @@ TEST(PipelineFacts, MeanTheSameOnEveryDevice) {
     EXPECT_FALSE(other.occupancy);
     EXPECT_FALSE(other.cost);
 
-    const PipelineStatistics::Executable parts[] = {radv, radv};
+    const Renderer::PipelineStatistics::Executable parts[] = {radv, radv};
     const inspect::PipelineFacts pipeline = factsOf(parts);
     EXPECT_EQ(pipeline.registers, 192.0);
     EXPECT_EQ(pipeline.spills, 6.0);
     EXPECT_EQ(pipeline.occupancy, 0.25);
 }
 
-PipelineStatistics sample() {
-    PipelineStatistics::Executable executable{"main", "the code", VK_SHADER_STAGE_COMPUTE_BIT, 32, {}};
+Renderer::PipelineStatistics sample() {
+    Renderer::PipelineStatistics::Executable executable{
+        "main", "the code", VK_SHADER_STAGE_COMPUTE_BIT, 32, {}};
     executable.statistics = {{"VGPRs", "", std::uint64_t{48}},
                              {"SGPRs", "", std::uint64_t{16}},
                              {"Instruction Count", "all", std::int64_t{-1}},
@@ -92,7 +94,7 @@ PipelineStatistics sample() {
 }
 
 TEST(PipelineTable, HasTheFacts) {
-    const PipelineStatistics pipelines[] = {sample()};
+    const Renderer::PipelineStatistics pipelines[] = {sample()};
     EXPECT_EQ(cli::tableOf(pipelines),
               "pipeline         executable  subgroup  registers  spills  scratch  code  occupancy  cost\n"
               "ShadeCase Glass  main              32         48       1        -     -          -     -\n");

@@ -152,7 +152,7 @@ TEST_F(Watching, AnEditMakesANewPackageOfTheCasesItTouches) {
     Running watch(path("."), words());
     EXPECT_TRUE(has(watch.line(1), "1. first run: new package; cases: 2 compiled, 0 kept")) << watch.line(1);
     EXPECT_EQ(stamp(), 1U);
-    PackageWatch packages(path("package"));
+    Package::Watch packages(path("package"));
     EXPECT_EQ(packages.counter(), 1U);
     Result<std::shared_ptr<const Package>> package = packages.poll();
     ASSERT_TRUE(package);
@@ -317,10 +317,10 @@ TEST_F(Watching, ScenesAndSettingsFilesAreInputs) {
 // The folder may be replaced once more while it is read, so a package that can't be loaded is tried again.
 TEST_F(Watching, APackageThatCannotBeLoadedIsAnErrorAfterSomeTries) {
     writeText(path("package.stamp"), "6 0000000000000000\n");
-    PackageWatch packages(path("package/"));
+    Package::Watch packages(path("package/"));
     EXPECT_EQ(packages.counter(), 6U);
     writeText(path("package.stamp"), "7 0000000000000000\n");
-    for (int i = 1; i < PackageWatch::kTries; ++i) {
+    for (int i = 1; i < Package::Watch::kTries; ++i) {
         const Result<std::shared_ptr<const Package>> polled = packages.poll();
         ASSERT_TRUE(polled) << i;
         EXPECT_EQ(*polled, nullptr);

@@ -67,10 +67,10 @@ FrameOptions withCones(FrameOptions frame, std::uint32_t samples) {
 }
 
 void expectDraft(Renderer& renderer, std::uint64_t drafts, const std::string& name) {
-    const PipelineProgress progress = renderer.pipelineProgress();
+    const Renderer::PipelineProgress progress = renderer.pipelineProgress();
     EXPECT_TRUE(progress.draft) << name;
     EXPECT_EQ(progress.drafts, drafts) << name;
-    const Result<FrameCounters> counters = renderer.counters();
+    const Result<Renderer::Counters> counters = renderer.counters();
     ASSERT_TRUE(counters) << name;
     EXPECT_TRUE(counters->draft) << name;
     EXPECT_EQ(counters->rays, 0U) << name;
@@ -132,7 +132,7 @@ TEST_F(Background, EveryStateOnTheWayGivesTheSamePicture) {
         renderer->waitForPipelines();
         adoptedAtOnce = 1;
         expectSameImage(renderedBy(*renderer, setup_), reference, name + ", fallback alone");
-        PipelineProgress progress = renderer->pipelineProgress();
+        Renderer::PipelineProgress progress = renderer->pipelineProgress();
         EXPECT_FALSE(progress.draft) << name;
         EXPECT_EQ(progress.drafts, setup_.samples) << name;
         for (std::uint32_t state = 0; progress.adopted < progress.wanted && state < progress.wanted;
@@ -143,7 +143,7 @@ TEST_F(Background, EveryStateOnTheWayGivesTheSamePicture) {
             EXPECT_FALSE(progress.error) << name;
         }
         EXPECT_EQ(progress.adopted, progress.wanted) << name;
-        const FrameCounters counters = must(renderer->counters());
+        const Renderer::Counters counters = must(renderer->counters());
         EXPECT_EQ(counters.unknownShader, 0U) << name;
         EXPECT_FALSE(counters.draft) << name;
     });
@@ -159,7 +159,7 @@ TEST_F(Background, AHostMayAskForNoDraft) {
     const auto renderer = loaded_->makeRenderer(options);
     renderer->state().pipelines.adoptedAtOnce = 0;
     expectSameImage(renderedBy(*renderer, setup_), reference, "fallback alone");
-    const PipelineProgress progress = renderer->pipelineProgress();
+    const Renderer::PipelineProgress progress = renderer->pipelineProgress();
     EXPECT_FALSE(progress.draft);
     EXPECT_EQ(progress.drafts, 0U);
     // Each case has a pipeline for first hits and one for hits of rays.
@@ -238,10 +238,10 @@ TEST_F(Background, FramesFollowEachOtherWhileThreadsWork) {
     options.backgroundPipelines = true;
     options.pipelineThreads = 2;
     const auto renderer = loaded_->makeRenderer(options);
-    PipelineProgress progress = renderer->pipelineProgress();
+    Renderer::PipelineProgress progress = renderer->pipelineProgress();
     for (int frame = 0; frame < 1000 && progress.adopted < progress.wanted; ++frame) {
         const LinearImage image = renderedBy(*renderer, setup_);
-        const FrameCounters counters = must(renderer->counters());
+        const Renderer::Counters counters = must(renderer->counters());
         if (!counters.draft) {
             expectSameImage(image, reference, "frame " + std::to_string(frame));
         }
@@ -273,7 +273,7 @@ TEST_F(Background, TheFallbackShadesUnknownShaderIds) {
     forEachWay([&](package::Strategy strategy, package::Tracer tracer, const std::string& name) {
         const RendererOptions options = optionsOf(setup_, strategy, tracer);
         const LinearImage reference = loaded_->render(options, setup_);
-        FrameCounters counters;
+        Renderer::Counters counters;
         expectSameImage(unknown.render(options, setup_, &counters), reference, name);
     });
 }

@@ -15,7 +15,8 @@ namespace {
 using namespace glint;
 using namespace glint::testing;
 
-constexpr Binning kBinnings[] = {Binning::None, Binning::Sign, Binning::Octahedral};
+constexpr FrameOptions::Binning kBinnings[] = {FrameOptions::Binning::None, FrameOptions::Binning::Sign,
+                                               FrameOptions::Binning::Octahedral};
 
 // Returns mirrors that send rays in all directions, in front of unlit walls.
 gltf::Scene mirrors() {
@@ -60,8 +61,8 @@ std::array<double, 2> octahedral(const gpu::vec3& v) {
 
 // Returns the bin of a direction, or -1 if the rounding of another machine might put it into a neighbouring
 // bin.
-int binOf(const gpu::vec3& v, Binning binning) {
-    if (binning == Binning::Sign) {
+int binOf(const gpu::vec3& v, FrameOptions::Binning binning) {
+    if (binning == FrameOptions::Binning::Sign) {
         return (v.x < 0.0F ? 1 : 0) + (v.y < 0.0F ? 2 : 0) + (v.z < 0.0F ? 4 : 0);
     }
     int bin = 0;
@@ -79,7 +80,7 @@ int binOf(const gpu::vec3& v, Binning binning) {
 
 // Expects that the rays of a workgroup follow each other in the list, bin by bin. Returns the most bins of
 // one workgroup.
-std::size_t expectSorted(const TracedFrame& frame, Binning binning, std::uint32_t width) {
+std::size_t expectSorted(const TracedFrame& frame, FrameOptions::Binning binning, std::uint32_t width) {
     const std::uint32_t tilesAcross = (width + gpu::kPixelGroupSize - 1) / gpu::kPixelGroupSize;
     std::map<std::uint32_t, std::set<int>> binsOfTile;
     std::uint32_t tile = 0;
@@ -113,7 +114,7 @@ TEST(RayBinning, TheListIsWholeAndSortedAtEverySize) {
     constexpr std::array<std::uint32_t, 2> kSizes[] = {{65, 37}, {64, 40}, {7, 3}, {1, 1}, {9, 100}};
     for (const auto& [width, height] : kSizes) {
         LinearImage reference;
-        for (const Binning binning : kBinnings) {
+        for (const FrameOptions::Binning binning : kBinnings) {
             SCOPED_TRACE(::testing::Message()
                          << width << " x " << height << ", binning " << static_cast<std::uint32_t>(binning));
             RenderSetup setup = setupOf(scene, width, height);
@@ -121,7 +122,7 @@ TEST(RayBinning, TheListIsWholeAndSortedAtEverySize) {
             const TracedFrame frame = traceFrame(loaded, package::kStrategyUber, setup);
             ASSERT_FALSE(frame.image.pixels.empty());
             expectWhole(frame);
-            if (binning != Binning::None) {
+            if (binning != FrameOptions::Binning::None) {
                 const std::size_t bins = expectSorted(frame, binning, width);
                 // Otherwise nothing would be sorted.
                 EXPECT_TRUE(width != 65 || bins > 3) << bins;
@@ -144,7 +145,7 @@ TEST(RayBinning, ChangesNothingOfAnyStrategy) {
     setup.frame.screenSteps = 24;
     LinearImage reference;
     for (const auto strategy : {package::kStrategyVisibility, package::kStrategySortedUber}) {
-        for (const Binning binning : kBinnings) {
+        for (const FrameOptions::Binning binning : kBinnings) {
             setup.frame.binning = binning;
             const TracedFrame frame = traceFrame(loaded, strategy, setup);
             ASSERT_FALSE(frame.image.pixels.empty());
@@ -163,7 +164,7 @@ TEST(RayBinning, NoRaysMakeAnEmptyList) {
     addQuad(scene, unlitMaterial({0.2F, 0.4F, 0.6F}), {-0.5F, -0.5F, -1}, {1, 0, 0}, {0, 1, 0});
     const LoadedScene loaded(scene, compiler::PlanOptions{});
     LinearImage reference;
-    for (const Binning binning : kBinnings) {
+    for (const FrameOptions::Binning binning : kBinnings) {
         RenderSetup setup = setupOf(scene, 65, 37);
         setup.frame.binning = binning;
         const TracedFrame frame = traceFrame(loaded, package::kStrategyVisibility, setup);

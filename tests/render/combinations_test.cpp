@@ -49,7 +49,7 @@ struct Combination {
     package::ShadowPlacement shadows;
     Way way;
     std::optional<package::Ordering> ordering;  // none where the strategy orders nothing
-    Binning binning;
+    FrameOptions::Binning binning;
 };
 
 std::vector<Combination> allCombinations() {
@@ -63,7 +63,8 @@ std::vector<Combination> allCombinations() {
             if (orders) {
                 ordering = static_cast<package::Ordering>(i / kBinnings);
             }
-            all.push_back({room, merge, shadows, way, ordering, static_cast<Binning>(i % kBinnings)});
+            all.push_back(
+                {room, merge, shadows, way, ordering, static_cast<FrameOptions::Binning>(i % kBinnings)});
         }
     };
     for (unsigned room = 0; room < kRooms; ++room) {
@@ -170,7 +171,7 @@ protected:
             nameOf(combination.merge), package::nameOf(combination.shadows),
             combination.ordering ? package::nameOf(*combination.ordering) : "-",
             static_cast<unsigned>(combination.binning));
-        FrameCounters counters;
+        Renderer::Counters counters;
         const LinearImage image = loaded.render(options, frame, &counters);
         EXPECT_GT(counters.rays, 0U) << what;
         EXPECT_EQ(counters.orderErrors, 0U) << what;

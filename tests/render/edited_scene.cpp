@@ -257,7 +257,7 @@ EditedScene::EditedScene(EditedSceneOptions options)
     view.primitives = primitives;
     view.instances = views;
     view.editable = true;
-    view.vertices = VertexForm::Quantized;  // meshes get a buffer for their builds alone, too
+    view.vertices = SceneView::VertexForm::Quantized;  // meshes get a buffer for their builds alone, too
     gpuScene_ = uploadScene(package(), view);
     for (std::uint32_t kind = 0; kind < kKinds; ++kind) {
         materials.push_back({editor().material(kind), kind, true});
@@ -278,7 +278,7 @@ EditedScene::EditedScene(EditedSceneOptions options)
     // Those that no uploaded primitive has, have no keys yet.
     for (const Material& material : materials) {
         const session::MaterialSourceData made = source(material.kind);
-        const Result<EditReport> set = editor().setMaterial(material.handle, made.view());
+        const Result<SceneEditor::Report> set = editor().setMaterial(material.handle, made.view());
         EXPECT_TRUE(set) << (set ? "" : toString(set.error()));
     }
     RendererOptions& renderer = options_.renderer;
@@ -396,7 +396,7 @@ LinearImage EditedScene::fresh() const {
     view.images = images;
     view.lights = lightViews;
     view.materials = values;
-    view.vertices = VertexForm::Quantized;
+    view.vertices = SceneView::VertexForm::Quantized;
     const auto uploaded = uploadScene(package(), view);
     const auto renderer = uploaded ? makeRenderer(package(), *uploaded, options_.renderer) : nullptr;
     return renderer ? drawn(*renderer, frameOptions_) : LinearImage{};

@@ -58,7 +58,7 @@ compiler::CompileSettings settingsWith(const std::vector<std::string>& effects) 
 // Returns pictures with each strategy; the sky is black.
 std::map<package::Strategy, LinearImage> picturesOf(const gltf::Scene& scene,
                                                     const compiler::CompileSettings& settings,
-                                                    FrameCounters* counters = nullptr) {
+                                                    Renderer::Counters* counters = nullptr) {
     RenderSetup setup = defaultSetup(scene, 16, 16);
     setup.samples = 2;
     setup.frame.sky = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
@@ -87,7 +87,7 @@ protected:
 // The two files are all that there is; no source of Glint's changes.
 TEST_F(EffectOfThePage, BringsTheLightFromBehind) {
     const gltf::Scene scene = sheetAndPanel(model());
-    FrameCounters counters;
+    Renderer::Counters counters;
     const auto pictures = picturesOf(scene, settingsWith({"translucency"}), &counters);
     ASSERT_EQ(pictures.size(), package::strategies().size());
     const LinearImage& reference = pictures.begin()->second;

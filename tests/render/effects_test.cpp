@@ -53,14 +53,14 @@ TEST(AllEffects, EveryWayMakesTheSamePicture) {
     const gltf::Scene scene = roomBehindGlass();
     const RenderSetup setup = smallSetup(scene);
     std::optional<LinearImage> reference;
-    FrameCounters first;
+    Renderer::Counters first;
     forEachWay(scene, allEffects(), [&](const LoadedScene& loaded, const Way& way) {
         const bool isVisibility = way.strategy == package::kStrategyVisibility;
         for (const bool batch : isVisibility ? std::vector{false, true} : std::vector{true}) {
             RendererOptions options = optionsOf(way);
             options.batchEffects = batch;
             const std::string what = nameOf(way) + (batch ? ", batched" : ", one by one");
-            FrameCounters counters;
+            Renderer::Counters counters;
             const LinearImage image = loaded.render(options, setup, &counters);
             if (!reference) {
                 reference = image;
@@ -69,8 +69,8 @@ TEST(AllEffects, EveryWayMakesTheSamePicture) {
             expectSameImage(image, *reference, what);
             EXPECT_EQ(counters.rays, first.rays) << what;
             EXPECT_EQ(counters.orderErrors, 0U) << what;
-            for (const EffectCounters& effect : counters.effects) {
-                const EffectCounters other = first.of(effect.effect);
+            for (const Renderer::EffectCounters& effect : counters.effects) {
+                const Renderer::EffectCounters other = first.of(effect.effect);
                 EXPECT_EQ(effect.rays, other.rays) << what << ", " << effect.name;
                 EXPECT_EQ(effect.hits, other.hits) << what << ", " << effect.name;
             }
@@ -78,7 +78,7 @@ TEST(AllEffects, EveryWayMakesTheSamePicture) {
     });
     for (const package::Effect effect :
          {package::kEffectReflection, package::kEffectRefraction, package::kEffectIndirectDiffuse}) {
-        const EffectCounters counters = first.of(effect);
+        const Renderer::EffectCounters counters = first.of(effect);
         EXPECT_GT(counters.rays, 0U) << effect;
         EXPECT_EQ(counters.hits + counters.misses, counters.rays) << effect;
     }
@@ -100,18 +100,18 @@ TEST(AllEffects, BandsAndFramesWithoutAMeanChangeNothing) {
     setup.samples = 1;
     for (const package::Strategy strategy : {package::kStrategyUber, package::kStrategyVisibility}) {
         RendererOptions options = optionsOf({strategy, package::kTracerRayQuery});
-        FrameCounters whole;
+        Renderer::Counters whole;
         const LinearImage reference = loaded.render(options, setup, &whole);
         options.bands = 3;
         options.accumulate = false;
         options.batchEffects = strategy == package::kStrategyUber;
-        FrameCounters counters;
+        Renderer::Counters counters;
         const LinearImage image = loaded.render(options, setup, &counters);
         EXPECT_EQ(image.pixels, reference.pixels);
         EXPECT_EQ(counters.rays, whole.rays);
         EXPECT_EQ(counters.orderErrors, 0U);
         EXPECT_EQ(counters.bucketCounts, whole.bucketCounts);
-        for (const EffectCounters& effect : counters.effects) {
+        for (const Renderer::EffectCounters& effect : counters.effects) {
             EXPECT_EQ(effect.rays, whole.of(effect.effect).rays) << effect.name;
             EXPECT_EQ(effect.hits, whole.of(effect.effect).hits) << effect.name;
             EXPECT_EQ(effect.skippedSky, whole.of(effect.effect).skippedSky) << effect.name;
@@ -152,12 +152,12 @@ TEST(AllEffects, OfCompactVerticesAreNearlyTheSame) {
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     settings.plan.merge = compiler::MergePolicy::All;
-    const auto load = [&](VertexForm form) {
+    const auto load = [&](SceneView::VertexForm form) {
         return LoadedScene(scene, settings, [form](session::SceneViewData& data) { data.vertices = form; });
     };
-    const LoadedScene full = load(VertexForm::Full);
-    const LoadedScene compact = load(VertexForm::Compact);
-    const LoadedScene quantized = load(VertexForm::Quantized);
+    const LoadedScene full = load(SceneView::VertexForm::Full);
+    const LoadedScene compact = load(SceneView::VertexForm::Compact);
+    const LoadedScene quantized = load(SceneView::VertexForm::Quantized);
     const auto bytesOf = [](const LoadedScene& loaded) {
         std::uint64_t bytes = 0;
         for (const MemoryItem& item : loaded.gpuScene().memory()) {
@@ -221,7 +221,7 @@ TEST(AllEffects, OffIsAsIfTheyWereNotThere) {
     const LoadedScene bare(scene, settings);
     RenderSetup off = setup;
     off.frame.effects = 0;
-    FrameCounters counters;
+    Renderer::Counters counters;
     const LinearImage image = all.render(package::kStrategyUber, off, &counters);
     EXPECT_EQ(counters.rays, 0U);
     expectSameImage(image, bare.render(package::kStrategyUber, setup), "off");
@@ -242,7 +242,7 @@ TEST(IndirectDiffuse, OfAnEmptySkyIsTheSkysLight) {
     settings.effects.named = package::kEffectIndirectDiffuse | package::kEffectAmbientOcclusion;
     const LoadedScene traced(scene, settings);
     // Every ray of a flat wall leaves the scene, and the sky is white everywhere.
-    FrameCounters counters;
+    Renderer::Counters counters;
     const LinearImage image = traced.render(package::kStrategyUber, setup, &counters);
     expectSameImage(image, sky.render(package::kStrategyUber, setup), "traced");
     EXPECT_EQ(counters.of(package::kEffectIndirectDiffuse).misses, 32U * 32U);
@@ -351,7 +351,7 @@ TEST(Gates, FaintSamplesAreSkipped) {
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     const LoadedScene loaded(scene, settings);
-    FrameCounters counters;
+    Renderer::Counters counters;
     loaded.render(package::kStrategyUber, setup, &counters);
     EXPECT_EQ(counters.of(package::kEffectReflection).rays, 32U * 32U);
     setup.frame.faintWeight = 0.5F;  // 4 % at normal incidence
@@ -383,9 +383,9 @@ TEST(Gates, LightsAreKeptByConeRangeAndFacing) {
     settings.strategies = package::kStrategyUber;
     settings.effects.named = package::kEffectShadow;
     const LoadedScene loaded(scene, settings);
-    FrameCounters counters;
+    Renderer::Counters counters;
     loaded.render(package::kStrategyUber, setup, &counters);
-    const EffectCounters shadow = counters.of(package::kEffectShadow);
+    const Renderer::EffectCounters shadow = counters.of(package::kEffectShadow);
     EXPECT_EQ(shadow.rays, 0U);
     EXPECT_EQ(shadow.skippedRange, 32U * 32U);
     EXPECT_EQ(shadow.skippedCone, 32U * 32U);

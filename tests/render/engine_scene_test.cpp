@@ -84,8 +84,8 @@ struct Content {
 template <typename Change>
 Content contentOf(const Package& package, const gltf::Scene& scene, const Change& change) {
     session::SceneViewData data = session::makeSceneView(scene);
-    data.vertices = VertexForm::Full;
-    data.traversalOrder = TraversalOrder::Input;  // an engine's triangles are in its own order
+    data.vertices = SceneView::VertexForm::Full;
+    data.traversalOrder = SceneView::TraversalOrder::Input;  // an engine's triangles are in its own order
     change(data);
     const SceneView view = data.view();
     Content content;
@@ -765,10 +765,10 @@ TEST_P(TexturesOfAllDimensions, MaterialsReadThemAndBuffers) {
     const TextureHandle cube = editor.texture(textureAt(known.materials, 0, slot).textureIndex);
     EXPECT_EQ(mustFail(editor.replaceTexture(cube, {1, 1, kWhiteTexel})).id, "texture-dimension");
     const TextureHandle white = must(editor.addTexture({1, 1, kWhiteTexel}, false));
-    const MaterialKey key{kAttributeNormals | kAttributeTexCoords0, known.primitives[0].key,
-                          known.primitives[0].key};
+    const SceneEditor::MaterialKey key{kAttributeNormals | kAttributeTexCoords0, known.primitives[0].key,
+                                       known.primitives[0].key};
     for (const TextureHandle texture : {cube, white}) {
-        const TextureUse use{slot, texture};
+        const SceneEditor::TextureUse use{slot, texture};
         const auto added = editor.addMaterial({known.materials.part(0, 1).bytes, {&key, 1}, {&use, 1}});
         EXPECT_EQ(added ? "" : added.error().id, texture == cube ? "" : "texture-dimension");
     }
@@ -930,6 +930,77 @@ TEST(EngineSceneLights, AreThoseOfGlintsOwnScene) {
         view.geometries = content.geometries;
         EXPECT_EQ(mustFail(scene->update(VK_NULL_HANDLE, *package, view, engine.frame())).id, "engine-scene");
     }
+}
+
+// Two lamps that show the bright and the dark half of a texture: with the means of their texels the hierarchy
+// is that of Glint's own scene, and without them the light is the same but for noise.
+TEST(EngineSceneLights, TexelsGuideTheHierarchy) {
+    gltf::Scene room = roomScene();
+    materials::Material lamp = paint({0, 0, 0});
+    lamp["emissiveFactor"] = {1.0F, 1.0F, 1.0F};
+    lamp["emissiveStrength"] = 4.0F;
+    std::vector<std::uint8_t> texels;
+    for (int x = 0; x < 16; ++x) {
+        texels.insert(texels.end(), 4, x < 8 ? 255 : 60);
+    }
+    lamp.texture("emissiveTexture").texture = addTexture(room, 16, 1, texels);
+    constexpr std::array<float, 2> kLeft{0.125F, 0.625F};
+    for (const float left : kLeft) {
+        addQuad(room, lamp, {4.0F * left - 1.5F, 2, -4}, {1, 0, 0}, {0, 0, 1});
+        for (gltf::Float2& place : room.meshes.back().primitives[0].texCoords0) {
+            place[0] = left + 0.25F * place[0];
+        }
+    }
+    const std::shared_ptr<const Package> package = packageOf(room, lampSteps(2));
+    ASSERT_TRUE(package != nullptr && package->emission() != nullptr);
+    Content content = contentOf(*package, room, addSizedLights);
+    Engine engine(*content.gpu);
+    const std::vector<float> expected = engine.expected(*package, *content.gpu, package::kStrategyUber);
+    ImageView image;
+    image.width = 16;
+    image.height = 1;
+    image.pixels = texels;
+    const EmissionTexels known(image, true);
+    std::vector<std::array<float, 3>> corners[2];
+    float means[2] = {};
+    for (std::size_t i = 0; i < 2; ++i) {
+        const TexelBox box{{kLeft[i], 0.0}, {kLeft[i] + 0.25, 1.0}};
+        means[i] = static_cast<float>(known.mean(box, 0, 0));
+        const gltf::Primitive& quad = room.meshes[room.meshes.size() - 2 + i].primitives[0];
+        for (const std::uint32_t index : quad.indices) {
+            corners[i].push_back(quad.positions[index]);
+        }
+        for (EngineScene::View::Geometry& geometry : content.geometries) {
+            if (geometry.mesh == room.meshes.size() - 2 + i) {
+                geometry.lightCorners = corners[i];
+                geometry.lightTexels = std::span(&means[i], 1);
+            }
+        }
+    }
+    EXPECT_GT(means[0], 10.0F * means[1]);
+    const auto scene = must(EngineScene::create(sharedContext(), *package, content.view()));
+    const auto steps = engine.makeSteps(*package, *scene, package::kStrategyUber);
+    VkCommandBuffer commands = engine.begin();
+    ASSERT_TRUE(engine.ask(*steps, *content.gpu));  // 0
+    engine.submit();
+    engine.drain();
+    commands = engine.begin();
+    for (EngineScene::View::Geometry& geometry : content.geometries) {
+        geometry.lightTexels = {};
+    }
+    must(scene->update(commands, *package, content.view(), engine.frame()));
+    ASSERT_TRUE(engine.ask(*steps, *content.gpu));  // 1
+    engine.submit();
+    engine.drain();
+    EXPECT_EQ(engine.answers(0), expected);
+    expectOthers(engine.answers(1), expected);
+    EXPECT_NEAR(meanOfAnswers(engine.answers(1)) / meanOfAnswers(expected), 1.0, 0.1);
+    for (EngineScene::View::Geometry& geometry : content.geometries) {
+        geometry.lightTexels = geometry.lightCorners.empty() ? geometry.lightTexels : std::span(means, 2);
+    }
+    means[1] = -1.0F;
+    EXPECT_EQ(mustFail(scene->update(VK_NULL_HANDLE, *package, content.view(), engine.frame())).id,
+              "engine-scene");
 }
 
 // A package that knows no disks gets none, by whatever call, and a call that is refused changes nothing.

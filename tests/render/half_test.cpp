@@ -33,7 +33,7 @@ compiler::CompileSettings settingsOf(package::Strategy strategy, package::Shadin
 LinearImage rendered(const gltf::Scene& scene, package::Strategy strategy,
                      package::ShadingPrecision precision, const RenderSetup& setup) {
     const LoadedScene loaded(scene, settingsOf(strategy, precision));
-    FrameCounters counters;
+    Renderer::Counters counters;
     LinearImage image = loaded.render(strategy, setup, &counters);
     EXPECT_EQ(counters.nonFinite, 0U);
     return image;

@@ -49,7 +49,7 @@ TEST_P(HardCases, ASampleThatIsNoNumberIsBlackAndCounted) {
     addInstance(scene, addMesh(scene, right));
     RenderSetup setup = squareSetup(scene);
     setup.samples = 3;
-    FrameCounters counters;
+    Renderer::Counters counters;
     const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
     ASSERT_TRUE(allFinite(image));
     // Jitter moves samples of the middle columns to either side, and those of the border off the quads.
@@ -81,7 +81,7 @@ TEST_P(HardCases, NumbersThatAreNoneDoNotSpreadFromAMirror) {
     addInstance(scene, addMesh(scene, behind));
     addQuad(scene, mirrorMaterial(), {-1, -1, -1}, {2, 0, 0}, {0, 2, 0});
     RenderSetup setup = squareSetup(scene);
-    FrameCounters counters;
+    Renderer::Counters counters;
     const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
     ASSERT_TRUE(allFinite(image));
     expectColor(at(image, 16, 4), {0, 0, 0}, 0.0F, "sees the infinite wall");
@@ -206,7 +206,7 @@ TEST_P(HardCases, TransformsOfEveryKindShowTheSamePicture) {
     for (const Space& space : kSpaces) {
         SCOPED_TRACE(space.name);
         gltf::Primitive walls = intoSpace(roomWalls(), space);
-        FrameCounters counters;
+        Renderer::Counters counters;
         const LinearImage image = render(litScene(std::move(walls), matrixOf(space)), setup,
                                          package::AlphaPolicy::Opaque, &counters);
         expectSameImage(image, expected, space.name);
@@ -224,7 +224,7 @@ TEST_P(HardCases, FlattenedInstancesAreNotThere) {
          {scaling(0, 0, 0), scaling(1, 1, 0), scaling(1, 1, 1e-40), scaling(1, nan, 1)}) {
         addInstance(scene, scene.nodes[0].mesh, flat);
     }
-    FrameCounters counters;
+    Renderer::Counters counters;
     const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
     EXPECT_EQ(image.pixels, expected.pixels);
     EXPECT_EQ(counters.nonFinite, 0U);
@@ -250,7 +250,7 @@ TEST_P(HardCases, DegenerateTrianglesChangeNothing) {
     for (std::size_t i = 0; i < walls.indices.size(); i += 2) {
         walls.indices[i] += vertices;
     }
-    FrameCounters counters;
+    Renderer::Counters counters;
     const LinearImage image =
         render(litScene(std::move(walls), scaling(1, 1, 1)), setup, package::AlphaPolicy::Opaque, &counters);
     expectSameImage(image, expected, "with degenerate triangles");
@@ -278,7 +278,7 @@ TEST_P(HardCases, FlatNormalTexturesNeedNoFrame) {
         const int texture = addTexture(scene, 1, 1, {0x00, 0x80, 0x00, 0x80, 0xFF, 0xFF, 0xFF, 0xFF});
         scene.images.back().format = gltf::PixelFormat::Rgba16;
         scene.materials[0].texture("normalTexture").texture = texture;
-        FrameCounters counters;
+        Renderer::Counters counters;
         const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
         ASSERT_TRUE(allFinite(image));
         EXPECT_EQ(counters.nonFinite, 0U);

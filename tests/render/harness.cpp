@@ -81,7 +81,7 @@ LoadedScene::LoadedScene(const gltf::Scene& scene, const compiler::CompileSettin
     compiled_ = must(compilePackage(scene, settings, &sharedModules()));
     auto package = must(session::loadPackage(compiled_));
     session::SceneViewData data = session::makeSceneView(scene);
-    data.vertices = VertexForm::Full;  // pictures are compared with exact ones
+    data.vertices = SceneView::VertexForm::Full;  // pictures are compared with exact ones
     if (scene.lights.empty()) {
         data.lights.push_back(session::sunLight());
     }
@@ -93,12 +93,12 @@ LoadedScene::LoadedScene(const gltf::Scene& scene, const compiler::CompileSettin
 }
 
 LinearImage LoadedScene::render(package::Strategy strategy, const RenderSetup& setup,
-                                FrameCounters* counters) const {
+                                Renderer::Counters* counters) const {
     return render(RendererOptions{.strategy = strategy}, setup, counters);
 }
 
 LinearImage LoadedScene::render(RendererOptions options, const RenderSetup& setup,
-                                FrameCounters* counters) const {
+                                Renderer::Counters* counters) const {
     options.width = setup.width;
     options.height = setup.height;
     options.countsLight = options.countsLight || setup.countsLight;

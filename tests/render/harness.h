@@ -59,10 +59,10 @@ public:
     // Renders an image. `counters` may be null. Keeps the renderer for further images with the same options,
     // because making one takes longer than most images.
     LinearImage render(package::Strategy strategy, const RenderSetup& setup,
-                       FrameCounters* counters = nullptr) const;
+                       Renderer::Counters* counters = nullptr) const;
     // The size is that of the setup.
     LinearImage render(RendererOptions options, const RenderSetup& setup,
-                       FrameCounters* counters = nullptr) const;
+                       Renderer::Counters* counters = nullptr) const;
 
 private:
     compiler::CompiledPackage compiled_;

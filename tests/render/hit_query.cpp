@@ -17,8 +17,9 @@ std::vector<Values> ask(const gltf::Scene& scene, const std::vector<Query>& quer
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;  // the less to compile: the kernel reads the scene only
     // Queries name triangles by the numbers that they have in the scene.
-    const LoadedScene loaded(
-        scene, settings, [](session::SceneViewData& data) { data.traversalOrder = TraversalOrder::Input; });
+    const LoadedScene loaded(scene, settings, [](session::SceneViewData& data) {
+        data.traversalOrder = SceneView::TraversalOrder::Input;
+    });
     const std::unique_ptr<HitKernel> kernel = must(HitKernel::create(scene, loaded, "hit_values.comp"));
     std::vector<gpu::RayRecord> rays;
     for (const Query& query : queries) {

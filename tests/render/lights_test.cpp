@@ -93,7 +93,7 @@ TEST_P(Lights, PunctualLightsFollowTheirExtension) {
 // Extreme lights stay finite, and are dark if they have no direction or do not reach the surface.
 TEST_P(Lights, LightsAtTheirLimitsStayFinite) {
     const auto toImage = [&](const gltf::Scene& scene, const RenderSetup& setup) {
-        FrameCounters counters;
+        Renderer::Counters counters;
         LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
         EXPECT_EQ(counters.nonFinite, 0U);
         for (const Pixel& pixel : image.pixels) {

@@ -151,7 +151,7 @@ TEST_F(LiveEditErrors, Geometry) {
     expectError(editor().addMesh(std::span(&primitive, 1)), "scene-attribute");
     primitive.geometry = edited_->primitive(0, 0);
     const std::array<float, 3> difference{};
-    MorphTargetView target;
+    PrimitiveView::MorphTarget target;
     target.positions = std::span(&difference, 1);
     primitive.geometry.targets = std::span(&target, 1);
     expectError(editor().addMesh(std::span(&primitive, 1)), "scene-attribute");
@@ -292,7 +292,8 @@ TEST(LiveEditKeys, ACaseForSeveralKeysShadesTheKeysBetweenThem) {
     edited.scene.materials[2] = coatedTexture();
     const session::MaterialSourceData source = edited.source(2);
     const MaterialHandle added = must(edited.editor().addMaterial(source.view()));
-    const EditReport report = must(edited.editor().setInstanceMaterial(edited.instances[1].handle, 0, added));
+    const SceneEditor::Report report =
+        must(edited.editor().setInstanceMaterial(edited.instances[1].handle, 0, added));
     EXPECT_TRUE(report.missing.empty());
     expectSameImage(edited.picture(), pictureWithCoatedTexture(edited, options), "a key between others");
 }
@@ -333,9 +334,10 @@ TEST(LiveEditFallback, ShadesAndReportsKeysWithoutACase) {
     edited.scene.materials[2] = coatedTexture();
     const session::MaterialSourceData source = edited.source(2);
     const MaterialHandle added = must(edited.editor().addMaterial(source.view()));
-    const EditReport report = must(edited.editor().setInstanceMaterial(edited.instances[1].handle, 0, added));
+    const SceneEditor::Report report =
+        must(edited.editor().setInstanceMaterial(edited.instances[1].handle, 0, added));
     ASSERT_EQ(report.missing.size(), 1U);
-    const EditReport::MissingCase& missing = report.missing.front();
+    const SceneEditor::Report::MissingCase& missing = report.missing.front();
     EXPECT_EQ(missing.material, added);
     EXPECT_NE(std::ranges::find(missing.names, "clearcoat"), missing.names.end());
     EXPECT_NE(std::ranges::find(missing.names, "baseColorTexture"), missing.names.end());
@@ -428,7 +430,7 @@ TEST(LiveEditStrategies, OtherStrategiesFollowEdits) {
         }
         EditedScene edited(EditedSceneOptions(strategy, tracer));
         edited.expectSameAsFresh("as uploaded");
-        const EditReport report = must(
+        const SceneEditor::Report report = must(
             edited.editor().setInstanceMaterial(edited.instances[1].handle, 0, edited.materials[5].handle));
         edited.instances[1].materials = {5};
         edited.expectSameAsFresh("a variant");

@@ -196,7 +196,8 @@ TEST(LiveEditLampKeys, AKeyMakesAMaterialALight) {
     // A coated material shines, which no light of the package has.
     lamps.edited.scene.materials[2]["emissiveFactor"] = {4.0F, 4.0F, 4.0F};
     const MaterialHandle coated = lamps.edited.materials[2].handle;
-    const EditReport set = must(lamps.edited.editor().setMaterial(coated, lamps.edited.source(2).view()));
+    const SceneEditor::Report set =
+        must(lamps.edited.editor().setMaterial(coated, lamps.edited.source(2).view()));
     ASSERT_TRUE(lamps.edited.editor().setInstanceMaterial(lamps.edited.instances[1].handle, 0, coated));
     const LinearImage edited = lamps.edited.picture();
     EXPECT_EQ(lamps.emitters(), before);  // the tent was a light before

@@ -136,7 +136,7 @@ private:
         EditedScene::Material& one = edited_.materials[kKinds + below(edited_.materials.size() - kKinds)];
         one.kind = static_cast<std::uint32_t>(below(kKinds));
         const session::MaterialSourceData source = edited_.source(one.kind);
-        const Result<EditReport> report = editor().setMaterial(one.handle, source.view());
+        const Result<SceneEditor::Report> report = editor().setMaterial(one.handle, source.view());
         expectDone(report);
         EXPECT_TRUE(report && report->missing.empty());
     }

@@ -102,13 +102,13 @@ TEST(FirstShadows, WaitWithoutAChange) {
     options.strategy = package::kStrategyUber;
     options.countsLight = true;
     options.bands = 2;
-    FrameCounters counted;
+    Renderer::Counters counted;
     const LinearImage expected = traced.render(options, setup, &counted);
     EXPECT_EQ(counted.shadowRounds, 0U);
     EXPECT_EQ(counted.of(package::kEffectShadow).waited, 0U);
     for (const package::Tracer tracer : package::kTracers) {
         options.tracer = tracer;
-        FrameCounters counters;
+        Renderer::Counters counters;
         const LinearImage image = waiting.render(options, setup, &counters);
         EXPECT_EQ(counters.shadowRounds, 5U) << "six lights of three points";
         EXPECT_EQ(counters.of(package::kEffectShadow).waited, counted.of(package::kEffectShadow).rays);

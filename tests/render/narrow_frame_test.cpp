@@ -42,7 +42,7 @@ LinearImage expectOnePicture(const gltf::Scene& scene, const compiler::CompileSe
     forEachWay(scene, settings, [&](const LoadedScene& loaded, const Way& way) {
         RendererOptions options = optionsOf(way);
         options.bounces = bounces;
-        FrameCounters counters;
+        Renderer::Counters counters;
         const LinearImage image = loaded.render(options, setup, &counters);
         EXPECT_GT(counters.rays, 0U) << nameOf(way);
         EXPECT_EQ(counters.orderErrors, 0U) << nameOf(way);
@@ -155,10 +155,10 @@ TEST(PackedSamples, MarchOverTheScreenAsFullOnesDo) {
     setup.frame.screenSteps = 32;
     RendererOptions options = optionsOf({package::kStrategyVisibility, package::kTracerRayQuery});
     options.screenMarch = true;
-    FrameCounters ofFull;
+    Renderer::Counters ofFull;
     const LinearImage full = LoadedScene(scene, settings).render(options, setup, &ofFull);
     settings.sampleRecord = package::SampleRecordFormat::Packed;
-    FrameCounters ofPacked;
+    Renderer::Counters ofPacked;
     const LinearImage packed = LoadedScene(scene, settings).render(options, setup, &ofPacked);
     EXPECT_LT(shareThatDiffers(packed, full, 0.004F), 0.02);
     const double found = ofFull.of(package::kEffectReflection).screenHits;
@@ -181,7 +181,7 @@ TEST(HalfPicture, IsWithinItsBitsOfTheFullOne) {
         RendererOptions options = optionsOf(way);
         const LinearImage exact = loaded.render(options, setup);
         options.accumulate = false;
-        options.picture = PictureFormat::Half;
+        options.picture = RendererOptions::PictureFormat::Half;
         const LinearImage half = loaded.render(options, setup);
         ASSERT_EQ(half.pixels.size(), exact.pixels.size());
         for (std::size_t i = 0; i < half.pixels.size(); ++i) {
@@ -209,8 +209,8 @@ void expectBrightPicture(std::vector<std::string> layers, float expected) {
     RendererOptions options;
     options.strategy = package::kStrategyUber;
     options.accumulate = false;
-    options.picture = PictureFormat::Half;
-    FrameCounters counters;
+    options.picture = RendererOptions::PictureFormat::Half;
+    Renderer::Counters counters;
     const LinearImage image = loaded.render(options, defaultSetup(scene, 16, 16), &counters);
     EXPECT_EQ(counters.nonFinite, 0U);
     for (const auto& pixel : image.pixels) {

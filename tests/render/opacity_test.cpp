@@ -105,15 +105,15 @@ compiler::CompileSettings settingsOf(std::uint32_t strategies) {
     return settings;
 }
 
-std::function<void(session::SceneViewData&)> use(OpacityUse opacity) {
+std::function<void(session::SceneViewData&)> use(SceneView::OpacityUse opacity) {
     return [opacity](session::SceneViewData& data) { data.opacity = opacity; };
 }
 
 TEST(Opacity, PicturesDoNotShowWhatWasDecided) {
     const gltf::Scene scene = foliage();
     const compiler::CompileSettings settings = settingsOf(kStrategies);
-    const LoadedScene proved(scene, settings, use(OpacityUse::Proved));
-    const LoadedScene tested(scene, settings, use(OpacityUse::Tested));
+    const LoadedScene proved(scene, settings, use(SceneView::OpacityUse::Proved));
+    const LoadedScene tested(scene, settings, use(SceneView::OpacityUse::Tested));
     const GpuScene::Statistics& statistics = proved.gpuScene().statistics();
     EXPECT_EQ(statistics.maskedTriangles, 200U);
     EXPECT_GT(statistics.provedOpaque, 40U);
@@ -136,8 +136,8 @@ TEST(Opacity, PicturesDoNotShowWhatWasDecided) {
         }
     }
     for (const RendererOptions& options : choices) {
-        FrameCounters few;
-        FrameCounters many;
+        Renderer::Counters few;
+        Renderer::Counters many;
         const LinearImage image = proved.render(options, setup, &few);
         EXPECT_EQ(image.pixels, tested.render(options, setup, &many).pixels)
             << "strategy " << options.strategy << ", tracer " << *options.tracer;
@@ -204,7 +204,7 @@ gltf::Scene swayingFoliage(int frame) {
 
 // An uploaded scene that moves, whose alpha tests are decided or not.
 struct Swaying : PosedScene {
-    Swaying(std::shared_ptr<const LoadedScene> loaded, OpacityUse use)
+    Swaying(std::shared_ptr<const LoadedScene> loaded, SceneView::OpacityUse use)
         : PosedScene(swayingFoliage(0), std::move(loaded),
                      [use](session::SceneViewData& given) { given.opacity = use; }) {}
     void moveTo(int frame) {
@@ -225,8 +225,8 @@ TEST(Opacity, PicturesOfDeformedMeshesDoNotShowWhatWasDecided) {
         choices.push_back({.strategy = package::kStrategyHitShaders, .tracer = package::kTracerRayPipeline});
     }
     RenderSetup setup = defaultSetup(still, 64, 36);
-    Swaying proved(compiled, OpacityUse::Proved);
-    Swaying tested(compiled, OpacityUse::Tested);
+    Swaying proved(compiled, SceneView::OpacityUse::Proved);
+    Swaying tested(compiled, SceneView::OpacityUse::Tested);
     EXPECT_EQ(proved.gpuScene->statistics().maskedTriangles, 400U);
     EXPECT_GT(proved.gpuScene->statistics().provedOpaque, 80U);
     EXPECT_GT(proved.gpuScene->statistics().provedTransparent, 80U);
@@ -270,8 +270,8 @@ TEST(Opacity, TestsOfRaysThroughGlassAreCounted) {
         settings.tracers = package::kTracerRayQuery;
         settings.shadowThrough = through;
         settings.effects = {false, compiler::builtinEffects({"shadow"})};
-        const LoadedScene loaded(scene, settings, use(OpacityUse::Tested));
-        FrameCounters counters;
+        const LoadedScene loaded(scene, settings, use(SceneView::OpacityUse::Tested));
+        Renderer::Counters counters;
         loaded.render(package::kStrategyUber, setup, &counters);
         return counters.alphaTests;
     };
@@ -306,7 +306,7 @@ TEST(Opacity, TheCutoffDecides) {
     const LoadedScene none(foliage(1.5F), settings);
     EXPECT_EQ(none.gpuScene().statistics().provedTransparent, 200U);
     const RenderSetup setup = defaultSetup(foliage(), 64, 36);
-    const LoadedScene tested(foliage(1.5F), settings, use(OpacityUse::Tested));
+    const LoadedScene tested(foliage(1.5F), settings, use(SceneView::OpacityUse::Tested));
     EXPECT_EQ(none.render(package::kStrategyUber, setup).pixels,
               tested.render(package::kStrategyUber, setup).pixels);
 }

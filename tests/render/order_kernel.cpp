@@ -58,7 +58,7 @@ Result<std::vector<compiler::CompiledModule>> compileOrdering(std::uint32_t case
         plan.cases.push_back(std::move(shaderCase));
     }
     // Without an effect that sends rays nothing is ordered.
-    plan.effects.effects.add({package::kEffectReflection, package::EffectKind::Rays});
+    plan.effects.effects.add({package::kEffectReflection, package::EffectInfo::Kind::Rays});
     const gltf::Scene scene;
     const gltf::SceneList scenes({&scene, 1});
     compiler::CompileSettings settings;

@@ -17,7 +17,7 @@ class OrderingImages : public ::testing::TestWithParam<package::Strategy> {
 protected:
     // Returns an empty image if rendering fails. Expects that the device finds the hits in order.
     static LinearImage renderChecked(const LoadedScene& loaded, const RenderSetup& setup, Ordering ordering,
-                                     FrameCounters& counters) {
+                                     Renderer::Counters& counters) {
         LinearImage image =
             loaded.render(RendererOptions{.strategy = GetParam(), .ordering = ordering, .checkOrder = true},
                           setup, &counters);
@@ -36,10 +36,10 @@ TEST_P(OrderingImages, AreTheSame) {
     RenderSetup setup = defaultSetup(scene, 77, 45);
     setup.frame.maxReflectionRoughness = 1.0F;
     LinearImage reference;
-    FrameCounters referenceCounters;
+    Renderer::Counters referenceCounters;
     for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(Ordering::Count); ++i) {
         const auto ordering = static_cast<Ordering>(i);
-        FrameCounters counters;
+        Renderer::Counters counters;
         const LinearImage image = renderChecked(loaded, setup, ordering, counters);
         EXPECT_EQ(std::accumulate(counters.bucketCounts.begin(), counters.bucketCounts.end(), 0U),
                   counters.rays)
@@ -68,7 +68,7 @@ TEST_P(OrderingImages, NeedNoRays) {
     setup.frame.maxReflectionRoughness = -1.0F;
     for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(Ordering::Count); ++i) {
         const auto ordering = static_cast<Ordering>(i);
-        FrameCounters counters;
+        Renderer::Counters counters;
         const LinearImage image = renderChecked(loaded, setup, ordering, counters);
         EXPECT_EQ(counters.rays, 0U);
     }
@@ -101,7 +101,7 @@ TEST(FirstHits, AreOrderedWhateverTheNumberOfBuckets) {
             id += from;
         }
         const LoadedScene loaded(scene, settings);
-        FrameCounters counters;
+        Renderer::Counters counters;
         const LinearImage image =
             loaded.render(RendererOptions{.strategy = package::kStrategyUber}, setup, &counters);
         const std::vector<std::uint32_t>& counts = counters.pixelCounts;

@@ -56,9 +56,9 @@ TEST(OwnStrategy, DrawsThePictureOfUber) {
     settings.plan.merge = compiler::MergePolicy::None;
     const LoadedScene loaded(scene, settings);
     RenderSetup setup = defaultSetup(scene, 16, 16);
-    FrameCounters counters;
+    Renderer::Counters counters;
     const LinearImage reference = loaded.render(package::kStrategyUber, setup, &counters);
-    const EffectCounters reflection = counters.of(loaded.package().effect("reflection"));
+    const Renderer::EffectCounters reflection = counters.of(loaded.package().effect("reflection"));
     EXPECT_GT(reflection.hits, 0U);
     EXPECT_GT(reflection.misses, 0U);
     for (const package::Tracer tracer : package::kTracers) {

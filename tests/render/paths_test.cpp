@@ -78,14 +78,14 @@ TEST(Paths, EveryStrategyAndTracerGivesTheSamePicture) {
     settings.plan.keys.alpha = package::AlphaPolicy::Tested;
     std::optional<LinearImage> reference;
     for (const ShadowPlacement shadows : {ShadowPlacement::Inline, ShadowPlacement::Deferred}) {
-        std::optional<FrameCounters> expected;  // shadow rays that are traced inline are not counted
+        std::optional<Renderer::Counters> expected;  // shadow rays that are traced inline are not counted
         settings.shadows = shadows;
         settings.plan.merge =
             shadows == ShadowPlacement::Inline ? compiler::MergePolicy::None : compiler::MergePolicy::All;
         forEachWay(scene, settings, [&](const LoadedScene& loaded, const Way& way) {
             RendererOptions options = optionsOf(way);
             options.bounces = kBounces;
-            FrameCounters counters;
+            Renderer::Counters counters;
             const LinearImage image = loaded.render(options, setup, &counters);
             reference = reference.value_or(image);
             expected = expected.value_or(counters);
@@ -116,7 +116,7 @@ TEST(Paths, OrderingsBinningsAndBatchesGiveTheSamePicture) {
         }
         const LoadedScene loaded(scene, settings);
         ASSERT_EQ(loaded.package().emission() != nullptr, lights);
-        setup.frame.binning = Binning::None;
+        setup.frame.binning = FrameOptions::Binning::None;
         const LinearImage reference = loaded.render(pathOptions(3), setup);
         for (const package::Ordering ordering :
              {package::Ordering::WaveBallot, package::Ordering::LocalHistogram,
@@ -128,9 +128,9 @@ TEST(Paths, OrderingsBinningsAndBatchesGiveTheSamePicture) {
             options.ordering = ordering;
             options.batchEffects = ordering == package::Ordering::LocalHistogram;
             options.checkOrder = true;
-            setup.frame.binning =
-                ordering == package::Ordering::TileSort ? Binning::Octahedral : Binning::Sign;
-            FrameCounters counters;
+            setup.frame.binning = ordering == package::Ordering::TileSort ? FrameOptions::Binning::Octahedral
+                                                                          : FrameOptions::Binning::Sign;
+            Renderer::Counters counters;
             expectSameImage(loaded.render(options, setup, &counters), reference,
                             std::string(package::nameOf(ordering)) + (lights ? " with lights" : ""));
             EXPECT_EQ(counters.orderErrors, 0U);
@@ -350,7 +350,7 @@ TEST(Paths, AClosedBoxLosesNoRay) {
     const std::uint32_t seeds = test::nightly() ? 4 : 1;
     for (std::uint32_t seed = 0; seed < seeds; ++seed) {
         setup.frame.seed = seed;
-        FrameCounters counters;
+        Renderer::Counters counters;
         ASSERT_FALSE(loaded.render(pathOptions(16), setup, &counters).pixels.empty());
         rays += counters.rays;
         lost += counters.bucketCounts[0];
@@ -374,7 +374,7 @@ TEST(Paths, CoatsWithTurnedNormalsSendNoRayThroughTheirSurface) {
     const LoadedScene loaded(scene, pathSettings(4), noLights);
     RenderSetup setup = pathSetup(scene, 32, 32, 1);
     setup.frame.sky = uniformSky(1.0F);
-    FrameCounters counters;
+    Renderer::Counters counters;
     ASSERT_FALSE(loaded.render(pathOptions(4), setup, &counters).pixels.empty());
     ASSERT_EQ(counters.raysOfBounces.size(), 4U);
     EXPECT_GT(counters.raysOfBounces[3], 100U);
@@ -438,7 +438,7 @@ double brightnessOfMirroredGlass(gltf::Float3 color, float roughness = 0.0F, boo
     const LoadedScene loaded(scene, glassSettings(32), noLights);
     RenderSetup setup = pathSetup(scene, 16, 16, 64);
     setup.frame.sky = uniformSky(1.0F);
-    FrameCounters counters;
+    Renderer::Counters counters;
     const double mean = meanOf(loaded.render(pathOptions(32), setup, &counters));
     EXPECT_GT(counters.raysOfBounces.at(2), 100U) << "the glass sends no rays";
     return mean;

@@ -50,7 +50,7 @@ class PixelTest : public ::testing::TestWithParam<package::Strategy> {
 protected:
     LinearImage render(const gltf::Scene& scene, const RenderSetup& setup,
                        package::AlphaPolicy alpha = package::AlphaPolicy::Opaque,
-                       FrameCounters* counters = nullptr) {
+                       Renderer::Counters* counters = nullptr) {
         compiler::CompileSettings settings;
         settings.plan.keys.alpha = alpha;
         settings.plan.merge = compiler::MergePolicy::None;

@@ -21,7 +21,7 @@ TEST_P(Pixels, AnEmptySceneShowsTheSkyUpright) {
     gltf::Scene scene = sceneWithCamera();
     RenderSetup setup = squareSetup(scene);
     setup.frame.sky = {{0.0F, 0.0F, 1.0F}, {0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}};
-    FrameCounters counters;
+    Renderer::Counters counters;
     const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
     EXPECT_EQ(counters.rays, 0U);
     EXPECT_EQ(counters.of(package::kEffectReflection).skippedSky, 32U * 32U);
@@ -72,7 +72,7 @@ TEST_P(Pixels, AMirrorShowsWhatIsBehindTheCamera) {
     addQuad(scene, red, {9, 0, 3}, {-18, 0, 0}, {0, 9, 0});
     addQuad(scene, blue, {9, -9, 3}, {-18, 0, 0}, {0, 9, 0});
     addDirectionalLight(scene, {0, -1, 0}, 1.0F);
-    FrameCounters counters;
+    Renderer::Counters counters;
     const LinearImage image = render(scene, squareSetup(scene), package::AlphaPolicy::Opaque, &counters);
     EXPECT_EQ(counters.rays, 32U * 32U);
     expectColor(at(image, 16, 4), kRed, 1e-4F, "above");
@@ -146,7 +146,7 @@ TEST_P(Pixels, ALimitOfZeroStillLetsMirrorsReflect) {
     RenderSetup setup = squareSetup(scene);
     setup.frame.sky = {kGreen, kGreen, kGreen};
     setup.frame.maxReflectionRoughness = 0.0F;
-    FrameCounters counters;
+    Renderer::Counters counters;
     const LinearImage image = render(scene, setup, package::AlphaPolicy::Opaque, &counters);
     EXPECT_EQ(counters.rays, 32U * 32U);
     expectColor(at(image, 16, 16), kGreen, 1e-4F, "centre");

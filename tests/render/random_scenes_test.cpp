@@ -62,7 +62,7 @@ public:
         data_ = session::makeSceneView(scene_);
         SceneView view = data_.view();
         view.editable = true;
-        view.vertices = VertexForm::Full;
+        view.vertices = SceneView::VertexForm::Full;
         gpuScene_ = uploadScene(package(), view);
         textures_ = session::uploadedTextures(editor(), package().scene(0), scene_);
         for (std::uint32_t i = 0; i < data_.instances.size(); ++i) {
@@ -158,7 +158,7 @@ private:
             materials.push_back(editor().material(i));
             const session::MaterialSourceData source =
                 session::makeMaterialSource(package(), layout_, scene, scene.materials[i], textures_);
-            const Result<EditReport> set = editor().setMaterial(materials[i], source.view());
+            const Result<SceneEditor::Report> set = editor().setMaterial(materials[i], source.view());
             EXPECT_TRUE(set) << (set ? "" : toString(set.error()));
         }
         std::vector<MeshHandle> byNumber(scene.meshes.size());

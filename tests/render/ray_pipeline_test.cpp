@@ -62,12 +62,12 @@ protected:
 
 // Renders every way that the settings and the device allow.
 void expectAllWaysAgree(const gltf::Scene& scene, const compiler::CompileSettings& settings,
-                        const RenderSetup& setup, FrameCounters& counters) {
+                        const RenderSetup& setup, Renderer::Counters& counters) {
     const LoadedScene loaded(scene, settings);
     std::optional<LinearImage> reference;
     for (const Way& way : waysOf(settings.strategies, settings.tracers)) {
         SCOPED_TRACE(nameOf(way));
-        FrameCounters counted;
+        Renderer::Counters counted;
         const LinearImage image = loaded.render(optionsOf(way), setup, &counted);
         if (!reference) {
             reference = image;
@@ -79,22 +79,22 @@ void expectAllWaysAgree(const gltf::Scene& scene, const compiler::CompileSetting
     }
 }
 
-FrameCounters expectAllWaysAgreeInHall(const compiler::CompileSettings& settings) {
+Renderer::Counters expectAllWaysAgreeInHall(const compiler::CompileSettings& settings) {
     const gltf::Scene scene = hallScene();
-    FrameCounters counters;
+    Renderer::Counters counters;
     expectAllWaysAgree(scene, settings, hallSetup(scene), counters);
     EXPECT_GT(counters.rays, 900U);
     return counters;
 }
 
 TEST(RayPipelines, EveryStrategyAndTracerGivesTheSamePicture) {
-    const FrameCounters counters =
+    const Renderer::Counters counters =
         expectAllWaysAgreeInHall(settingsFor(ShadowPlacement::Inline, compiler::MergePolicy::None));
     EXPECT_EQ(counters.shadowRays, 0U);
 }
 
 TEST(RayPipelines, DeferredShadowsAndSharedCasesToo) {
-    const FrameCounters counters =
+    const Renderer::Counters counters =
         expectAllWaysAgreeInHall(settingsFor(ShadowPlacement::Deferred, compiler::MergePolicy::All));
     EXPECT_GT(counters.shadowRays, 100U);
 }
@@ -111,7 +111,7 @@ TEST(RayPipelines, ListsWithoutElementsAndRaysWithoutHits) {
     gltf::Scene scene = sceneWithCamera();
     const compiler::CompileSettings settings =
         settingsFor(ShadowPlacement::Deferred, compiler::MergePolicy::None);
-    FrameCounters counters;
+    Renderer::Counters counters;
     expectAllWaysAgree(scene, settings, squareSetup(scene), counters);
     EXPECT_EQ(counters.rays, 0U);
     addMirror(scene);
@@ -150,7 +150,7 @@ TEST_F(DeviceWithPipelines, ShowsUnknownShadersInMagenta) {
     const auto renderer = loaded.makeRenderer(options);
     const LinearImage image = must(renderer->render(setup.frame));
     expectColor(at(image, 16, 16), {1.0F, 0.0F, 1.0F}, 1e-4F, "unknown");
-    const FrameCounters counters = must(renderer->counters());
+    const Renderer::Counters counters = must(renderer->counters());
     EXPECT_EQ(counters.unknownShader, 32U * 32U);
 }
 

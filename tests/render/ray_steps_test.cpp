@@ -12,6 +12,7 @@
 #include "support/must.h"
 #include "support/temporary_folder.h"
 
+#include <glint/environment.h>
 #include <glint/steps.h>
 
 #include <algorithm>
@@ -41,7 +42,8 @@ std::vector<T> arrayOf(const std::vector<std::uint8_t>& bytes, std::size_t count
 }
 
 // Traces the reflections of a scene as Renderer does, in paths of that many bounces.
-KnownRays knownRays(const gltf::Scene& scene, const RenderSetup& setup, std::uint32_t bounces) {
+KnownRays knownRays(const gltf::Scene& scene, const RenderSetup& setup, std::uint32_t bounces,
+                    compiler::SkyLight sky = compiler::SkyLight::Off) {
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyVisibility;
     settings.tracers = package::kAllTracers;
@@ -52,7 +54,8 @@ KnownRays knownRays(const gltf::Scene& scene, const RenderSetup& setup, std::uin
     settings.maxBounces = std::max(bounces, 2U);
     settings.hitRecord = package::HitRecordFormat::Full;
     settings.emissiveLights = compiler::EmissiveLights::Off;
-    settings.skyLight = compiler::SkyLight::Off;
+    settings.skyLight = sky;
+    settings.environmentMap = setup.frame.environment != nullptr;
     const LoadedScene loaded(scene, settings);
     KnownRays known;
     RendererOptions options;
@@ -96,8 +99,9 @@ struct Asked {
     std::uint32_t bounces = 0;
 };
 
-// A host: a pipeline layout with Glint's scene in set 2 and push constants at byte 16, a list of rays and
-// its answers. For a package without textures that takes its structure by address, the layout has no set.
+// A host: a pipeline layout with Glint's scene in set 2, an environment map in set 1 if the package reads
+// one, and push constants at byte 16, a list of rays and its answers. For a package without textures that
+// takes its structure by address, the layout has no set.
 class Host {
 public:
     Host(const LoadedScene& loaded, const std::vector<RaySteps::Ray>& rays, std::size_t slots,
@@ -134,9 +138,18 @@ public:
         const VkDescriptorSet set = loaded_.gpuScene().descriptorSet();
         const VkPipelineBindPoint points[] = {VK_PIPELINE_BIND_POINT_COMPUTE,
                                               VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR};
+        if (frame.environment != nullptr) {
+            const VkDescriptorImageInfo map = frame.environment->image();
+            writeImages(context_, sky_.set, loaded_.package().bindings().environment,
+                        VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, {&map, 1});
+        }
         for (const VkPipelineBindPoint point :
              hasSet_ ? std::span(points) : std::span<const VkPipelineBindPoint>()) {
             context_.vk.CmdBindDescriptorSets(*commands, point, layout_.get(), 2, 1, &set, 0, nullptr);
+            if (frame.environment != nullptr) {
+                context_.vk.CmdBindDescriptorSets(*commands, point, layout_.get(), 1, 1, &sky_.set, 0,
+                                                  nullptr);
+            }
         }
         if (asked.apart) {
             batch.rayCount = 0;
@@ -172,6 +185,9 @@ public:
         batch.answers = answers_.address;
         batch.rayCount = rays_;
         batch.sky = frame.sky;
+        batch.environment = frame.environment;
+        batch.environmentRotation = frame.environmentRotation;
+        batch.environmentIntensity = frame.environmentIntensity;
         batch.sampleIndex = frame.sampleIndex;
         batch.seed = frame.seed;
         batch.tlas = loaded_.gpuScene().state().tlas.address;
@@ -199,12 +215,17 @@ private:
           hasSet_(loaded.package().bindings().tlas != package::Bindings::kByAddress ||
                   !loaded.package().scene(0).textures.empty()) {
         empty_ = must(createSetLayout(context_, {}));
+        const VkDescriptorSetLayoutBinding map{loaded.package().bindings().environment,
+                                               VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1, kStages,
+                                               nullptr};
+        skyLayout_ = must(createSetLayout(context_, {&map, 1}));
+        sky_ = must(createSet(context_, skyLayout_.get(), {&map, 1}, true));
         layout_ = makeLayout(16 + RaySteps::kPushBytes);
         answers_ = make(slots * answerBytes, MemoryUse::Readback);
     }
 
     UniquePipelineLayout makeLayout(std::uint32_t pushBytes) const {
-        const VkDescriptorSetLayout sets[] = {empty_.get(), empty_.get(),
+        const VkDescriptorSetLayout sets[] = {empty_.get(), skyLayout_.get(),
                                               loaded_.gpuScene().descriptorSetLayout()};
         return must(
             createPipelineLayout(context_, std::span(sets).first(hasSet_ ? 3 : 0), {kStages, 0, pushBytes}));
@@ -234,6 +255,8 @@ private:
     std::size_t slots_;
     bool hasSet_;
     UniqueSetLayout empty_;
+    UniqueSetLayout skyLayout_;
+    DescriptorSet sky_;
     UniquePipelineLayout layout_;
     std::unique_ptr<EngineScene> scene_;
     Buffer list_;
@@ -409,6 +432,72 @@ TEST(RaySteps, FollowPathsAsARendererDoes) {
                       "package-bounces");
         }
     }
+}
+
+// A room under the sky. Rays of a host bring all of the sky that they meet, those of a renderer's surfaces
+// only the share that samples leave; all else is the same.
+TEST(RaySteps, SampleTheSkyAsARendererDoes) {
+    const gltf::Scene scene = roomWithFence();
+    RenderSetup setup = defaultSetup(scene, 32, 18);
+    LinearImage image{8, 4, std::vector<std::array<float, 4>>(32, {0.2F, 0.3F, 0.5F, 1.0F})};
+    image.pixels[9] = {40.0F, 30.0F, 20.0F, 1.0F};
+    const auto map = must(Environment::create(sharedContext(), image, {.sampled = true}));
+    for (const std::uint32_t bounces : {1U, 3U}) {
+        if (bounces > 1) {
+            setup.frame.environment = map.get();
+            setup.frame.environmentRotation = 0.7F;
+            setup.frame.environmentIntensity = 0.5F;
+        }
+        const KnownRays chance = knownRays(scene, setup, bounces);
+        KnownRays known = knownRays(scene, setup, bounces, compiler::SkyLight::On);
+        ASSERT_GT(known.rays.size(), 50U);
+        std::size_t misses = 0;
+        for (const RaySteps::Ray& ray : known.rays) {
+            RaySteps::Radiance& answer = known.answers[ray.slot];
+            if (answer.path == 3.0F) {
+                answer = chance.answers[ray.slot];
+                ++misses;
+            }
+        }
+        EXPECT_GT(misses, 0U);
+        compiler::CompileSettings settings = stepSettings();
+        settings.maxBounces = bounces;
+        settings.skyLight = compiler::SkyLight::On;
+        settings.environmentMap = bounces > 1;
+        const LoadedScene loaded(scene, settings);
+        ASSERT_TRUE(loaded.package().skyLight());
+        Host host(loaded, known.rays, known.answers.size(), sizeof(RaySteps::Radiance));
+        for (const Way& way : ways()) {
+            if (way.strategy == package::kStrategyVisibility) {
+                continue;
+            }
+            SCOPED_TRACE(std::string(nameOf(way.strategy)) + ", " + std::string(nameOf(way.tracer)));
+            RaySteps::Options options;
+            options.strategy = way.strategy;
+            options.tracer = way.tracer;
+            const auto steps = host.makeSteps(options);
+            const auto answers = host.ask<RaySteps::Radiance>(*steps, setup.frame, {});
+            EXPECT_EQ(countFar(known, answers, 1e-4F), 0U);
+            EXPECT_GT(countFar(chance, answers, 1e-2F), known.rays.size() / 10)
+                << "samples make a difference";
+            if (bounces > 1) {
+                FrameOptions frame = setup.frame;
+                const auto unsampled = must(Environment::create(sharedContext(), image, {}));
+                frame.environment = unsampled.get();
+                EXPECT_EQ(mustFail(steps->begin(VK_NULL_HANDLE, host.batchOf(frame, {}))).id,
+                          "environment-unsampled");
+            }
+        }
+    }
+}
+
+// Steps that answer with surfaces send no shadow rays.
+TEST(RaySteps, SurfacesAreNotLitByTheSky) {
+    const gltf::Scene scene = emptyScene();
+    compiler::CompileSettings settings = stepSettings();
+    settings.skyLight = compiler::SkyLight::On;
+    settings.answer = package::HitAnswer::Surface;
+    EXPECT_EQ(mustFail(compiler::planPackage({&scene, 1}, settings)).id, "sky-light");
 }
 
 // A wall of a known material, and beside it an unlit one.

@@ -138,9 +138,9 @@ TEST_F(ReplacePackageScene, TheAlphaOfDecidedTrianglesStays) {
          }},
     };
     const gltf::Scene still = maskedRoom();
-    for (const OpacityUse use : {OpacityUse::Proved, OpacityUse::Tested}) {
+    for (const SceneView::OpacityUse use : {SceneView::OpacityUse::Proved, SceneView::OpacityUse::Tested}) {
         const auto scene = uploadScene(*original, still, [use](SceneView& view) { view.opacity = use; });
-        const bool isDecided = use == OpacityUse::Proved;
+        const bool isDecided = use == SceneView::OpacityUse::Proved;
         EXPECT_EQ(scene->statistics().provedOpaque, isDecided ? 2U : 0U);
         EXPECT_EQ(scene->statistics().provedTransparent, isDecided ? 2U : 0U);
         for (const Edit& edit : edits) {
@@ -237,7 +237,8 @@ public:
         const session::MaterialSourceData source = session::makeMaterialSource(
             *package_, session::recordLayoutOf(*package_, material.model()), present, material,
             session::uploadedTextures(editor(), package_->scene(0), present));
-        const Result<EditReport> set = editor().setMaterial(editor().material(number), source.view());
+        const Result<SceneEditor::Report> set =
+            editor().setMaterial(editor().material(number), source.view());
         EXPECT_TRUE(set) << toString(set.error());
     }
     void replacePackage(const std::shared_ptr<const Package>& package) {

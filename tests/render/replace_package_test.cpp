@@ -97,7 +97,7 @@ TEST_F(ReplacePackage, ThePictureIsThatOfTheOldPackageAndThenOfTheNewOne) {
         expectEqualImage(draw(*renderer), wanted, name + ", after");
         EXPECT_FALSE(renderer->replacementProgress().pending) << name;
         EXPECT_EQ(renderer->replacementProgress().inUse, 1U) << name;
-        const FrameCounters counters = must(renderer->counters());
+        const Renderer::Counters counters = must(renderer->counters());
         EXPECT_EQ(counters.unknownShader, 0U) << name;
     });
 }

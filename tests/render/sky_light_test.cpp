@@ -305,7 +305,7 @@ TEST(SkyLight, AMapHasToBeSampled) {
     const gltf::Scene scene = openBox();
     const LoadedScene loaded = load(scene, settingsOf({SkyLight::On, 1, true}));
     const LinearImage image{1, 1, {{1.0F, 1.0F, 1.0F, 1.0F}}};
-    const std::unique_ptr<Environment> map = must(Environment::create(sharedContext(), image));
+    const std::unique_ptr<Environment> map = must(Environment::create(sharedContext(), image, {}));
     EXPECT_FALSE(map->statistics().sampled);
     RendererOptions options;
     options.strategy = package::kStrategyUber;

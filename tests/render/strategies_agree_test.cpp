@@ -59,7 +59,7 @@ protected:
             plan.merge = merge;
             const LoadedScene loaded(scene, plan);
             for (const auto strategy : {package::kStrategyUber, package::kStrategyVisibility}) {
-                FrameCounters counters;
+                Renderer::Counters counters;
                 const LinearImage image = loaded.render(strategy, setup, &counters);
                 EXPECT_GT(counters.rays, 0U) << "nothing reflects: the scene tests no strategy";
                 if (reference.pixels.empty()) {

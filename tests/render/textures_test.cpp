@@ -341,14 +341,14 @@ TEST(TextureLevels, TheFinestLevelThatWasReadIsNoted) {
     const LoadedScene loaded(scene, settings);
     EXPECT_TRUE(loaded.package().textureLevels());
     for (const auto& [size, level] : {std::pair(32U, 1U), std::pair(16U, 2U), std::pair(8U, 3U)}) {
-        FrameCounters counters;
+        Renderer::Counters counters;
         const RenderSetup setup = defaultSetup(scene, size, size);
         for (const package::Strategy strategy : {package::kStrategyUber, package::kStrategyVisibility}) {
             loaded.render(strategy, setup, &counters);
             ASSERT_EQ(counters.textureLevels.size(), 3U);
             EXPECT_EQ(counters.textureLevels[0], level) << size;
             EXPECT_EQ(counters.textureLevels[1], level) << size;
-            EXPECT_EQ(counters.textureLevels[2], FrameCounters::kLevelNotRead) << size;
+            EXPECT_EQ(counters.textureLevels[2], Renderer::Counters::kLevelNotRead) << size;
         }
     }
 }
@@ -362,7 +362,7 @@ TEST(TextureLevels, WithoutTheSettingThereIsNeitherCodeNorCounter) {
     ASSERT_TRUE(withLevels.ok() && without.ok());
     const LoadedScene loaded(scene, settingsForDevice());
     EXPECT_FALSE(loaded.package().textureLevels());
-    FrameCounters counters;
+    Renderer::Counters counters;
     loaded.render(package::kStrategyUber, defaultSetup(scene, 8, 8), &counters);
     EXPECT_TRUE(counters.textureLevels.empty());
     const auto atomicsOf = [](const compiler::CompiledPackage& package) {

@@ -53,8 +53,8 @@ void expectOnePathEach(const TracedFrame& frame, const RenderSetup& setup) {
     const auto count = [&](Renderer::PixelPath path) {
         return static_cast<std::uint32_t>(std::ranges::count(frame.paths, path));
     };
-    const FrameCounters& counters = frame.counters;
-    const EffectCounters reflection = counters.of(package::kEffectReflection);
+    const Renderer::Counters& counters = frame.counters;
+    const Renderer::EffectCounters reflection = counters.of(package::kEffectReflection);
     const std::uint32_t skipped = reflection.skippedRough + reflection.skippedUnlit + reflection.skippedBlack;
     EXPECT_EQ(frame.paths.size(), std::size_t{setup.width} * setup.height);
     EXPECT_EQ(counters.rays + reflection.screenHits + skipped + reflection.skippedSky,

@@ -10,7 +10,7 @@ namespace glint::testing {
 
 struct TracedFrame {
     LinearImage image;
-    FrameCounters counters;                  // of the last sample, as all that follows
+    Renderer::Counters counters;             // of the last sample, as all that follows
     std::vector<Renderer::PixelPath> paths;  // of each pixel
     std::vector<gpu::RayRecord> rays;        // the list, as readRays() has it
 };

@@ -93,7 +93,7 @@ gltf::Scene stripes(bool shuffled) {
     return scene;
 }
 
-LinearImage render(const gltf::Scene& scene, TraversalOrder order) {
+LinearImage render(const gltf::Scene& scene, SceneView::TraversalOrder order) {
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
     settings.plan.keys.alpha = package::AlphaPolicy::Tested;
@@ -103,8 +103,8 @@ LinearImage render(const gltf::Scene& scene, TraversalOrder order) {
 }
 
 TEST(Traversal, PicturesDoNotShowTheOrder) {
-    const LinearImage input = render(stripes(false), TraversalOrder::Input);
-    EXPECT_EQ(render(stripes(true), TraversalOrder::Halving).pixels, input.pixels);
+    const LinearImage input = render(stripes(false), SceneView::TraversalOrder::Input);
+    EXPECT_EQ(render(stripes(true), SceneView::TraversalOrder::Halving).pixels, input.pixels);
     // A mirror that reflects sky and wall has more than a few colours.
     EXPECT_NE(input.pixels[2200], input.pixels[1100]);
 }
@@ -119,8 +119,9 @@ TEST(Traversal, TheDeviceHasTheTrianglesInOrder) {
     addCamera(scene);
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategyUber;
-    const LoadedScene loaded(
-        scene, settings, [](session::SceneViewData& data) { data.traversalOrder = TraversalOrder::Halving; });
+    const LoadedScene loaded(scene, settings, [](session::SceneViewData& data) {
+        data.traversalOrder = SceneView::TraversalOrder::Halving;
+    });
     const std::unique_ptr<HitKernel> kernel = must(HitKernel::create(scene, loaded, "hit_numbers.comp"));
     const std::size_t count = own.indices.size() / 3;
     std::vector<LeafBox> leaves(count);

@@ -117,7 +117,7 @@ struct Source {
         view.editable = kind == Kind::Editable;
         view.streamsTextures = kind == Kind::Streamed;
         view.firstTexels = 8;
-        view.vertices = VertexForm::Quantized;  // builds have an input of their own
+        view.vertices = SceneView::VertexForm::Quantized;  // builds have an input of their own
         return view;
     }
 
@@ -356,7 +356,7 @@ TEST(RecordedEnvironment, FramesShowWhatABlockingOneShows) {
     }
     const std::unique_ptr<Renderer> renderer = makeRenderer(source, source.loaded->gpuScene());
     FrameOptions frame = defaultSetup(source.scene, kSide, kSide).frame;
-    auto blocking = Environment::create(sharedContext(), map);
+    auto blocking = Environment::create(sharedContext(), map, {});
     ASSERT_TRUE(blocking.ok());
     frame.environment = blocking->get();
     const Result<LinearImage> expected = renderer->render(frame);

@@ -206,7 +206,7 @@ TEST(Views, FindHitsOfTheFallback) {
         loaded.package(), session::recordLayoutOf(loaded.package(), both.model()), scene, both,
         session::uploadedTextures(editor, loaded.package().scene(0), scene));
     const MaterialHandle added = must(editor.addMaterial(source.view()));
-    const EditReport set = must(editor.setInstanceMaterial(editor.instance(1), 0, added));
+    const SceneEditor::Report set = must(editor.setInstanceMaterial(editor.instance(1), 0, added));
     EXPECT_EQ(set.missing.size(), 1U);
     TwoFrames frames(sharedContext());
     must(editor.record(frames.begin(), frames.frame()));

@@ -192,7 +192,7 @@ std::string layersText(const Package& package) {
 
 base::Json layersToJson(const Package& package) {
     return listOf(package.layers(), [](const package::PackageLayer& layer) -> base::Json {
-        const package::LayerFormatInfo& format = package::infoOf(layer.info->format);
+        const package::LayerInfo::FormatInfo& format = package::infoOf(layer.info->format);
         return {{"name", layer.name},
                 {"channels", std::string(layer.info->channels)},
                 {"format", std::string(format.qualifier)},

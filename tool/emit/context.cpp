@@ -61,7 +61,7 @@ std::string commentText(std::string_view text) {
     return text.size() > kMaxNameLength ? line + "..." : line;
 }
 
-std::string ownLiteral(const package::OwnWords& own) {
+std::string ownLiteral(const package::KeyWords::Own& own) {
     return fmt::format("GLINT_OWN({:#x}u)", fmt::join(own.words, "u, "));
 }
 

@@ -42,7 +42,7 @@ kainjow::mustache::data makeContext(const gltf::SceneList& scenes, const Plan& p
                                     const PlanOptions& options);
 
 // Returns a value of the members of Features that hold own features of a model, as GLSL.
-std::string ownLiteral(const package::OwnWords& own);
+std::string ownLiteral(const package::KeyWords::Own& own);
 // Returns the first members of Features (shaders/bsdf/features.glsl), as GLSL.
 std::string caseFeatures(const package::KeyWords& always, const package::KeyWords& sometimes);
 

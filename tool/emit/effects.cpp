@@ -17,9 +17,7 @@ namespace glint::compiler {
 
 namespace mustache = kainjow::mustache;
 
-using package::LayerEntry;
 using package::LayerInfo;
-using package::LayerSubject;
 
 namespace {
 
@@ -39,29 +37,30 @@ std::string variableNamed(std::string_view layer) {
 }
 
 // The fields of one layer.
-mustache::data fieldsOf(const LayerEntry& entry, const Plan& plan) {
+mustache::data fieldsOf(const LayerInfo::Entry& entry, const Plan& plan) {
     const LayerInfo& info = infoOf(entry);
-    const package::LayerFormatInfo& format = package::infoOf(info.format);
+    const package::LayerInfo::FormatInfo& format = package::infoOf(info.format);
     const auto place = std::ranges::find(plan.layers, entry) - plan.layers.begin();
     const std::string variable = variableNamed(layerNameOf(entry, *plan.model));
-    return mustache::object{{"binding", fmt::format("kBindingLayers + {}u", place)},
-                            {"qualifier", std::string(format.qualifier)},
-                            {"image", info.format == package::LayerFormat::Integer ? "uimage2D" : "image2D"},
-                            {"value", variable},
-                            {"variable", variable + "Layer"},
-                            {"function", std::string(info.function)},
-                            {"absent", std::string(info.absent)},
-                            {"isMean", info.mean == package::LayerMean::Mean}};
+    return mustache::object{
+        {"binding", fmt::format("kBindingLayers + {}u", place)},
+        {"qualifier", std::string(format.qualifier)},
+        {"image", info.format == package::LayerInfo::Format::Integer ? "uimage2D" : "image2D"},
+        {"value", variable},
+        {"variable", variable + "Layer"},
+        {"function", std::string(info.function)},
+        {"absent", std::string(info.absent)},
+        {"isMean", info.mean == package::LayerInfo::Mean::Mean}};
 }
 
-const LayerEntry* findEntry(const Plan& plan, std::string_view layer, package::Effect effect,
-                            std::uint32_t bounce = 0) {
-    const LayerEntry entry{package::findLayer(layer)->number, effect, bounce};
+const LayerInfo::Entry* findEntry(const Plan& plan, std::string_view layer, package::Effect effect,
+                                  std::uint32_t bounce = 0) {
+    const LayerInfo::Entry entry{package::findLayer(layer)->number, effect, bounce};
     const auto found = std::ranges::find(plan.layers, entry);
     return found == plan.layers.end() ? nullptr : &*found;
 }
 
-std::string variableOf(const LayerEntry& entry, const Plan& plan) {
+std::string variableOf(const LayerInfo::Entry& entry, const Plan& plan) {
     return fieldsOf(entry, plan).get("variable")->string_value();
 }
 
@@ -72,14 +71,14 @@ std::string albedoVariable(const Plan& plan, package::Effect effect) {
 // The fields of the layers of light: of a source, or of one bounce of its paths; false if it has none.
 mustache::data lightFields(const Plan& plan, package::Effect effect, std::uint32_t bounce = 0) {
     const std::string prefix = bounce == 0 ? "" : "bounce-";
-    const LayerEntry* const radiance = findEntry(plan, prefix + "radiance", effect, bounce);
+    const LayerInfo::Entry* const radiance = findEntry(plan, prefix + "radiance", effect, bounce);
     if (radiance == nullptr) {
         return false;
     }
     mustache::data fields;
     fields.set("radiance", variableOf(*radiance, plan));
     for (const char* const name : {"demodulated", "variance"}) {
-        const LayerEntry* const entry = findEntry(plan, prefix + name, effect, bounce);
+        const LayerInfo::Entry* const entry = findEntry(plan, prefix + name, effect, bounce);
         fields.set(name,
                    entry == nullptr
                        ? mustache::data(false)
@@ -93,7 +92,7 @@ mustache::data lightFields(const Plan& plan, package::Effect effect, std::uint32
 // The fields of a layer alone; false if the package lacks it.
 mustache::data imageFields(const Plan& plan, std::string_view layer, package::Effect effect,
                            std::uint32_t bounce = 0) {
-    const LayerEntry* const found = findEntry(plan, layer, effect, bounce);
+    const LayerInfo::Entry* const found = findEntry(plan, layer, effect, bounce);
     if (found == nullptr) {
         return false;
     }
@@ -127,18 +126,18 @@ std::string layerDefines(const Plan& plan, bool deforms, bool findsSizedLights) 
     bool walks = false;
     bool groups = false;
     std::set<std::string_view> tallies;
-    for (const LayerEntry& entry : plan.layers) {
+    for (const LayerInfo::Entry& entry : plan.layers) {
         const LayerInfo& info = infoOf(entry);
         demands |= info.demands;
-        ofSurfaces = ofSurfaces || passOf(entry) == package::LayerPass::FirstHits;
-        ofEffects = ofEffects || passOf(entry) == package::LayerPass::Compose;
+        ofSurfaces = ofSurfaces || passOf(entry) == package::LayerInfo::Pass::FirstHits;
+        ofEffects = ofEffects || passOf(entry) == package::LayerInfo::Pass::Compose;
         groups = groups || (!info.tally.empty() && package::hasSources(info));
         tallies.insert(info.tally);
         bounces = std::max(bounces, entry.bounce);
         walks = walks || package::showsWalkedLight(entry, plan.effects.effects.walks);
     }
     tallies.erase("");
-    const bool history = (demands & package::kLayerHistory) != 0;
+    const bool history = (demands & package::LayerInfo::kHistory) != 0;
     const auto flag = [](bool value) { return value ? 1 : 0; };
     std::string text = fmt::format(
         "// Layers beside the picture\n"
@@ -156,8 +155,8 @@ std::string layerDefines(const Plan& plan, bool deforms, bool findsSizedLights) 
         "#define GLINT_LAYER_TEXTURE_LEVEL {}\n"
         "#define GLINT_TALLIES {}\n",
         flag(!plan.layers.empty()), flag(ofSurfaces), flag(ofEffects), flag(history),
-        flag(history && deforms), flag((demands & package::kLayerRays) != 0), bounces,
-        flag(walks && findsSizedLights), flag((demands & package::kLayerClock) != 0),
+        flag(history && deforms), flag((demands & package::LayerInfo::kRays) != 0), bounces,
+        flag(walks && findsSizedLights), flag((demands & package::LayerInfo::kClock) != 0),
         flag(findEntry(plan, "branches", 0) != nullptr), flag(groups),
         flag(findEntry(plan, "texture-level", 0) != nullptr), flag(!tallies.empty()));
     if (findEntry(plan, "texture-level", 0) != nullptr) {
@@ -170,7 +169,7 @@ std::string layerDefines(const Plan& plan, bool deforms, bool findsSizedLights) 
                                 package::hasSources(info) ? "target, value" : "amount");
         }
     }
-    if ((demands & package::kLayerClock) == 0) {
+    if ((demands & package::LayerInfo::kClock) == 0) {
         text += "#define GLINT_CLOCK_START\n#define GLINT_CLOCK_STOP\n";
     }
     return text;
@@ -183,7 +182,7 @@ void addTallies(mustache::data& context, const Plan& plan) {
     mustache::data tallies(mustache::data::type::list);
     mustache::data added(mustache::data::type::list);
     std::vector<std::pair<const LayerInfo*, mustache::data>> images;  // of each kind that samples have
-    for (const LayerEntry& entry : plan.layers) {
+    for (const LayerInfo::Entry& entry : plan.layers) {
         const LayerInfo& info = infoOf(entry);
         if (info.tally.empty()) {
             continue;
@@ -221,15 +220,15 @@ void addTallies(mustache::data& context, const Plan& plan) {
 void addLayers(mustache::data& context, const Plan& plan) {
     mustache::data ofFirstHits(mustache::data::type::list);
     mustache::data surface(mustache::data::type::list);
-    for (const LayerEntry& entry : plan.layers) {
-        if (passOf(entry) != package::LayerPass::FirstHits) {
+    for (const LayerInfo::Entry& entry : plan.layers) {
+        if (passOf(entry) != package::LayerInfo::Pass::FirstHits) {
             continue;
         }
         const LayerInfo& info = infoOf(entry);
         mustache::data fields = fieldsOf(entry, plan);
         fields.set("access", info.continues ? "" : "writeonly ");
         ofFirstHits.push_back(fields);
-        if (info.subject == LayerSubject::Surface) {
+        if (info.subject == LayerInfo::Subject::Surface) {
             surface.push_back(fields);
         }
     }
@@ -240,8 +239,8 @@ void addLayers(mustache::data& context, const Plan& plan) {
     // Those that compose writes, and the albedos that it reads.
     mustache::data effects(mustache::data::type::list);
     std::set<std::string> read;
-    for (const LayerEntry& entry : plan.layers) {
-        if (passOf(entry) != package::LayerPass::Compose) {
+    for (const LayerInfo::Entry& entry : plan.layers) {
+        if (passOf(entry) != package::LayerInfo::Pass::Compose) {
             continue;
         }
         const LayerInfo& info = infoOf(entry);
@@ -255,9 +254,10 @@ void addLayers(mustache::data& context, const Plan& plan) {
         }
     }
     addTallies(context, plan);
-    context.set("hasRayLayers", mustache::data(std::ranges::any_of(plan.layers, [](const LayerEntry& entry) {
-                    return infoOf(entry).subject == LayerSubject::Ray &&
-                           passOf(entry) == package::LayerPass::Compose;
+    context.set("hasRayLayers",
+                mustache::data(std::ranges::any_of(plan.layers, [](const LayerInfo::Entry& entry) {
+                    return infoOf(entry).subject == LayerInfo::Subject::Ray &&
+                           passOf(entry) == package::LayerInfo::Pass::Compose;
                 })));
     context.set("hasEffectLayers", mustache::data(effects.is_non_empty_list()));
     context.set("effectLayers", effects);

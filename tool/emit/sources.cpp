@@ -68,11 +68,11 @@ void defineFeatures(std::string& text, std::string_view prefix, const materials:
 
 // The dimensions of textures that declarations have beside 2D.
 std::string dimensionDefines(const materials::MaterialModel& model) {
-    using package::TextureDimension;
+    using package::TextureEntry;
     std::string text;
-    for (const auto& [name, dimension] : {std::pair("ARRAY", TextureDimension::Array),
-                                          {"CUBE", TextureDimension::Cube},
-                                          {"VOLUME", TextureDimension::Volume}}) {
+    for (const auto& [name, dimension] : {std::pair("ARRAY", TextureEntry::Dimension::Array),
+                                          {"CUBE", TextureEntry::Dimension::Cube},
+                                          {"VOLUME", TextureEntry::Dimension::Volume}}) {
         const bool has = std::ranges::find(model.textures, dimension,
                                            &materials::MaterialTexture::dimension) != model.textures.end();
         text += fmt::format("#define GLINT_{}_TEXTURES {}\n", name, has ? 1 : 0);

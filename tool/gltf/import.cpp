@@ -231,7 +231,7 @@ void fillRunTimeImages(const ImportOptions& options, Scene& scene) {
                 image.pixels = {128, 128, 255, 255};
             }
             image.dimension = material.model().textures[slot].dimension;
-            image.layers = image.dimension == package::TextureDimension::Cube ? 6 : 1;
+            image.layers = image.dimension == package::TextureEntry::Dimension::Cube ? 6 : 1;
             image.pixels.resize(4 * static_cast<std::size_t>(image.layers), 255);
         }
     }

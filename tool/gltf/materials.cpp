@@ -42,7 +42,8 @@ std::array<float, 2> pairAt(const Json& object, std::string_view name, std::arra
 // Reads the texture info of that name into the slot. If there is none, or none that can be used, the slot
 // stays as it is.
 Status readTexture(const ObjectSource& object, std::string_view member, TextureTable& textures,
-                   package::TextureDimension dimension, materials::TextureSlots& slots, std::size_t slot) {
+                   package::TextureEntry::Dimension dimension, materials::TextureSlots& slots,
+                   std::size_t slot) {
     const Json* json = find(object.json, member);
     if (json == nullptr) {
         return okStatus();
@@ -77,7 +78,7 @@ Status readTexture(const ObjectSource& object, std::string_view member, TextureT
     const Image& image = textures.imageOf(texture);
     const bool isRead = !image.isAtRunTime && image.width > 0;
     if (isRead && image.dimension != dimension) {
-        const auto nameOf = [](package::TextureDimension one) {
+        const auto nameOf = [](package::TextureEntry::Dimension one) {
             return namesOf(one)[static_cast<std::size_t>(one)].what;
         };
         return object.document.error(

@@ -176,7 +176,7 @@ struct ImageShape {
     int width = 0;
     int height = 0;
     int levels = 1;
-    package::TextureDimension dimension = package::TextureDimension::Flat;
+    package::TextureEntry::Dimension dimension = package::TextureEntry::Dimension::Flat;
     // The layers of an array, the faces +X, -X, +Y, -Y, +Z and -Z of a cube, or the slices of a 3D image,
     // whose number halves from level to level. They follow one another within a level.
     int layers = 1;
@@ -185,7 +185,7 @@ struct ImageShape {
 };
 
 constexpr bool isVolume(const ImageShape& shape) {
-    return shape.dimension == package::TextureDimension::Volume;
+    return shape.dimension == package::TextureEntry::Dimension::Volume;
 }
 
 constexpr int sizeOfLevel(int size, int level) {

@@ -34,17 +34,18 @@ constexpr FactInfo kFacts[] = {
 // The statistics of an executable by name.
 class Statistics {
 public:
-    explicit Statistics(const PipelineStatistics::Executable& executable) : executable_(executable) {}
+    explicit Statistics(const Renderer::PipelineStatistics::Executable& executable)
+        : executable_(executable) {}
 
     std::optional<double> operator()(std::string_view name) const {
         const auto found =
-            std::ranges::find(executable_.statistics, name, &PipelineStatistics::Statistic::name);
+            std::ranges::find(executable_.statistics, name, &Renderer::PipelineStatistics::Statistic::name);
         return found == executable_.statistics.end() ? std::nullopt : std::optional(number(*found));
     }
     // Returns the sum of the statistics whose names have one of these words, whatever their case.
     std::optional<double> withWord(std::initializer_list<std::string_view> words) const {
         std::optional<double> sum;
-        for (const PipelineStatistics::Statistic& statistic : executable_.statistics) {
+        for (const Renderer::PipelineStatistics::Statistic& statistic : executable_.statistics) {
             std::string name = statistic.name;
             std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
             const bool fits = std::ranges::any_of(
@@ -57,11 +58,11 @@ public:
     }
 
 private:
-    static double number(const PipelineStatistics::Statistic& statistic) {
+    static double number(const Renderer::PipelineStatistics::Statistic& statistic) {
         return std::visit([](auto value) { return static_cast<double>(value); }, statistic.value);
     }
 
-    const PipelineStatistics::Executable& executable_;
+    const Renderer::PipelineStatistics::Executable& executable_;
 };
 
 std::optional<double> scaled(std::optional<double> value, double factor) {
@@ -70,7 +71,7 @@ std::optional<double> scaled(std::optional<double> value, double factor) {
 
 constexpr double kLanes = 64.0;  // the lanes of PipelineFacts::cost
 
-double widthOf(const PipelineStatistics::Executable& executable) {
+double widthOf(const Renderer::PipelineStatistics::Executable& executable) {
     return executable.subgroupSize > 0 ? executable.subgroupSize : kLanes;
 }
 
@@ -167,7 +168,7 @@ std::span<const FactInfo> factTable() {
     return kFacts;
 }
 
-PipelineFacts factsOf(const PipelineStatistics::Executable& executable) {
+PipelineFacts factsOf(const Renderer::PipelineStatistics::Executable& executable) {
     const Statistics named(executable);
     if (named("Subgroups per SIMD")) {
         return radvFacts(named, widthOf(executable));
@@ -181,9 +182,9 @@ PipelineFacts factsOf(const PipelineStatistics::Executable& executable) {
     return otherFacts(named);
 }
 
-PipelineFacts factsOf(std::span<const PipelineStatistics::Executable> executables) {
+PipelineFacts factsOf(std::span<const Renderer::PipelineStatistics::Executable> executables) {
     PipelineFacts all;
-    for (const PipelineStatistics::Executable& executable : executables) {
+    for (const Renderer::PipelineStatistics::Executable& executable : executables) {
         const PipelineFacts facts = factsOf(executable);
         merge(all.registers, facts.registers, kLargest);
         merge(all.spills, facts.spills, kSum);
@@ -236,7 +237,7 @@ ReportedPipeline reportOf(const InspectedPackage& inspected, PackagePipeline pip
     reported.failure = pipeline.failure ? pipeline.failure->message : std::string();
     reported.executables = std::move(pipeline.statistics.executables);
     reported.facts = factsOf(reported.executables);
-    for (const PipelineStatistics::Executable& executable : reported.executables) {
+    for (const Renderer::PipelineStatistics::Executable& executable : reported.executables) {
         reported.subgroupSize = std::max(reported.subgroupSize, executable.subgroupSize);
     }
     return reported;
@@ -246,7 +247,7 @@ ReportedPipeline reportOf(const InspectedPackage& inspected, PackagePipeline pip
 
 void requirePackage(const Package& package, HeadlessOptions& options) {
     options.positionFetch = package.positionFetch();
-    options.shaderClock = (package::demandsOf(package.layers()) & package::kLayerClock) != 0;
+    options.shaderClock = (package::demandsOf(package.layers()) & package::LayerInfo::kClock) != 0;
     options.shaderFloat16 = package.precision() == package::ShadingPrecision::Half;
 }
 
@@ -339,11 +340,12 @@ void sortPipelines(PipelineReport& report, const FactInfo* fact) {
 
 namespace {
 
-// The names match the alternatives of PipelineStatistics::Statistic::value.
+// The names match the alternatives of Renderer::PipelineStatistics::Statistic::value.
 constexpr std::array<std::string_view, 4> kFormats{"bool", "int64", "uint64", "float64"};
-static_assert(kFormats.size() == std::variant_size_v<decltype(PipelineStatistics::Statistic::value)>);
+static_assert(kFormats.size() ==
+              std::variant_size_v<decltype(Renderer::PipelineStatistics::Statistic::value)>);
 
-std::vector<std::string_view> stagesOf(const PipelineStatistics::Executable& executable) {
+std::vector<std::string_view> stagesOf(const Renderer::PipelineStatistics::Executable& executable) {
     constexpr std::pair<VkShaderStageFlagBits, const char*> kNames[] = {
         {VK_SHADER_STAGE_VERTEX_BIT, "vertex"},       {VK_SHADER_STAGE_FRAGMENT_BIT, "fragment"},
         {VK_SHADER_STAGE_COMPUTE_BIT, "compute"},     {VK_SHADER_STAGE_RAYGEN_BIT_KHR, "ray-generation"},
@@ -360,7 +362,7 @@ std::vector<std::string_view> stagesOf(const PipelineStatistics::Executable& exe
 
 }  // namespace
 
-std::string textOf(const PipelineStatistics::Statistic& statistic) {
+std::string textOf(const Renderer::PipelineStatistics::Statistic& statistic) {
     return std::visit([](auto value) { return fmt::format("{}", value); }, statistic.value);
 }
 
@@ -372,8 +374,8 @@ namespace glint {
 using base::field;
 using base::output;
 
-static base::Fields fieldsOf(const PipelineStatistics::Statistic*) {
-    using T = PipelineStatistics::Statistic;
+static base::Fields fieldsOf(const Renderer::PipelineStatistics::Statistic*) {
+    using T = Renderer::PipelineStatistics::Statistic;
     return {output<&T::name>("name", "Name that the driver gives."),
             output<&T::description>("description", "Description that the driver gives."),
             output("format", "Format of the value.",
@@ -382,8 +384,8 @@ static base::Fields fieldsOf(const PipelineStatistics::Statistic*) {
             output<&T::value>("value", "The value, in this format.")};
 }
 
-static base::Fields fieldsOf(const PipelineStatistics::Executable*) {
-    using T = PipelineStatistics::Executable;
+static base::Fields fieldsOf(const Renderer::PipelineStatistics::Executable*) {
+    using T = Renderer::PipelineStatistics::Executable;
     return {output<&T::name>("name", "Name that the driver gives."),
             output<&T::description>("description", "Description that the driver gives."),
             output<inspect::stagesOf>("stages", "Stages of the pipeline."),
@@ -391,8 +393,8 @@ static base::Fields fieldsOf(const PipelineStatistics::Executable*) {
             output<&T::statistics>("statistics", "The driver's statistics, under its names.")};
 }
 
-base::Fields fieldsOf(const PipelineStatistics*) {
-    using T = PipelineStatistics;
+base::Fields fieldsOf(const Renderer::PipelineStatistics*) {
+    using T = Renderer::PipelineStatistics;
     return {output<&T::name>("name", "The role of its module, and its case, effect or ordering."),
             output<&T::creationMs>("creationMs", "Time by the driver's clock; null if it does not say."),
             output<&T::cacheHit>("cacheHit", "Whether it was cached; null if the driver does not say."),

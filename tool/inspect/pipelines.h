@@ -24,7 +24,7 @@
 
 namespace glint {
 
-base::Fields fieldsOf(const PipelineStatistics*);
+base::Fields fieldsOf(const Renderer::PipelineStatistics*);
 
 }  // namespace glint
 
@@ -58,10 +58,10 @@ struct FactInfo {
 std::span<const FactInfo> factTable();
 
 // Returns the facts about one executable.
-PipelineFacts factsOf(const PipelineStatistics::Executable& executable);
+PipelineFacts factsOf(const Renderer::PipelineStatistics::Executable& executable);
 // Returns the facts of all executables of a pipeline: the most registers, scratch memory and cost, the least
 // occupancy, and the sum of spills and code.
-PipelineFacts factsOf(std::span<const PipelineStatistics::Executable> executables);
+PipelineFacts factsOf(std::span<const Renderer::PipelineStatistics::Executable> executables);
 
 // A module that a pipeline was made for.
 struct ReportedModule {
@@ -83,7 +83,7 @@ struct ReportedPipeline {
     std::optional<double> creationMs;
     std::string failure;  // why the driver did not make it; empty: it did
     PipelineFacts facts;
-    std::vector<PipelineStatistics::Executable> executables;  // not read from files
+    std::vector<Renderer::PipelineStatistics::Executable> executables;  // not read from files
 };
 
 struct PipelineReport {
@@ -122,7 +122,7 @@ Result<compiler::GpuCosts> readGpuCosts(const std::string& nameOrFile);
 void sortPipelines(PipelineReport& report, const FactInfo* fact);
 
 base::Fields fieldsOf(const PipelineReport*);
-std::string textOf(const PipelineStatistics::Statistic& statistic);
+std::string textOf(const Renderer::PipelineStatistics::Statistic& statistic);
 
 // Reads the JSON of a report. Errors: those of readFile(), "pipeline-report" (not such a file).
 Result<PipelineReport> readPipelineReport(const std::filesystem::path& file);

@@ -453,13 +453,13 @@ TextureReads ModelBuilder::readsOfTexture(const Members& members) {
 
 // Glint makes levels and chooses formats of flat textures alone. A direction and a place in space are no UVs.
 void ModelBuilder::readDimension(const Members& members, MaterialTexture& texture, Feature& feature) {
-    using package::TextureDimension;
+    using package::TextureEntry;
     const std::string name = members.text("dimension", "2d");
     texture.dimension = choose(package::kTextureDimensionNames, members, "dimension", name).value;
-    if (texture.dimension == TextureDimension::Flat) {
+    if (texture.dimension == TextureEntry::Dimension::Flat) {
         return;
     }
-    const bool takesUvs = texture.dimension == TextureDimension::Array;
+    const bool takesUvs = texture.dimension == TextureEntry::Dimension::Array;
     for (const char* const member : {"reads", "roughness", "coordinates"}) {
         const bool isOfCoordinates = std::string_view(member) == "coordinates";
         if (members.has(member) && !(isOfCoordinates && takesUvs)) {

@@ -27,7 +27,7 @@ void numberEffects(std::vector<EffectDeclaration>& effects);
 
 namespace {
 
-using package::EffectKind;
+using package::EffectInfo;
 
 constexpr std::string_view kMembers[] = {"$schema", "name",         "about",   "kind",     "order",
                                          "glsl",    "calledFor",    "refines", "settings", "coherence",
@@ -35,8 +35,10 @@ constexpr std::string_view kMembers[] = {"$schema", "name",         "about",   "
 
 constexpr struct {
     std::string_view name;
-    EffectKind kind;
-} kKinds[] = {{"light", EffectKind::Light}, {"surface", EffectKind::Surface}, {"rays", EffectKind::Rays}};
+    EffectInfo::Kind kind;
+} kKinds[] = {{"light", EffectInfo::Kind::Light},
+              {"surface", EffectInfo::Kind::Surface},
+              {"rays", EffectInfo::Kind::Rays}};
 
 constexpr struct {
     std::string_view name;
@@ -53,12 +55,12 @@ constexpr std::string_view kShown[] = {"mirrored", "refracted"};
 
 // Reads a member that only effects with rays have, and whose value is one of the words.
 std::string readWord(const Members& members, std::string_view name, std::span<const std::string_view> words,
-                     EffectKind kind) {
+                     EffectInfo::Kind kind) {
     if (!members.has(name)) {
         return {};
     }
     std::string word = members.text(name);
-    if (kind != EffectKind::Rays) {
+    if (kind != EffectInfo::Kind::Rays) {
         failAt(members.at(name), "only an effect of the kind rays can have it");
     }
     if (std::ranges::find(words, word) == words.end()) {
@@ -71,17 +73,17 @@ std::string readWord(const Members& members, std::string_view name, std::span<co
 constexpr struct {
     std::string_view name;
     std::string EffectDeclaration::*file;
-    EffectKind kind;
+    EffectInfo::Kind kind;
     bool isNeeded;
     std::string_view extension;
 } kFiles[] = {
-    {"light", &EffectDeclaration::light, EffectKind::Light, true, ".glsl"},
-    {"apply", &EffectDeclaration::apply, EffectKind::Surface, true, ".glsl"},
-    {"sample", &EffectDeclaration::sample, EffectKind::Rays, true, ".glsl"},
-    {"compose", &EffectDeclaration::compose, EffectKind::Rays, false, ".glsl"},
-    {"start", &EffectDeclaration::start, EffectKind::Rays, false, ".glsl"},
-    {"walk", &EffectDeclaration::walk, EffectKind::Rays, false, ".comp"},
-    {"hit", &EffectDeclaration::hit, EffectKind::Rays, false, ".glsl"},
+    {"light", &EffectDeclaration::light, EffectInfo::Kind::Light, true, ".glsl"},
+    {"apply", &EffectDeclaration::apply, EffectInfo::Kind::Surface, true, ".glsl"},
+    {"sample", &EffectDeclaration::sample, EffectInfo::Kind::Rays, true, ".glsl"},
+    {"compose", &EffectDeclaration::compose, EffectInfo::Kind::Rays, false, ".glsl"},
+    {"start", &EffectDeclaration::start, EffectInfo::Kind::Rays, false, ".glsl"},
+    {"walk", &EffectDeclaration::walk, EffectInfo::Kind::Rays, false, ".comp"},
+    {"hit", &EffectDeclaration::hit, EffectInfo::Kind::Rays, false, ".glsl"},
 };
 
 void readFiles(const Members& declaration, std::string_view file, EffectDeclaration& effect) {
@@ -172,7 +174,7 @@ EffectDeclaration readEffect(const Members& members, std::string_view file, bool
         failAt(members.where(), "\"absent\" stands where \"settings\" are, and there alone");
     }
     effect.sharesLights = members.flag("sharesLights", false);
-    if (effect.sharesLights && effect.kind != EffectKind::Rays) {
+    if (effect.sharesLights && effect.kind != EffectInfo::Kind::Rays) {
         failAt(members.at("sharesLights"), "only an effect of the kind rays can share light");
     }
     effect.albedo = readWord(members, "albedo", kAlbedos, effect.kind);
@@ -199,7 +201,7 @@ void numberEffects(std::vector<EffectDeclaration>& effects) {
             failAt(where, fmt::format("--effects has another meaning for \"{}\"", effect.name));
         }
         // The passes that light surfaces have room for one such effect.
-        if (effect.kind == EffectKind::Light && std::exchange(hasLight, true)) {
+        if (effect.kind == EffectInfo::Kind::Light && std::exchange(hasLight, true)) {
             failAt(effect.declaration + "#/kind",
                    "there can be one effect of the kind light; Glint has shadow");
         }

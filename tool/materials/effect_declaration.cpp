@@ -7,7 +7,7 @@ namespace glint::materials {
 
 namespace {
 
-using package::EffectKind;
+using package::EffectInfo;
 
 // Calls `add` with each letter of a name, and whether a word begins with it.
 template <typename Add>
@@ -54,7 +54,7 @@ std::uint32_t EffectDeclaration::abilities() const {
 }
 
 const std::string& EffectDeclaration::main() const {
-    return kind == EffectKind::Light ? light : kind == EffectKind::Surface ? apply : sample;
+    return kind == EffectInfo::Kind::Light ? light : kind == EffectInfo::Kind::Surface ? apply : sample;
 }
 
 std::vector<const std::string*> EffectDeclaration::files() const {

@@ -241,7 +241,7 @@ std::string lostInput(const Material& material, const PrimitiveInputs& primitive
 const TextureContent& contentOf(const Material& material, const PrimitiveInputs& primitive, int texture) {
     static const TextureContent anything{.of = {kAnything, kAnything, kAnything, kAnything}};
     if (material.model().textures[static_cast<std::size_t>(texture)].dimension !=
-        package::TextureDimension::Flat) {
+        package::TextureEntry::Dimension::Flat) {
         return anything;
     }
     const auto seen = std::ranges::find(primitive.seen, texture, &SeenTexture::slot);

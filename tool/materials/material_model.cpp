@@ -405,9 +405,9 @@ std::pair<package::KeyWords, package::KeyWords> MaterialModel::caseWords(const F
     const bool isKnown = any == 0 || (any != gpu::kAnyModel && (always & bases) != 0 &&
                                       maskOf({0, 0, any}) == (maskOf({0, 0, any}) & always));
     least.model = isKnown ? any : gpu::kAnyModel;
-    least.own = isKnown ? least.own : package::OwnWords{};
+    least.own = isKnown ? least.own : package::KeyWords::Own{};
     some.model = least.model;
-    some.own = isKnown ? some.own : package::OwnWords::all();
+    some.own = isKnown ? some.own : package::KeyWords::Own::all();
     return {least, some};
 }
 

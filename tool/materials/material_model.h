@@ -46,7 +46,7 @@ struct EffectDeclaration {
     std::string name;         // "ambient-occlusion"
     std::string declaration;  // its file
     std::string about;        // a sentence
-    package::EffectKind kind = package::EffectKind::Rays;
+    package::EffectInfo::Kind kind = package::EffectInfo::Kind::Rays;
     double order = 0.0;
     bool isOfPack = false;
     EffectCall call;
@@ -179,7 +179,7 @@ std::string toHex(const FeatureMask& mask);
 inline const FeatureMask kAllFeatures = ~FeatureMask();
 inline constexpr int kFirstInput = 32;
 inline constexpr int kFirstOfModels = 64;
-inline constexpr int kOwnFeatures = package::OwnWords::kBits;  // of a model, at most
+inline constexpr int kOwnFeatures = package::KeyWords::Own::kBits;  // of a model, at most
 
 // The stage at which a feature's GLSL runs.
 enum class Stage : std::uint8_t {
@@ -296,7 +296,7 @@ struct MaterialTexture {
     std::string name;  // unique in all declarations: "clearcoatTexture"
     int feature = 0;   // index into MaterialModel::features
     package::Role role = package::Role::None;
-    package::TextureDimension dimension = package::TextureDimension::Flat;
+    package::TextureEntry::Dimension dimension = package::TextureEntry::Dimension::Flat;
     struct Place {
         int object = 0;
         std::string member;
@@ -547,7 +547,7 @@ public:
     // program alone, in any format.
     ValueInterval anyTexel(int texture) const {
         const bool isFlat =
-            textures[static_cast<std::size_t>(texture)].dimension == package::TextureDimension::Flat;
+            textures[static_cast<std::size_t>(texture)].dimension == package::TextureEntry::Dimension::Flat;
         return isFlat ? kUnitInterval : kAnything;
     }
     // Returns the base of the model of a pack whose feature this is, as an index into `features`.

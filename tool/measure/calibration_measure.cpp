@@ -255,8 +255,8 @@ private:
     }
 
     // Any strategy gives the number of hits; a strategy that counts hits by case also gives the shares.
-    void countHits(const FrameCounters& counters) {
-        const EffectCounters effect = counters.of(scene_.effect);
+    void countHits(const Renderer::Counters& counters) {
+        const Renderer::EffectCounters effect = counters.of(scene_.effect);
         CalibrationPoint& point = entry_.point;
         point.rays = effect.rays;
         point.hitShare = effect.rays > 0 ? static_cast<double>(effect.hits) / effect.rays : 0.0;

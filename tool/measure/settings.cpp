@@ -24,7 +24,7 @@ namespace {
 std::string rayEffects(const compiler::EffectRequest& request) {
     std::string words = "auto";
     for (const materials::EffectDeclaration& effect : materials::builtinMaterialModel().effects) {
-        if (effect.kind == package::EffectKind::Rays && !effect.refines.empty()) {
+        if (effect.kind == package::EffectInfo::Kind::Rays && !effect.refines.empty()) {
             words += "," + effect.name;
         }
     }

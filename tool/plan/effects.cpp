@@ -214,7 +214,7 @@ std::string sampledModel(std::span<const Surface> surfaces) {
         const materials::MaterialModel& model = surface.material->model();
         const auto sender =
             std::ranges::find_if(model.effects, [](const materials::EffectDeclaration& effect) {
-                return effect.kind == package::EffectKind::Rays && !effect.call.byAll &&
+                return effect.kind == package::EffectInfo::Kind::Rays && !effect.call.byAll &&
                        effect.call.behaviour == materials::Behaviour::Scatters;
             });
         const SurfaceBehaviour behaviour(surface);
@@ -277,7 +277,7 @@ bool sendsRays(const materials::EffectDeclaration& effect, const materials::Mate
     const Surface alone[] = {{&material, &primitive}};
     EffectRequest request;
     request.maxReflectionRoughness = maxReflectionRoughness;
-    return effect.kind == package::EffectKind::Rays && find(effect, alone, {}, request).usable;
+    return effect.kind == package::EffectInfo::Kind::Rays && find(effect, alone, {}, request).usable;
 }
 
 bool isEmitter(const materials::Material& material, const materials::PrimitiveInputs& primitive) {

@@ -146,7 +146,7 @@ std::vector<Round> frameRounds(std::span<const materials::Material> materials,
     for (std::size_t number = 0; number < model.effects.size(); ++number) {
         const materials::EffectDeclaration& effect = model.effects[number];
         if ((shape.effects & infoOf(effect, number).effect) == 0 ||
-            effect.kind != package::EffectKind::Rays) {
+            effect.kind != package::EffectInfo::Kind::Rays) {
             continue;
         }
         Round round{0.0, kRayHitShare, 0.0, 0.0, {}};

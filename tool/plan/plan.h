@@ -104,9 +104,9 @@ struct Plan {
     materials::FeatureMask primaryAlways = 0;
     materials::FeatureMask primarySometimes = 0;
     std::vector<RecordUse> records{{{-1}, 0, false}};  // of all materials of primitives; never empty
-    double keysPossible = 0.0;                  // 2^n, where n is the number of features that occur in keys
-    EffectPlan effects;                         // resolve() fills this in, and the next two.
-    std::vector<package::LayerEntry> layers{};  // by the index of their images
+    double keysPossible = 0.0;  // 2^n, where n is the number of features that occur in keys
+    EffectPlan effects;         // resolve() fills this in, and the next two.
+    std::vector<package::LayerInfo::Entry> layers{};  // by the index of their images
     EmitterFeatures emitters{};
 };
 

@@ -91,10 +91,9 @@ public:
                   decide(settings_.emissiveLights, [&] { return emits(); },
                          replaces(isOfSteps() ? kEmitterFilesOfSteps : std::span(kEmitterFiles)),
                          {"emissive-lights", "", "the lights or the geometry"}));
-        GLINT_TRY(
-            plan_.sky,
-            decide(settings_.skyLight, [&] { return settings_.skyLight == SkyLight::On || scatters(); },
-                   isOfSteps() || replaces(kSkyFiles), {"sky-light", " and a sky", "the lights or the sky"}));
+        GLINT_TRY(plan_.sky,
+                  decide(settings_.skyLight, [&] { return settings_.skyLight == SkyLight::On || scatters(); },
+                         replaces(kSkyFiles), {"sky-light", " and a sky", "the lights or the sky"}));
         GLINT_TRY(plan_.sized,
                   decide(settings_.sizedLights,
                          [&] { return settings_.sizedLights == SizedLights::On || settings_.sizesLights; },
@@ -183,14 +182,18 @@ private:
         if (asked == Choice::Off || (!isOn && isAutoOff) || !isUseful()) {
             return Choice::Off;
         }
-        const std::string why = ofHost                     ? fmt::format("{} are the host's", wording.ofHost)
+        const bool isUnlit = isOfSteps() && settings_.answer == package::HitAnswer::Surface;
+        const std::string why = ofHost    ? fmt::format("{} are the host's", wording.ofHost)
+                                : isUnlit ? "hits answer with surfaces, which the host lights"
                                 : lit_.effects.lights == 0 ? "the package has no effect shadow"
                                                            : "";
         if (isOn && !why.empty()) {
-            return makeError(std::string(wording.option), "",
-                             fmt::format("--{} needs shadow rays{} of Glint's own: {}", wording.option,
-                                         wording.needs, why),
-                             fmt::format("add the effect shadow, or leave out --{}", wording.option));
+            return makeError(
+                std::string(wording.option), "",
+                fmt::format("--{} needs shadow rays{} of Glint's own: {}", wording.option, wording.needs,
+                            why),
+                fmt::format("{}, or leave out --{}",
+                            isUnlit ? "use --answer radiance" : "add the effect shadow", wording.option));
         }
         return why.empty() ? Choice::On : Choice::Off;
     }
@@ -297,7 +300,7 @@ std::size_t mostShadowRays(const gltf::SceneList& scenes, const CompileSettings&
 
 Result<FirstShadowPlan> planFirstShadows(const gltf::SceneList& scenes, const Plan& plan,
                                          const CompileSettings& compile, bool chooses) {
-    const bool showsLight = std::ranges::any_of(plan.layers, [](const package::LayerEntry& entry) {
+    const bool showsLight = std::ranges::any_of(plan.layers, [](const package::LayerInfo::Entry& entry) {
         return entry.effect == 0 && entry.layer == package::findLayer("radiance")->number;
     });
     const package::EffectSet& effects = plan.effects.effects;
@@ -376,11 +379,9 @@ package::ShadowThrough shadowThroughOf(const gltf::SceneList& scenes, const Plan
 
 // --- Layers ---
 
-using package::LayerEntry;
 using package::LayerInfo;
-using package::LayerSubject;
 
-const LayerInfo& infoOf(const LayerEntry& entry) {
+const LayerInfo& infoOf(const LayerInfo::Entry& entry) {
     return *package::findLayer(entry.layer);
 }
 
@@ -405,15 +406,16 @@ constexpr std::string_view kEveryLayer = "all";
 constexpr std::string_view kSurfaceLayers = "surface";
 
 // The images of a layer that the package may have. `bounces` have layers of their own.
-std::vector<LayerEntry> entriesOf(const LayerInfo& info, const Plan& plan, std::uint32_t bounces) {
-    std::vector<LayerEntry> entries;
-    if (!package::hasSources(info) || info.subject == LayerSubject::Light) {
+std::vector<LayerInfo::Entry> entriesOf(const LayerInfo& info, const Plan& plan, std::uint32_t bounces) {
+    std::vector<LayerInfo::Entry> entries;
+    if (!package::hasSources(info) || info.subject == LayerInfo::Subject::Light) {
         entries.push_back({info.number, 0, 0});
     }
     package::forEachEffect(plan.effects.effects.rays, [&](std::uint32_t number) {
         const package::Effect effect = 1U << number;
-        const bool moves = info.subject == LayerSubject::Ray && (info.demands & package::kLayerHistory) != 0;
-        if (info.subject == LayerSubject::Bounce) {
+        const bool moves =
+            info.subject == LayerInfo::Subject::Ray && (info.demands & package::LayerInfo::kHistory) != 0;
+        if (info.subject == LayerInfo::Subject::Bounce) {
             for (std::uint32_t bounce = 1; bounce <= bounces; ++bounce) {
                 entries.push_back({info.number, effect, bounce});
             }
@@ -435,7 +437,7 @@ std::uint32_t layerBouncesOf(const Plan& plan, const CompileSettings& settings) 
 std::vector<const LayerInfo*> layersNamed(std::string_view word) {
     std::vector<const LayerInfo*> named;
     for (const LayerInfo& info : package::layerTable()) {
-        const bool isSurface = info.subject == LayerSubject::Surface;
+        const bool isSurface = info.subject == LayerInfo::Subject::Surface;
         const bool inGroup =
             !info.isDiagnostic && (word == kEveryLayer || (word == kSurfaceLayers && isSurface));
         if (inGroup || word == info.name) {
@@ -447,7 +449,7 @@ std::vector<const LayerInfo*> layersNamed(std::string_view word) {
 
 // Resolves "reflection.radiance", or "reflection" for all layers of the effect.
 Status addOfSource(std::string_view word, const Plan& plan, std::uint32_t bounces, const std::string& where,
-                   std::vector<LayerEntry>& entries) {
+                   std::vector<LayerInfo::Entry>& entries) {
     const std::size_t dot = std::min(word.find('.'), word.size());
     const std::string source(word.substr(0, dot));
     const std::string_view layer = word.substr(std::min(dot + 1, word.size()));
@@ -472,7 +474,7 @@ Status addOfSource(std::string_view word, const Plan& plan, std::uint32_t bounce
         if (!wanted || !package::hasSources(info)) {
             continue;
         }
-        for (const LayerEntry& entry : entriesOf(info, plan, bounces)) {
+        for (const LayerInfo::Entry& entry : entriesOf(info, plan, bounces)) {
             if (entry.effect == effect) {
                 entries.push_back(entry);
             }
@@ -487,9 +489,9 @@ Status addOfSource(std::string_view word, const Plan& plan, std::uint32_t bounce
 }
 
 // Adds what others are computed from.
-void addNeeded(const Plan& plan, std::vector<LayerEntry>& entries) {
+void addNeeded(const Plan& plan, std::vector<LayerInfo::Entry>& entries) {
     for (std::size_t i = 0; i < entries.size(); ++i) {
-        const LayerEntry entry = entries[i];
+        const LayerInfo::Entry entry = entries[i];
         const LayerInfo& info = infoOf(entry);
         if (!info.from.empty()) {
             entries.push_back({package::findLayer(info.from)->number, entry.effect, entry.bounce});
@@ -498,7 +500,7 @@ void addNeeded(const Plan& plan, std::vector<LayerEntry>& entries) {
             entries.push_back({albedoOf(entry.effect, *plan.model).number, 0, 0});
         }
     }
-    const auto place = [](const LayerEntry& entry) {
+    const auto place = [](const LayerInfo::Entry& entry) {
         const auto row = std::ranges::find(package::layerTable(), entry.layer, &LayerInfo::number);
         return std::tuple(row - package::layerTable().begin(), entry.effect, entry.bounce);
     };
@@ -508,9 +510,9 @@ void addNeeded(const Plan& plan, std::vector<LayerEntry>& entries) {
 
 }  // namespace
 
-Result<std::vector<LayerEntry>> resolveLayers(const Plan& plan, const CompileSettings& settings,
-                                              const std::string& where) {
-    std::vector<LayerEntry> entries;
+Result<std::vector<LayerInfo::Entry>> resolveLayers(const Plan& plan, const CompileSettings& settings,
+                                                    const std::string& where) {
+    std::vector<LayerInfo::Entry> entries;
     const std::uint32_t bounces = layerBouncesOf(plan, settings);
     for (const std::string& asked : settings.layers) {
         const bool isOptional = asked.ends_with(kOptionalLayer);
@@ -525,7 +527,7 @@ Result<std::vector<LayerEntry>> resolveLayers(const Plan& plan, const CompileSet
         } else if (entries.size() == before && !isOptional) {
             return makeError("layer-effect", where,
                              fmt::format("nothing in the package has the layer {}", word),
-                             named.front()->subject == LayerSubject::Bounce
+                             named.front()->subject == LayerInfo::Subject::Bounce
                                  ? "add an effect with rays by --effects, and --bounces"
                                  : "add an effect with rays by --effects");
         }
@@ -538,7 +540,7 @@ Result<std::vector<LayerEntry>> resolveLayers(const Plan& plan, const CompileSet
     return entries;
 }
 
-std::string layerNameOf(const LayerEntry& entry, const materials::MaterialModel& model) {
+std::string layerNameOf(const LayerInfo::Entry& entry, const materials::MaterialModel& model) {
     const std::string_view source =
         entry.effect == 0 ? package::kDirectLight : declarationOf(model, entry.effect).name;
     return package::layerName(infoOf(entry), source, entry.bounce);

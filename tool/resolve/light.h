@@ -104,13 +104,14 @@ package::ShadowThrough shadowThroughOf(const gltf::SceneList& scenes, const Plan
 // Returns the layers that CompileSettings::layers names, with those that they are computed from, in the order
 // of their images: that of the table, then that of effects. Errors: "layer-effect" (a layer of an effect that
 // the package lacks), "passes" (the package draws no frame). Requires plan.effects.
-Result<std::vector<package::LayerEntry>> resolveLayers(const Plan& plan, const CompileSettings& settings,
-                                                       const std::string& where);
+Result<std::vector<package::LayerInfo::Entry>> resolveLayers(const Plan& plan,
+                                                             const CompileSettings& settings,
+                                                             const std::string& where);
 
 // Returns the name of a layer of a package: "depth", "reflection.radiance".
-std::string layerNameOf(const package::LayerEntry& entry, const materials::MaterialModel& model);
+std::string layerNameOf(const package::LayerInfo::Entry& entry, const materials::MaterialModel& model);
 
-const package::LayerInfo& infoOf(const package::LayerEntry& entry);
+const package::LayerInfo& infoOf(const package::LayerInfo::Entry& entry);
 const materials::EffectDeclaration& declarationOf(const materials::MaterialModel& model,
                                                   package::Effect effect);
 // Returns the albedo that the light of a source is divided by: that of the lobes that bring it.

@@ -140,7 +140,8 @@ Result<MaterialHandle> LiveScene::materialFor(const gltf::Scene& scene, int inde
     if (material.handle.generation == 0) {
         GLINT_TRY(material.handle, gpu_.editor()->addMaterial(source.view()));
     } else {
-        GLINT_TRY(const EditReport report, gpu_.editor()->setMaterial(material.handle, source.view()));
+        GLINT_TRY(const SceneEditor::Report report,
+                  gpu_.editor()->setMaterial(material.handle, source.view()));
         note(scene, report);
     }
     material.attributes = std::move(wanted);
@@ -168,7 +169,7 @@ Status LiveScene::followMesh(const gltf::Scene& scene, std::uint32_t number, Liv
     for (std::size_t i = 0; i < mesh.materials.size(); ++i) {
         if (std::exchange(mesh.materials[i], wanted[i]) != wanted[i]) {
             GLINT_TRY(const MaterialHandle handle, materialFor(scene, wanted[i], mesh.attributes[i]));
-            GLINT_TRY(const EditReport report,
+            GLINT_TRY(const SceneEditor::Report report,
                       gpu_.editor()->setMeshMaterial(mesh.handle, static_cast<std::uint32_t>(i), handle));
             note(scene, report);
         }
@@ -222,7 +223,7 @@ Status LiveScene::followInstance(const gltf::Scene& scene, std::size_t index) {
             if (hasOwn) {
                 GLINT_TRY(handle, materialFor(scene, own[i], mesh.attributes[i]));
             }
-            GLINT_TRY(const EditReport report,
+            GLINT_TRY(const SceneEditor::Report report,
                       editor.setInstanceMaterial(instance.handle, static_cast<std::uint32_t>(i), handle));
             note(scene, report);
         }
@@ -338,8 +339,8 @@ std::optional<std::size_t> LiveScene::instanceOf(InstanceHandle handle) const {
                : std::optional(asIndex(found - instances_.begin()));
 }
 
-void LiveScene::note(const gltf::Scene& scene, const EditReport& report) {
-    for (const EditReport::MissingCase& missing : report.missing) {
+void LiveScene::note(const gltf::Scene& scene, const SceneEditor::Report& report) {
+    for (const SceneEditor::Report::MissingCase& missing : report.missing) {
         const auto found = std::ranges::find_if(
             materials_, [&](const auto& one) { return one.second.handle == missing.material; });
         const std::string name =

@@ -31,13 +31,13 @@ materials::PrimitiveInputs inputsOf(const Package& package, const materials::Mat
     return inputs;
 }
 
-MaterialKey keyFor(const Package& package, const materials::Material& material, AttributeMask attributes,
-                   materials::FeatureMask keptLobes) {
+SceneEditor::MaterialKey keyFor(const Package& package, const materials::Material& material,
+                                AttributeMask attributes, materials::FeatureMask keptLobes) {
     const materials::PrimitiveInputs inputs = inputsOf(package, material.model(), attributes);
     // The runtime leaves out what the package does not ask for.
     constexpr package::AlphaPolicy kAlpha = package::AlphaPolicy::Stochastic;
     const materials::KeyOptions options{kAlpha, keptLobes};
-    MaterialKey key;
+    SceneEditor::MaterialKey key;
     key.attributes = attributes;
     const materials::FeatureMask hitKey = compiler::makeKey(material, inputs, options);
     key.features =

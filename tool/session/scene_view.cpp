@@ -33,15 +33,15 @@ LightView toView(const gltf::Light& light, const SceneViewData& data) {
     return view;
 }
 
-std::vector<MorphTargetView> toViews(const std::vector<gltf::MorphTarget>& targets) {
-    return base::mapped<MorphTargetView>(targets, [](const gltf::MorphTarget& target) {
-        return MorphTargetView{target.positions, target.normals, target.tangents};
+std::vector<PrimitiveView::MorphTarget> toViews(const std::vector<gltf::MorphTarget>& targets) {
+    return base::mapped<PrimitiveView::MorphTarget>(targets, [](const gltf::MorphTarget& target) {
+        return PrimitiveView::MorphTarget{target.positions, target.normals, target.tangents};
     });
 }
 
-std::vector<AttributeView> toViews(const std::vector<gltf::VertexValues>& attributes) {
-    return base::mapped<AttributeView>(attributes, [](const gltf::VertexValues& attribute) {
-        return AttributeView{attribute.name, attribute.channels, attribute.values};
+std::vector<PrimitiveView::Attribute> toViews(const std::vector<gltf::VertexValues>& attributes) {
+    return base::mapped<PrimitiveView::Attribute>(attributes, [](const gltf::VertexValues& attribute) {
+        return PrimitiveView::Attribute{attribute.name, attribute.channels, attribute.values};
     });
 }
 

@@ -250,7 +250,7 @@ std::vector<Diagnostic> describe(const std::string& file, const LinearImage& ima
 }  // namespace
 
 Result<std::unique_ptr<Environment>> loadEnvironment(Context& context, const std::string& file,
-                                                     const EnvironmentOptions& options,
+                                                     const Environment::Options& options,
                                                      std::vector<Diagnostic>& notes) {
     GLINT_TRY(const auto image, image::readRadiance(file));
     Result<std::unique_ptr<Environment>> environment = Environment::create(context, image, options);

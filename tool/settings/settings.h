@@ -196,9 +196,9 @@ struct Settings {
     double lightRadius = 0.0;          // of point and spot lights, metres
     double sunAngle = 0.0;             // angular diameter of directional lights, degrees
     double environmentRotation = 0.0;  // degrees
-    TraversalOrder traversalOrder = TraversalOrder::Auto;
-    OpacityUse opacity = OpacityUse::Proved;
-    VertexForm vertices = VertexForm::Compact;
+    SceneView::TraversalOrder traversalOrder = SceneView::TraversalOrder::Auto;
+    SceneView::OpacityUse opacity = SceneView::OpacityUse::Proved;
+    SceneView::VertexForm vertices = SceneView::VertexForm::Compact;
     bool compressTextures = false;
 
     // Names and files. They are options of their own, without rows in the table.

@@ -422,7 +422,7 @@ inline std::vector<SettingWord> layerWords() {
         {"surface", "every layer of primary surfaces"},
         {std::string(package::kDirectLight), "every layer of the direct light"}};
     for (const materials::EffectDeclaration& effect : materials::builtinMaterialModel().effects) {
-        if (effect.kind == package::EffectKind::Rays) {
+        if (effect.kind == package::EffectInfo::Kind::Rays) {
             words.push_back({effect.name, fmt::format("every layer of the effect {}", effect.name)});
         }
     }

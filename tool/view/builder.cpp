@@ -32,8 +32,10 @@ std::vector<std::string> possibleLayers(const compiler::Plan& plan, compiler::Co
     std::vector<std::string> names;
     for (const package::LayerInfo& info : package::layerTable()) {
         settings.layers = {std::string(info.name)};
-        const Result<std::vector<package::LayerEntry>> entries = compiler::resolveLayers(plan, settings, "");
-        for (const package::LayerEntry& entry : entries ? *entries : std::vector<package::LayerEntry>()) {
+        const Result<std::vector<package::LayerInfo::Entry>> entries =
+            compiler::resolveLayers(plan, settings, "");
+        for (const package::LayerInfo::Entry& entry :
+             entries ? *entries : std::vector<package::LayerInfo::Entry>()) {
             if (entry.layer == info.number) {
                 names.push_back(compiler::layerNameOf(entry, *plan.model));
             }

@@ -384,7 +384,7 @@ void drawChart(const PassHistory& history) {
     list->AddText({origin.x + 4.0F, origin.y + 2.0F}, IM_COL32(220, 220, 220, 255), top.c_str());
 }
 
-void drawRays(const FrameCounters& counters) {
+void drawRays(const Renderer::Counters& counters) {
     if (counters.effects.empty() ||
         !ImGui::BeginTable("rays", 4, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) {
         return;
@@ -393,7 +393,7 @@ void drawRays(const FrameCounters& counters) {
         ImGui::TableSetupColumn(title);
     }
     ImGui::TableHeadersRow();
-    for (const EffectCounters& effect : counters.effects) {
+    for (const Renderer::EffectCounters& effect : counters.effects) {
         ImGui::TableNextColumn();
         ImGui::TextUnformatted(effect.name.c_str());
         for (const std::uint32_t count : {effect.rays, effect.hits, effect.misses}) {
@@ -446,7 +446,7 @@ double PassHistory::medianFrame() const {
     return medianOf(std::move(values));
 }
 
-void drawPasses(Controls& controls, const PassHistory& history, const FrameCounters& counters) {
+void drawPasses(Controls& controls, const PassHistory& history, const Renderer::Counters& counters) {
     ImGui::TextWrapped("Device time of the last %d samples. While this tab is open, passes do not overlap.",
                        static_cast<int>(history.frames().size()));
     drawChart(history);

@@ -111,6 +111,6 @@ private:
 };
 
 // Draws chart and table. `counters` are those of the last frame.
-void drawPasses(Controls& controls, const PassHistory& history, const FrameCounters& counters);
+void drawPasses(Controls& controls, const PassHistory& history, const Renderer::Counters& counters);
 
 }  // namespace glint::view

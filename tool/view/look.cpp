@@ -76,7 +76,7 @@ std::vector<std::string> sourcesOf(const measure::ViewInfo& view, const Build& b
     }
     std::vector<std::string> sources;
     for (const package::EffectInfo& effect : build.package->effects()) {
-        if (effect.kind == package::EffectKind::Rays) {
+        if (effect.kind == package::EffectInfo::Kind::Rays) {
             sources.emplace_back(effect.name);
         }
     }
@@ -153,8 +153,8 @@ Result<measure::View> makeLook(const Look& look, Picture& picture, double exposu
 Result<image::ExrLayer> layerForFile(const Look& look, Picture& picture) {
     GLINT_TRY(auto values, picture.renderer().readLayer(look.layer));
     const package::LayerInfo& info = *package::findLayer(partsOf(look.layer).layer);
-    return image::ExrLayer{look.layer, std::string(info.channels), info.format == package::LayerFormat::Half4,
-                           std::move(values)};
+    return image::ExrLayer{look.layer, std::string(info.channels),
+                           info.format == package::LayerInfo::Format::Half4, std::move(values)};
 }
 
 // --- The tab in which a view or a layer is chosen ---
@@ -316,7 +316,7 @@ std::string describePath(Renderer::PixelPath path) {
 
 void addRays(Picture& picture, std::size_t pixel, std::vector<Field>& fields) {
     for (const package::EffectInfo& effect : picture.build().package->effects()) {
-        if (effect.kind != package::EffectKind::Rays) {
+        if (effect.kind != package::EffectInfo::Kind::Rays) {
             continue;
         }
         const Result<std::vector<Renderer::PixelPath>> paths = picture.renderer().readCoverage(effect.effect);

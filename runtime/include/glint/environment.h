@@ -13,16 +13,16 @@
 
 namespace glint {
 
-struct EnvironmentOptions {
-    // Packages whose sky is a light (Package::skyLight()) need the distribution of the map's light, which
-    // takes up to 2 MiB on the device.
-    bool sampled = false;
-};
-
 // Environments may be made and destroyed on any thread. An environment is made once. The frames of any number
 // of renderers can share it, and it may be destroyed before they are. The Context must outlive it.
 class Environment {
 public:
+    struct Options {
+        // Packages whose sky is a light (Package::skyLight()) need the distribution of the map's light, which
+        // takes up to 2 MiB on the device.
+        bool sampled = false;
+    };
+
     // Filters the image on the host, and records the upload of the result. Nothing waits for the device. The
     // requirements of `commands` and `frame`, and when the environment may be used and destroyed, are as in
     // GpuScene::record(). `image` holds radiance in the units of the lights: red, green and blue in linear
@@ -32,17 +32,20 @@ public:
     // "environment-size" for an image without pixels; "environment-radiance", with the pixel, for NaN,
     // infinity and anything above 1e18.
     static Result<std::unique_ptr<Environment>> record(Context& context, const LinearImage& image,
-                                                       const EnvironmentOptions& options,
-                                                       VkCommandBuffer commands, std::uint64_t frame);
+                                                       const Options& options, VkCommandBuffer commands,
+                                                       std::uint64_t frame);
     // Says that the device has completed all commands of frames up to `frame`, and frees the staging memory.
     void complete(std::uint64_t frame);
     // Records the same into a command buffer of its own, submits it to DeviceHandles::queue under
     // HostServices::lockQueue, and waits for the device.
     static Result<std::unique_ptr<Environment>> create(Context& context, const LinearImage& image,
-                                                       const EnvironmentOptions& options = {});
+                                                       const Options& options);
     ~Environment();
     Environment(const Environment&) = delete;
     Environment& operator=(const Environment&) = delete;
+
+    // The map with its sampler, for a host that binds it for RaySteps: a combined image sampler.
+    VkDescriptorImageInfo image() const;
 
     struct Statistics {
         // The size of the map on the device, which mirrors and the background show. It is between 256 x 128
@@ -53,7 +56,7 @@ public:
         std::uint64_t negativePixels = 0;  // pixels with a channel below 0
         // True if texels have 16 bits a channel because this device can't filter 32-bit images.
         bool halfFloat = false;
-        bool sampled = false;   // as EnvironmentOptions::sampled
+        bool sampled = false;   // as Options::sampled
         double filterMs = 0.0;  // host time
     };
     const Statistics& statistics() const;

@@ -1,6 +1,6 @@
 // A compiled package, read and checked. It needs no Vulkan device. A package does not change, so any number
-// of threads may use it at once. load() and poll() wait for files. A PackageWatch is used by one thread at a
-// time.
+// of threads may use it at once. load() and poll() wait for files. A Package::Watch is used by one thread at
+// a time.
 #pragma once
 
 #include <glint/package_shape.h>
@@ -94,7 +94,7 @@ public:
     bool hitsInSamples() const;
     // Returns whether misses read an environment map rather than a gradient.
     bool environmentMap() const;
-    // Returns whether shaders record which levels of textures they read (FrameCounters::textureLevels).
+    // Returns whether shaders record which levels of textures they read (Renderer::Counters::textureLevels).
     bool textureLevels() const;
     // Returns whether shaders rely on the contents of the scenes' textures, so that no other image may
     // replace them.
@@ -114,7 +114,7 @@ public:
     // all.
     std::uint32_t lightSamples() const;
     // Returns whether surfaces sample the sky as a light. An environment map then needs
-    // EnvironmentOptions::sampled.
+    // Environment::Options::sampled.
     bool skyLight() const;
     // Returns whether rays of lobes find area lights (LightView::size), as samples of these lights do.
     bool sizedLights() const;
@@ -158,6 +158,8 @@ public:
     std::string_view string(package::StringRef ref) const;
     // Returns the SPIR-V words of a module. The span is empty if the package lacks the module.
     std::span<const std::uint32_t> spirv(const package::ModuleKey& key) const;
+    class Watch;  // finds out that `glint compile --watch` has written a new package
+
     // For the runtime's own sources.
     struct State;
     const State& state() const {
@@ -188,10 +190,10 @@ std::optional<std::uint64_t> readStamp(const std::filesystem::path& file);
 }  // namespace package
 
 // Watches one package. It needs no Vulkan device and starts no thread.
-class PackageWatch {
+class Package::Watch {
 public:
     // Begins with the package that the folder has now: poll() returns the next one.
-    explicit PackageWatch(const std::filesystem::path& folder);
+    explicit Watch(const std::filesystem::path& folder);
 
     // Returns the package if it was written since the last call, else null. Without a new package this opens
     // and reads one small file, which takes some microseconds; with one it loads the package, in the time of

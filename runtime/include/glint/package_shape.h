@@ -27,16 +27,16 @@ using Effect = std::uint32_t;
 inline constexpr std::uint32_t kMostEffects = 32;
 inline constexpr std::uint32_t kAllEffects = 0xFFFFFFFFU;
 
-enum class EffectKind : std::uint32_t {
-    Light = 0,    // decides how much of a light reaches a surface, primary or hit
-    Surface = 1,  // decides how much of the sky's light reaches a primary surface
-    Rays = 2,     // sends rays from primary surfaces whose hits the package shades
-};
-
 // An effect of a package.
 struct EffectInfo {
+    enum class Kind : std::uint32_t {
+        Light = 0,    // decides how much of a light reaches a surface, primary or hit
+        Surface = 1,  // decides how much of the sky's light reaches a primary surface
+        Rays = 2,     // sends rays from primary surfaces whose hits the package shades
+    };
+
     Effect effect = 0;
-    EffectKind kind = EffectKind::Rays;
+    Kind kind = Kind::Rays;
     std::uint32_t abilities = 0;  // EffectAbility bits
     std::string_view name{};      // on the command line, in the manifest and of passes
 };
@@ -166,54 +166,54 @@ struct StringRef {
     std::uint32_t length;
 };
 
-// A set of the features that a base model of a pack has for itself.
-struct OwnWords {
-    static constexpr std::size_t kWords = 4;
-    static constexpr int kBits = 32 * static_cast<int>(kWords);
-
-    std::array<std::uint32_t, kWords> words{};
-
-    static constexpr OwnWords all() {
-        return ~OwnWords{};
-    }
-    constexpr void add(int bit) {
-        words[static_cast<std::size_t>(bit) / 32] |= 1U << static_cast<unsigned>(bit % 32);
-    }
-    constexpr bool has(int bit) const {
-        return (words[static_cast<std::size_t>(bit) / 32] >> static_cast<unsigned>(bit % 32) & 1U) != 0;
-    }
-    constexpr bool isEmpty() const {
-        return *this == OwnWords{};
-    }
-    constexpr int count() const {
-        int sum = 0;
-        for (const std::uint32_t word : words) {
-            sum += std::popcount(word);
-        }
-        return sum;
-    }
-    constexpr OwnWords operator~() const {
-        OwnWords result;
-        for (std::size_t i = 0; i < kWords; ++i) {
-            result.words[i] = ~words[i];
-        }
-        return result;
-    }
-    friend constexpr OwnWords operator&(OwnWords a, const OwnWords& b) {
-        for (std::size_t i = 0; i < kWords; ++i) {
-            a.words[i] &= b.words[i];
-        }
-        return a;
-    }
-    friend constexpr OwnWords operator|(const OwnWords& a, const OwnWords& b) {
-        return ~(~a & ~b);
-    }
-    auto operator<=>(const OwnWords&) const = default;
-};
-
 // A set of the features of a material: those that every base model may have in two words, and those of a base
 // model that a pack declares in words of the model.
 struct KeyWords {
+    // A set of the features that a base model of a pack has for itself.
+    struct Own {
+        static constexpr std::size_t kWords = 4;
+        static constexpr int kBits = 32 * static_cast<int>(kWords);
+
+        std::array<std::uint32_t, kWords> words{};
+
+        static constexpr Own all() {
+            return ~Own{};
+        }
+        constexpr void add(int bit) {
+            words[static_cast<std::size_t>(bit) / 32] |= 1U << static_cast<unsigned>(bit % 32);
+        }
+        constexpr bool has(int bit) const {
+            return (words[static_cast<std::size_t>(bit) / 32] >> static_cast<unsigned>(bit % 32) & 1U) != 0;
+        }
+        constexpr bool isEmpty() const {
+            return *this == Own{};
+        }
+        constexpr int count() const {
+            int sum = 0;
+            for (const std::uint32_t word : words) {
+                sum += std::popcount(word);
+            }
+            return sum;
+        }
+        constexpr Own operator~() const {
+            Own result;
+            for (std::size_t i = 0; i < kWords; ++i) {
+                result.words[i] = ~words[i];
+            }
+            return result;
+        }
+        friend constexpr Own operator&(Own a, const Own& b) {
+            for (std::size_t i = 0; i < kWords; ++i) {
+                a.words[i] &= b.words[i];
+            }
+            return a;
+        }
+        friend constexpr Own operator|(const Own& a, const Own& b) {
+            return ~(~a & ~b);
+        }
+        auto operator<=>(const Own&) const = default;
+    };
+
     static constexpr std::uint32_t kAnyModel = 0xFFFFFFFF;
 
     std::uint32_t lobes = 0;   // what light does at the surface
@@ -221,7 +221,7 @@ struct KeyWords {
     // The model, as shaders/interop/models.h describes it; 0: one of glTF's. A set of the features of several
     // models has kAnyModel, and all bits of `own`.
     std::uint32_t model = 0;
-    OwnWords own{};  // the model's own features, which it numbers by itself
+    Own own{};  // the model's own features, which it numbers by itself
 
     bool operator==(const KeyWords&) const = default;
     // Adds the features of another set. A set without a model takes that of the other.
@@ -229,7 +229,7 @@ struct KeyWords {
         const bool isMixed = model != 0 && other.model != 0 && model != other.model;
         lobes |= other.lobes;
         inputs |= other.inputs;
-        own = isMixed ? OwnWords::all() : own | other.own;
+        own = isMixed ? Own::all() : own | other.own;
         model = isMixed ? kAnyModel : model | other.model;
         return *this;
     }
@@ -274,29 +274,29 @@ struct PrimitiveEntry {
     std::uint32_t alphaMode;      // 0 opaque, 1 mask, 2 blend, as in the file
 };
 
-// The coordinates that a lookup of a texture takes, and so the type of its image view.
-enum class TextureDimension : std::uint16_t {
-    Flat,    // UVs: a 2D view
-    Array,   // UVs and the number of a layer: a 2D array view
-    Cube,    // a direction: a cube view
-    Volume,  // a place in space: a 3D view
-};
-inline constexpr Named<TextureDimension> kTextureDimensionNames[] = {
-    {TextureDimension::Flat, "2d", "2D"},
-    {TextureDimension::Array, "2d-array", "2D with layers"},
-    {TextureDimension::Cube, "cube", "a cube"},
-    {TextureDimension::Volume, "3d", "3D"},
-};
-constexpr std::span<const Named<TextureDimension>> namesOf(TextureDimension /*type*/) {
-    return kTextureDimensionNames;
-}
-
 // An image viewed in one colour space. A glTF image that is used both as colour and as data has two entries.
 struct TextureEntry {
+    // The coordinates that a lookup of a texture takes, and so the type of its image view.
+    enum class Dimension : std::uint16_t {
+        Flat,    // UVs: a 2D view
+        Array,   // UVs and the number of a layer: a 2D array view
+        Cube,    // a direction: a cube view
+        Volume,  // a place in space: a 3D view
+    };
+
     std::uint32_t image;  // index into the scene's images
     std::uint16_t srgb;   // 1: 8-bit sRGB format, 0: 8-bit linear format
-    TextureDimension dimension;
+    Dimension dimension;
 };
+inline constexpr Named<TextureEntry::Dimension> kTextureDimensionNames[] = {
+    {TextureEntry::Dimension::Flat, "2d", "2D"},
+    {TextureEntry::Dimension::Array, "2d-array", "2D with layers"},
+    {TextureEntry::Dimension::Cube, "cube", "a cube"},
+    {TextureEntry::Dimension::Volume, "3d", "3D"},
+};
+constexpr std::span<const Named<TextureEntry::Dimension>> namesOf(TextureEntry::Dimension /*type*/) {
+    return kTextureDimensionNames;
+}
 
 // The filter and the wrapping of a texture.
 struct SamplerEntry {

@@ -34,85 +34,6 @@ namespace glint {
 // Returns the ordering that a renderer uses if RendererOptions::ordering has no value.
 package::Ordering defaultOrdering(Context& context, std::uint32_t bucketCount);
 
-// The counters of one effect in one sample.
-struct EffectCounters {
-    package::Effect effect = 0;
-    package::EffectKind kind = package::EffectKind::Rays;
-    std::string name;
-    std::uint32_t rays = 0;  // rays traced to their end: those of the list, or to lights and occluders
-    std::uint32_t hits = 0;
-    std::uint32_t misses = 0;      // also rays to a light with nothing in their way
-    std::uint32_t segments = 0;    // rays on their way before the one that joins the list
-    std::uint32_t screenHits = 0;  // hits found in screen space, without a ray
-    std::uint32_t waited = 0;      // those of `rays` that waited in memory, as shadow rays of first hits do
-    // Pixels, or lights of pixels, that sent no ray. Each counter belongs to the gate that stopped them.
-    std::uint32_t skippedSky = 0;
-    std::uint32_t skippedUnlit = 0;
-    std::uint32_t skippedRough = 0;
-    std::uint32_t skippedBlack = 0;   // the sample would bring no light
-    std::uint32_t skippedAbsent = 0;  // the material has no such lobe
-    std::uint32_t skippedFaint = 0;   // below FrameOptions::faintWeight
-    std::uint32_t skippedFacing = 0;  // the surface faces away from the light
-    std::uint32_t skippedRange = 0;
-    std::uint32_t skippedCone = 0;
-    // Misses, then hits by shader ID. Filled if hits are ordered and effects are not batched.
-    std::vector<std::uint32_t> bucketCounts;
-};
-
-struct FrameCounters {
-    std::vector<EffectCounters> effects;  // the package's effects, in the order of their bits
-    bool draft = false;            // the frame is a draft (RendererOptions::draft), which sends no rays
-    std::uint32_t rays = 0;        // rays of all effects
-    std::uint32_t shadowRays = 0;  // deferred shadow rays of hits
-    // The rounds in which the shadow rays of first hits were traced; 0 if they do not wait in memory. Each
-    // round after the first shades the pixels again that have more shadow rays than the rounds before held:
-    // PackageShape::firstShadowRays each. A frame with many lights is faster with a package that chooses
-    // among them (--lights K) or whose first hits trace their rays themselves (--first-shadows inline).
-    std::uint32_t shadowRounds = 0;
-    std::uint32_t orderErrors = 0;    // with RendererOptions::checkOrder
-    std::uint32_t unknownShader = 0;  // hits whose shader ID no case has, without a fallback
-    std::uint32_t alphaTests = 0;     // candidates whose alpha was tested, with RendererOptions::countsLight
-    std::uint32_t nonFinite = 0;      // samples since sample 0 that were not finite; they count as black
-    // Rays by bounce, from the first: those of the effects, then those that hits sent. They add up to `rays`.
-    std::vector<std::uint32_t> raysOfBounces;
-    // Pixels that see no surface, then pixels by the shader ID of what they see. Empty for a draft.
-    std::vector<std::uint32_t> pixelCounts;
-    // Misses, then hits by shader ID, of all effects and bounces. Filled if hits are ordered.
-    std::vector<std::uint32_t> bucketCounts;
-    // The finest level that surfaces and hits have read of each texture, by PackageScene::textures, or by
-    // TextureHandle::index in a scene that is edited. Levels count from the whole image, whichever are on the
-    // device. Filled for packages with Package::textureLevels().
-    static constexpr std::uint32_t kLevelNotRead = 0xFFFFFFFF;
-    std::vector<std::uint32_t> textureLevels;
-
-    // Returns zeros for an effect that the package lacks.
-    EffectCounters of(package::Effect effect) const;
-};
-
-// A driver's report about a pipeline, in the terms of VK_KHR_pipeline_executable_properties.
-struct PipelineStatistics {
-    // One number. The driver chooses the name and the description.
-    struct Statistic {
-        std::string name;
-        std::string description;
-        std::variant<bool, std::int64_t, std::uint64_t, double> value;
-    };
-    // A piece of code of a pipeline on the device. A driver may make one for each stage, or fewer, or more.
-    struct Executable {
-        std::string name;
-        std::string description;
-        VkShaderStageFlags stages = 0;
-        std::uint32_t subgroupSize = 0;  // 0: it may vary, or the driver gives none
-        std::vector<Statistic> statistics;
-    };
-
-    std::string name;  // the role of its module in the manifest, and its case, effect or ordering
-    // These have no value if the driver does not report them.
-    std::optional<double> creationMs;
-    std::optional<bool> cacheHit;
-    std::vector<Executable> executables;
-};
-
 // The pipelines and per-frame resources for one package, one scene and one size. Context and GpuScene must
 // outlive it.
 class Renderer {
@@ -185,7 +106,7 @@ public:
 
     // The accumulated linear image. After the first recording its layout is GENERAL; a compute shader writes
     // it last. Its format is VK_FORMAT_R32G32B32A32_SFLOAT, or VK_FORMAT_R16G16B16A16_SFLOAT with
-    // PictureFormat::Half.
+    // RendererOptions::PictureFormat::Half.
     VkImage output() const;
     VkFormat outputFormat() const;
     VkImageView outputView() const;
@@ -224,10 +145,67 @@ public:
     Status renderSamples(const FrameOptions& frame, std::uint32_t sampleCount,
                          const std::function<Status()>& afterSample = {});
 
+    // The counters of one effect in one sample.
+    struct EffectCounters {
+        package::Effect effect = 0;
+        package::EffectInfo::Kind kind = package::EffectInfo::Kind::Rays;
+        std::string name;
+        std::uint32_t rays = 0;  // rays traced to their end: those of the list, or to lights and occluders
+        std::uint32_t hits = 0;
+        std::uint32_t misses = 0;      // also rays to a light with nothing in their way
+        std::uint32_t segments = 0;    // rays on their way before the one that joins the list
+        std::uint32_t screenHits = 0;  // hits found in screen space, without a ray
+        std::uint32_t waited = 0;  // those of `rays` that waited in memory, as shadow rays of first hits do
+        // Pixels, or lights of pixels, that sent no ray. Each counter belongs to the gate that stopped them.
+        std::uint32_t skippedSky = 0;
+        std::uint32_t skippedUnlit = 0;
+        std::uint32_t skippedRough = 0;
+        std::uint32_t skippedBlack = 0;   // the sample would bring no light
+        std::uint32_t skippedAbsent = 0;  // the material has no such lobe
+        std::uint32_t skippedFaint = 0;   // below FrameOptions::faintWeight
+        std::uint32_t skippedFacing = 0;  // the surface faces away from the light
+        std::uint32_t skippedRange = 0;
+        std::uint32_t skippedCone = 0;
+        // Misses, then hits by shader ID. Filled if hits are ordered and effects are not batched.
+        std::vector<std::uint32_t> bucketCounts;
+    };
+
+    struct Counters {
+        std::vector<EffectCounters> effects;  // the package's effects, in the order of their bits
+        bool draft = false;            // the frame is a draft (RendererOptions::draft), which sends no rays
+        std::uint32_t rays = 0;        // rays of all effects
+        std::uint32_t shadowRays = 0;  // deferred shadow rays of hits
+        // The rounds in which the shadow rays of first hits were traced; 0 if they do not wait in memory.
+        // Each round after the first shades the pixels again that have more shadow rays than the rounds
+        // before held: PackageShape::firstShadowRays each. A frame with many lights is faster with a package
+        // that chooses among them (--lights K) or whose first hits trace their rays themselves
+        // (--first-shadows inline).
+        std::uint32_t shadowRounds = 0;
+        std::uint32_t orderErrors = 0;    // with RendererOptions::checkOrder
+        std::uint32_t unknownShader = 0;  // hits whose shader ID no case has, without a fallback
+        std::uint32_t alphaTests = 0;  // candidates whose alpha was tested, with RendererOptions::countsLight
+        std::uint32_t nonFinite = 0;   // samples since sample 0 that were not finite; they count as black
+        // Rays by bounce, from the first: those of the effects, then those that hits sent. They add up to
+        // `rays`.
+        std::vector<std::uint32_t> raysOfBounces;
+        // Pixels that see no surface, then pixels by the shader ID of what they see. Empty for a draft.
+        std::vector<std::uint32_t> pixelCounts;
+        // Misses, then hits by shader ID, of all effects and bounces. Filled if hits are ordered.
+        std::vector<std::uint32_t> bucketCounts;
+        // The finest level that surfaces and hits have read of each texture, by PackageScene::textures, or by
+        // TextureHandle::index in a scene that is edited. Levels count from the whole image, whichever are on
+        // the device. Filled for packages with Package::textureLevels().
+        static constexpr std::uint32_t kLevelNotRead = 0xFFFFFFFF;
+        std::vector<std::uint32_t> textureLevels;
+
+        // Returns zeros for an effect that the package lacks.
+        EffectCounters of(package::Effect effect) const;
+    };
+
     // These return the results of the last recording. The caller must have waited until the device completed
     // it. FrameOptions::timing of that recording says which times there are.
     Result<std::vector<PassTiming>> timings();
-    Result<FrameCounters> counters();
+    Result<Counters> counters();
     // The source of a pixel's light from an effect.
     enum class PixelPath : std::uint8_t {
         NoSurface,
@@ -285,12 +263,50 @@ public:
         std::optional<std::uint32_t> cacheHits;
     };
     PipelineMaking pipelineMaking() const;
+    // The progress of the threads that make pipelines while frames are drawn.
+    struct PipelineProgress {
+        std::uint32_t wanted = 0;   // pipelines that are made in the background
+        std::uint32_t made = 0;     // those that were made, or have failed
+        std::uint32_t adopted = 0;  // those that recordings use
+        // The first error. Its passes keep the fallback, or the draft.
+        std::optional<Diagnostic> error{};
+        // True if the next recording may be a draft (RendererOptions::draft), and the number of drafts so
+        // far.
+        bool draft = false;
+        std::uint64_t drafts = 0;
+    };
+
     // With RendererOptions::backgroundPipelines, record() uses the pipelines that were made by then.
-    // pipelineProgress() says how many are made. The other function waits until the last one is made, also of
-    // a package that waits to replace this one. Without that option no pipeline is missing. Both may be
-    // called from any thread while the renderer is not recorded.
+    // pipelineProgress() says how many are made. The other function waits until the last one is made,
+    // also of a package that waits to replace this one. Without that option no pipeline is missing. Both
+    // may be called from any thread while the renderer is not recorded.
     PipelineProgress pipelineProgress() const;
     void waitForPipelines();
+    // A driver's report about a pipeline, in the terms of VK_KHR_pipeline_executable_properties.
+    struct PipelineStatistics {
+        // One number. The driver chooses the name and the description.
+        struct Statistic {
+            std::string name;
+            std::string description;
+            std::variant<bool, std::int64_t, std::uint64_t, double> value;
+        };
+        // A piece of code of a pipeline on the device. A driver may make one for each stage, or fewer, or
+        // more.
+        struct Executable {
+            std::string name;
+            std::string description;
+            VkShaderStageFlags stages = 0;
+            std::uint32_t subgroupSize = 0;  // 0: it may vary, or the driver gives none
+            std::vector<Statistic> statistics;
+        };
+
+        std::string name;  // the role of its module in the manifest, and its case, effect or ordering
+        // These have no value if the driver does not report them.
+        std::optional<double> creationMs;
+        std::optional<bool> cacheHit;
+        std::vector<Executable> executables;
+    };
+
     // Returns the driver's report about each pipeline. Errors: "pipeline-statistics" without
     // RendererOptions::pipelineStatistics, "vulkan-call".
     Result<std::vector<PipelineStatistics>> pipelineStatistics() const;

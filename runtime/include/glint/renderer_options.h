@@ -15,17 +15,10 @@
 
 namespace glint {
 
-// The precision of a picture's channels.
-enum class PictureFormat : std::uint32_t { Full = 0, Half = 1 };
-inline constexpr Named<PictureFormat> kPictureFormatNames[] = {
-    {PictureFormat::Full, "full", "32-bit floats"},
-    {PictureFormat::Half, "half", "16-bit floats, where a picture has one sample"},
-};
-constexpr std::span<const Named<PictureFormat>> namesOf(PictureFormat /*type*/) {
-    return kPictureFormatNames;
-}
-
 struct RendererOptions {
+    // The precision of a picture's channels.
+    enum class PictureFormat : std::uint32_t { Full = 0, Half = 1 };
+
     package::Strategy strategy = package::kDefaultStrategy;
     std::uint32_t width = 1280;  // pixels
     std::uint32_t height = 720;
@@ -34,7 +27,7 @@ struct RendererOptions {
     // No value chooses by the number of buckets and the device, as defaultOrdering() does.
     std::optional<package::Ordering> ordering{};
     // Makes the device check that each hit is in its bucket exactly once, and count the errors in
-    // FrameCounters::orderErrors. This is slow.
+    // Renderer::Counters::orderErrors. This is slow.
     bool checkOrder = false;
     // Also counts rays to lights and rays of ambient occlusion. This costs time, most with ray tracing
     // pipelines; without it, pipelines have no code for it.
@@ -72,8 +65,8 @@ struct RendererOptions {
     // With backgroundPipelines, lets frames begin as soon as the raster pass, a draft of first hits
     // and the last pass are made. A draft shows the base of materials under the sky and the lights, without
     // shadows, and no ray is traced. The first recording with all fixed passes starts the picture anew.
-    // PipelineProgress and FrameCounters say whether a frame is a draft. Without it, Renderer::create() waits
-    // for the fixed passes and the fallback, and no frame is a draft.
+    // Renderer::PipelineProgress and Renderer::Counters say whether a frame is a draft. Without it,
+    // Renderer::create() waits for the fixed passes and the fallback, and no frame is a draft.
     bool draft = true;
     // Makes the driver keep the statistics that pipelineStatistics() returns. Error "pipeline-statistics"
     // without DeviceHandles::pipelineStatistics.
@@ -81,25 +74,25 @@ struct RendererOptions {
 
     friend bool operator==(const RendererOptions&, const RendererOptions&) = default;
 };
+inline constexpr Named<RendererOptions::PictureFormat> kPictureFormatNames[] = {
+    {RendererOptions::PictureFormat::Full, "full", "32-bit floats"},
+    {RendererOptions::PictureFormat::Half, "half", "16-bit floats, where a picture has one sample"},
+};
+constexpr std::span<const Named<RendererOptions::PictureFormat>> namesOf(
+    RendererOptions::PictureFormat /*type*/) {
+    return kPictureFormatNames;
+}
 
 // The most pixels of a band if RendererOptions::bands is 0. Discrete GPUs have no such limit.
 inline constexpr std::uint32_t kPixelsOfBand = 1U << 19;
 
-// The key by which a workgroup sorts its rays before they join the list: nothing, the signs of the direction,
-// or cells of the direction's octahedral map.
-enum class Binning : std::uint32_t { None = 0, Sign = 1, Octahedral = 2 };
-inline constexpr Named<Binning> kBinningNames[] = {
-    {Binning::None, "none", "not at all"},
-    {Binning::Sign, "sign", "into 8 bins"},
-    {Binning::Octahedral, "octahedral", "into 64 bins"},
-};
-constexpr std::span<const Named<Binning>> namesOf(Binning /*type*/) {
-    return kBinningNames;
-}
-
 class Environment;
 
 struct FrameOptions {
+    // The key by which a workgroup sorts its rays before they join the list: nothing, the signs of the
+    // direction, or cells of the direction's octahedral map.
+    enum class Binning : std::uint32_t { None = 0, Sign = 1, Octahedral = 2 };
+
     CameraView camera;
     SkyView sky;
     // The environment that replaces the gradient. Packages that read one (Package::environmentMap()) require
@@ -157,19 +150,13 @@ struct FrameOptions {
     float time = 0.0F;
     Timing timing = Timing::Frame;
 };
-
-// --- Pipelines that threads make while frames are drawn ---
-
-// The progress of the threads that make pipelines while frames are drawn.
-struct PipelineProgress {
-    std::uint32_t wanted = 0;   // pipelines that are made in the background
-    std::uint32_t made = 0;     // those that were made, or have failed
-    std::uint32_t adopted = 0;  // those that recordings use
-    // The first error. Its passes keep the fallback, or the draft.
-    std::optional<Diagnostic> error{};
-    // True if the next recording may be a draft (RendererOptions::draft), and the number of drafts so far.
-    bool draft = false;
-    std::uint64_t drafts = 0;
+inline constexpr Named<FrameOptions::Binning> kBinningNames[] = {
+    {FrameOptions::Binning::None, "none", "not at all"},
+    {FrameOptions::Binning::Sign, "sign", "into 8 bins"},
+    {FrameOptions::Binning::Octahedral, "octahedral", "into 64 bins"},
 };
+constexpr std::span<const Named<FrameOptions::Binning>> namesOf(FrameOptions::Binning /*type*/) {
+    return kBinningNames;
+}
 
 }  // namespace glint

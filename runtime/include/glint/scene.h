@@ -55,77 +55,6 @@ inline constexpr std::uint32_t kDeclaredAttributesShift = 8;
 // Returns the attributes that the primitive has, as far as `package` knows them. Reads all colours.
 AttributeMask attributesOf(const Package& package, const PrimitiveView& primitive);
 
-// The features of a material on primitives with certain attributes, as with AlphaPolicy::Stochastic. They
-// and the flags also say what the package may ignore: alpha, light that passes the material, and light that
-// it emits. Glint::session makes these from a material of glTF (glint/session/material_source.h).
-struct MaterialKey {
-    AttributeMask attributes = 0;
-    package::KeyWords features;       // the key, with all lobes
-    package::KeyWords hitFeatures;    // those that hits keep; the same unless the package has --hit-lobes
-    std::uint32_t geometryFlags = 0;  // kGeometry* of shaders/interop/scene.h
-};
-
-// A texture of a material.
-struct TextureUse {
-    std::uint32_t slot = 0;  // of the record: below MaterialTable::textureCount
-    TextureHandle texture;
-    package::SamplerEntry sampler{0, 0, 1, 1, 1, 1};
-    std::uint32_t texCoord = 0;  // UV set: 0 or 1
-};
-
-// A material that the package does not have, or has with other values.
-struct MaterialSource {
-    // A record in the package's layout (MaterialRecord of its C++ header). Texture transforms are taken from
-    // it; `textures` says which textures it has.
-    std::span<const std::uint8_t> record;
-    // One for each set of attributes that a primitive with this material has or will have.
-    std::span<const MaterialKey> keys;
-    std::span<const TextureUse> textures;
-};
-
-// The report of an edit.
-struct EditReport {
-    // A material on a primitive for which the package has no shader.
-    struct MissingCase {
-        MaterialHandle material;
-        package::KeyWords features;      // its key
-        std::vector<std::string> names;  // the names of these features
-    };
-    // Materials that the fallback shades from now on. Each key is listed once in an edit.
-    std::vector<MissingCase> missing;
-};
-
-// The report of replacePackage(), of Renderer and of RaySteps: the pipelines and buffers that it keeps, and
-// those that it makes.
-struct PackageReplacement {
-    // Pipelines that the new package has in common with the earlier one: their SPIR-V is the same.
-    std::uint32_t pipelinesKept = 0;
-    // Pipelines that are made, in the call or in the background.
-    std::uint32_t pipelinesMade = 0;
-    // The shader IDs, in the new package, of the cases with a pipeline of their own that is made. Only
-    // strategies with a dispatch for each case have such pipelines.
-    std::vector<std::uint32_t> casesMade{};
-    // Buffers of the frame that have the size that the new package needs, and those that are made.
-    std::uint32_t buffersKept = 0;
-    std::uint32_t buffersMade = 0;
-    // In a scene that is edited: the materials that the fallback of the new package shades.
-    std::vector<EditReport::MissingCase> missing{};
-};
-
-// The progress of the last replacement.
-struct PackageProgress {
-    std::uint64_t inUse = 0;    // replacements that recordings have begun to use
-    bool pending = false;       // a package waits; recordings use the old one
-    bool ready = false;         // the next recording uses the package that waits
-    std::uint32_t missing = 0;  // pipelines that it still waits for
-    // Why a pending package is not ready: a sentence for each Renderer and RaySteps of the scene that all
-    // wait for. They are numbered by kind, in the order in which they were made.
-    std::vector<std::string> waitsFor{};
-    // Why the last replacement was given up; recordings continue with the old package. The next
-    // replacePackage() clears it.
-    std::optional<Diagnostic> error{};
-};
-
 // Edits the textures, materials, meshes, instances and lights of a GpuScene. The Package must outlive the
 // scene.
 //
@@ -137,15 +66,55 @@ struct PackageProgress {
 // Errors of all functions: "scene-edit-handle" (a handle names nothing), "scene-edit-used" (something else
 // still uses the thing to be removed), "scene-edit-value" (a number is not finite, or an index out of range),
 // and those of memory and Vulkan's calls. Errors of those that give a primitive a material: "scene-edit-key"
-// (the material has no MaterialKey for the primitive's attributes), "scene-edit-feature" (the package has no
-// code for a feature, which the fallback lacks as well) and "scene-edit-case" (no case of the package has the
-// key, or no code samples lights with the key, and the package has no fallback); the message has the names of
-// the features.
+// (the material has no MaterialKey for the primitive's attributes), "scene-edit-feature" (the
+// package has no code for a feature, which the fallback lacks as well) and "scene-edit-case" (no case of the
+// package has the key, or no code samples lights with the key, and the package has no fallback); the message
+// has the names of the features.
 class SceneEditor {
 public:
     ~SceneEditor() = default;
     SceneEditor(const SceneEditor&) = delete;
     SceneEditor& operator=(const SceneEditor&) = delete;
+
+    // The features of a material on primitives with certain attributes, as with AlphaPolicy::Stochastic. They
+    // and the flags also say what the package may ignore: alpha, light that passes the material, and light
+    // that it emits. Glint::session makes these from a material of glTF (glint/session/material_source.h).
+    struct MaterialKey {
+        AttributeMask attributes = 0;
+        package::KeyWords features;       // the key, with all lobes
+        package::KeyWords hitFeatures;    // those that hits keep; the same unless the package has --hit-lobes
+        std::uint32_t geometryFlags = 0;  // kGeometry* of shaders/interop/scene.h
+    };
+
+    // A texture of a material.
+    struct TextureUse {
+        std::uint32_t slot = 0;  // of the record: below MaterialTable::textureCount
+        TextureHandle texture;
+        package::SamplerEntry sampler{0, 0, 1, 1, 1, 1};
+        std::uint32_t texCoord = 0;  // UV set: 0 or 1
+    };
+
+    // A material that the package does not have, or has with other values.
+    struct MaterialSource {
+        // A record in the package's layout (MaterialRecord of its C++ header). Texture transforms are taken
+        // from it; `textures` says which textures it has.
+        std::span<const std::uint8_t> record;
+        // One for each set of attributes that a primitive with this material has or will have.
+        std::span<const MaterialKey> keys;
+        std::span<const TextureUse> textures;
+    };
+
+    // The report of an edit.
+    struct Report {
+        // A material on a primitive for which the package has no shader.
+        struct MissingCase {
+            MaterialHandle material;
+            package::KeyWords features;      // its key
+            std::vector<std::string> names;  // the names of these features
+        };
+        // Materials that the fallback shades from now on. Each key is listed once in an edit.
+        std::vector<MissingCase> missing;
+    };
 
     struct EditedPrimitive {
         PrimitiveView geometry;  // its numbers of mesh and primitive are not read
@@ -167,12 +136,12 @@ public:
 
     struct AddedMesh {
         MeshHandle mesh;
-        EditReport report;
+        Report report;
     };
 
     struct AddedInstance {
         InstanceHandle instance;
-        EditReport report;
+        Report report;
     };
 
     // An instance that is added.
@@ -209,7 +178,7 @@ public:
     Result<MaterialHandle> addMaterial(const MaterialSource& source);
     // Replaces a material by another, which may have other keys and textures. Takes time in proportion to the
     // scene's instances if the keys of its primitives change.
-    Result<EditReport> setMaterial(MaterialHandle material, const MaterialSource& source);
+    Result<Report> setMaterial(MaterialHandle material, const MaterialSource& source);
     // Replaces the values of a material, whose keys and textures stay. The caller makes sure that the values
     // agree with the keys. Texture transforms are values. In packages with emissive lights, a material is a
     // light if its key has kGeometryEmitter and its values emit light.
@@ -226,7 +195,7 @@ public:
     // those of memory.
     Status setVertices(MeshHandle mesh, std::uint32_t primitive, const VertexValues& vertices);
     // Gives a primitive of the mesh another material. Instances that have none of their own follow.
-    Result<EditReport> setMeshMaterial(MeshHandle mesh, std::uint32_t primitive, MaterialHandle material);
+    Result<Report> setMeshMaterial(MeshHandle mesh, std::uint32_t primitive, MaterialHandle material);
     Status removeMesh(MeshHandle mesh);
 
     // An instance that is not visible, or whose transform is flattened, is neither drawn nor hit. Errors:
@@ -242,12 +211,12 @@ public:
                         std::span<const float> morphWeights);
     Status showInstance(InstanceHandle instance, bool visible);
     // Gives the instance another mesh and materials, as addInstance() does. Its place stays.
-    Result<EditReport> setInstanceMesh(InstanceHandle instance, MeshHandle mesh,
-                                       std::span<const MaterialHandle> materials = {});
+    Result<Report> setInstanceMesh(InstanceHandle instance, MeshHandle mesh,
+                                   std::span<const MaterialHandle> materials = {});
     // Gives a primitive of the instance a material of its own, as a variant of KHR_materials_variants does. A
     // handle that names nothing takes it away again.
-    Result<EditReport> setInstanceMaterial(InstanceHandle instance, std::uint32_t primitive,
-                                           MaterialHandle material);
+    Result<Report> setInstanceMaterial(InstanceHandle instance, std::uint32_t primitive,
+                                       MaterialHandle material);
     Status removeInstance(InstanceHandle instance);
 
     // Lights keep their order when one is removed. In packages with a light hierarchy, record() builds it
@@ -279,6 +248,37 @@ public:
 
 private:
     SceneStore* store_;
+};
+
+// The report of replacePackage(), of Renderer and of RaySteps: the pipelines and buffers that it keeps, and
+// those that it makes.
+struct PackageReplacement {
+    // Pipelines that the new package has in common with the earlier one: their SPIR-V is the same.
+    std::uint32_t pipelinesKept = 0;
+    // Pipelines that are made, in the call or in the background.
+    std::uint32_t pipelinesMade = 0;
+    // The shader IDs, in the new package, of the cases with a pipeline of their own that is made. Only
+    // strategies with a dispatch for each case have such pipelines.
+    std::vector<std::uint32_t> casesMade{};
+    // Buffers of the frame that have the size that the new package needs, and those that are made.
+    std::uint32_t buffersKept = 0;
+    std::uint32_t buffersMade = 0;
+    // In a scene that is edited: the materials that the fallback of the new package shades.
+    std::vector<SceneEditor::Report::MissingCase> missing{};
+};
+
+// The progress of the last replacement.
+struct PackageProgress {
+    std::uint64_t inUse = 0;    // replacements that recordings have begun to use
+    bool pending = false;       // a package waits; recordings use the old one
+    bool ready = false;         // the next recording uses the package that waits
+    std::uint32_t missing = 0;  // pipelines that it still waits for
+    // Why a pending package is not ready: a sentence for each Renderer and RaySteps of the scene that all
+    // wait for. They are numbered by kind, in the order in which they were made.
+    std::vector<std::string> waitsFor{};
+    // Why the last replacement was given up; recordings continue with the old package. The next
+    // replacePackage() clears it.
+    std::optional<Diagnostic> error{};
 };
 
 // Textures whose finer levels reach the device while frames are drawn. docs/textures.md, "Streaming".

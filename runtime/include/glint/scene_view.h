@@ -144,23 +144,24 @@ inline constexpr TexelChannels kChannelsAsStored{TexelChannel::R, TexelChannel::
 
 // --- The scene ---
 
-// Differences to the attributes of a primitive. Each span is empty or as long as the primitive's positions.
-struct MorphTargetView {
-    std::span<const std::array<float, 3>> positions;
-    std::span<const std::array<float, 3>> normals;   // only if the primitive has normals
-    std::span<const std::array<float, 3>> tangents;  // only if the primitive has tangents
-};
-
-// An attribute of vertices of an application's own, which materials of packs read.
-struct AttributeView {
-    std::string_view name;          // as in glTF: "_WEAR"
-    std::uint32_t channels = 1;     // 1 to 4
-    std::span<const float> values;  // `channels` for each position
-};
-
 // A triangle list. Attribute spans are empty or as long as `positions`. A missing span must agree with the
 // package's key for this primitive; upload reports an error otherwise.
 struct PrimitiveView {
+    // Differences to the attributes of a primitive. Each span is empty or as long as the primitive's
+    // positions.
+    struct MorphTarget {
+        std::span<const std::array<float, 3>> positions;
+        std::span<const std::array<float, 3>> normals;   // only if the primitive has normals
+        std::span<const std::array<float, 3>> tangents;  // only if the primitive has tangents
+    };
+
+    // An attribute of vertices of an application's own, which materials of packs read.
+    struct Attribute {
+        std::string_view name;          // as in glTF: "_WEAR"
+        std::uint32_t channels = 1;     // 1 to 4
+        std::span<const float> values;  // `channels` for each position
+    };
+
     std::uint32_t mesh = 0;       // mesh number, as in the package's PrimitiveEntry
     std::uint32_t primitive = 0;  // within the mesh
     std::span<const std::array<float, 3>> positions;
@@ -171,8 +172,8 @@ struct PrimitiveView {
     std::span<const std::array<float, 4>> colors;  // linear RGBA
     std::span<const std::uint32_t> indices;        // three indices for each triangle
     // Attributes that the package does not read (Package::attributes()) are ignored.
-    std::span<const AttributeView> attributes{};
-    std::span<const MorphTargetView> targets{};
+    std::span<const Attribute> attributes{};
+    std::span<const MorphTarget> targets{};
     // Joints and weights of a primitive that follows a skin, vertex by vertex. Every vertex has the same
     // number of them. Joints are indices into InstanceView::joints. The weights of a vertex are at least 0
     // and sum to 1.
@@ -198,7 +199,7 @@ struct InstanceView {
 // blue are taken to be in sRGB.
 struct ImageView {
     using Format = TexelFormat;
-    using Dimension = package::TextureDimension;
+    using Dimension = package::TextureEntry::Dimension;
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     std::span<const std::uint8_t> pixels;  // byteCount(levels) bytes: texels, or blocks row by row
@@ -268,55 +269,29 @@ struct MaterialView {
     std::span<const std::uint8_t> record;
 };
 
-// The order in which the driver gets the triangles of each primitive and the instances of the scene. Mesa's
-// lavapipe makes its trees by halving its input, so without an order rays may take a hundred times as long.
-// Shaders number triangles by their place in that order.
-enum class TraversalOrder : std::uint32_t {
-    Auto,     // Halving on CPUs, Input on other devices
-    Input,    // the scene's own order
-    Halving,  // an order in which each half is small, and each half of a half
-};
-inline constexpr Named<TraversalOrder> kTraversalOrderNames[] = {
-    {TraversalOrder::Auto, "auto", "halving on a CPU, input on a GPU"},
-    {TraversalOrder::Input, "input", "that of the scene"},
-    {TraversalOrder::Halving, "halving", "for drivers that build trees by halving their input"},
-};
-constexpr std::span<const Named<TraversalOrder>> namesOf(TraversalOrder /*type*/) {
-    return kTraversalOrderNames;
-}
-
-// The storage form of a scene's vertices on the device.
-enum class VertexForm : std::uint32_t {
-    Compact,
-    Full,
-    Quantized,
-};
-inline constexpr Named<VertexForm> kVertexFormNames[] = {
-    {VertexForm::Compact, "compact",
-     "16 bits for normals, tangents and UVs, and 8 or 16 for colours, where that is exact enough; for "
-     "positions "
-     "and indices, where that is exact"},
-    {VertexForm::Full, "full", "32 bits"},
-    {VertexForm::Quantized, "quantized", "as compact, with 16 bits for all positions"},
-};
-constexpr std::span<const Named<VertexForm>> namesOf(VertexForm /*type*/) {
-    return kVertexFormNames;
-}
-
-// When the alpha tests of alphaMode MASK are decided.
-enum class OpacityUse : std::uint32_t {
-    Proved,
-    Tested,
-};
-inline constexpr Named<OpacityUse> kOpacityUseNames[] = {
-    {OpacityUse::Proved, "proved", "at upload for triangles that are proved to have one answer"},
-    {OpacityUse::Tested, "tested", "by each ray"},
-};
-constexpr std::span<const Named<OpacityUse>> namesOf(OpacityUse /*type*/) {
-    return kOpacityUseNames;
-}
-
 struct SceneView {
+    // The order in which the driver gets the triangles of each primitive and the instances of the scene.
+    // Mesa's lavapipe makes its trees by halving its input, so without an order rays may take a hundred times
+    // as long. Shaders number triangles by their place in that order.
+    enum class TraversalOrder : std::uint32_t {
+        Auto,     // Halving on CPUs, Input on other devices
+        Input,    // the scene's own order
+        Halving,  // an order in which each half is small, and each half of a half
+    };
+
+    // The storage form of a scene's vertices on the device.
+    enum class VertexForm : std::uint32_t {
+        Compact,
+        Full,
+        Quantized,
+    };
+
+    // When the alpha tests of alphaMode MASK are decided.
+    enum class OpacityUse : std::uint32_t {
+        Proved,
+        Tested,
+    };
+
     std::span<const PrimitiveView> primitives;  // sorted by (mesh, primitive); all meshes of instances
     std::span<const InstanceView> instances;    // relative to `origin`, as `lights` are
     std::span<const ImageView> images;          // indexed by the package's TextureEntry::image
@@ -354,6 +329,32 @@ struct SceneView {
     // visible things.
     std::array<double, 3> origin{};
 };
+inline constexpr Named<SceneView::TraversalOrder> kTraversalOrderNames[] = {
+    {SceneView::TraversalOrder::Auto, "auto", "halving on a CPU, input on a GPU"},
+    {SceneView::TraversalOrder::Input, "input", "that of the scene"},
+    {SceneView::TraversalOrder::Halving, "halving", "for drivers that build trees by halving their input"},
+};
+constexpr std::span<const Named<SceneView::TraversalOrder>> namesOf(SceneView::TraversalOrder /*type*/) {
+    return kTraversalOrderNames;
+}
+inline constexpr Named<SceneView::VertexForm> kVertexFormNames[] = {
+    {SceneView::VertexForm::Compact, "compact",
+     "16 bits for normals, tangents and UVs, and 8 or 16 for colours, where that is exact enough; for "
+     "positions "
+     "and indices, where that is exact"},
+    {SceneView::VertexForm::Full, "full", "32 bits"},
+    {SceneView::VertexForm::Quantized, "quantized", "as compact, with 16 bits for all positions"},
+};
+constexpr std::span<const Named<SceneView::VertexForm>> namesOf(SceneView::VertexForm /*type*/) {
+    return kVertexFormNames;
+}
+inline constexpr Named<SceneView::OpacityUse> kOpacityUseNames[] = {
+    {SceneView::OpacityUse::Proved, "proved", "at upload for triangles that are proved to have one answer"},
+    {SceneView::OpacityUse::Tested, "tested", "by each ray"},
+};
+constexpr std::span<const Named<SceneView::OpacityUse>> namesOf(SceneView::OpacityUse /*type*/) {
+    return kOpacityUseNames;
+}
 
 // A new pose of a scene. Instances, lights and materials have the same number and order as at upload. Each
 // instance keeps its mesh and its number of joints and weights, each light its type, and each material its

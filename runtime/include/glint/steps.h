@@ -73,6 +73,11 @@ public:
             // move. Geometries with primitiveMaterials have none. Geometries with the same span share the
             // memory, 16 bytes a corner.
             std::span<const std::array<float, 3>> lightCorners{};
+            // The mean luminance (linear, 0 to 1) of the emissive texture's texels on each triangle, or one
+            // number for all. The hierarchy of lights then prefers triangles that show bright texels; samples
+            // read the texture itself, so that the numbers change the noise alone. A triangle with 0 is no
+            // light, which is right if all of its texels are black. If empty, the texture counts as white.
+            std::span<const float> lightTexels{};
         };
 
         // A texture of the package's scene (PackageScene::textures) as the host has it. Its view has the type
@@ -319,7 +324,7 @@ public:
         VkDeviceAddress tlas = 0;  // the acceleration structure, if Bindings::tlas is kByAddress
         // The light for rays that leave the scene, with HitAnswer::Radiance.
         SkyView sky{};
-        // With a package that reads an environment map. The host binds Environment's image at
+        // With a package that reads an environment map. The host binds Environment::image() at
         // Bindings::environment, and keeps it until the device has completed the batch.
         const Environment* environment = nullptr;
         float environmentRotation = 0.0F;  // radians, as in FrameOptions
@@ -344,10 +349,10 @@ public:
     // Starts a batch: waits for all earlier commands that write memory, and sets the constants. The values
     // are stored in the command buffer. Batches share buffers, so on several queues the host orders them
     // itself. With an error nothing is recorded. Errors: "ray-steps", "sky", "environment-missing",
-    // "environment-unread", "package-bounces" (more than the package has), "package-replaced"
-    // (EngineScene::update() has given the scene the content of another package), and those of memory and
-    // Vulkan's calls. If the scene has other geometries, strategies with a pipeline of their own get another
-    // shader binding table, and may need another pipeline, which the call then makes.
+    // "environment-unread", "environment-unsampled", "package-bounces" (more than the package has),
+    // "package-replaced" (EngineScene::update() has given the scene the content of another package), and
+    // those of memory and Vulkan's calls. If the scene has other geometries, strategies with a pipeline of
+    // their own get another shader binding table, and may need another pipeline, which the call then makes.
     Status begin(VkCommandBuffer commands, const Batch& batch);
     // Traces the rays, or takes the hits that the host gives. Strategies that order no hits trace and shade
     // in one pass, in shade(), so with them this and order() do nothing.

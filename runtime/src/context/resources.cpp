@@ -304,7 +304,7 @@ Result<AlignedBuffer> createAligned(Context::State& context, MemoryPool& pool, V
 
 namespace {
 
-// By TextureDimension.
+// By TextureEntry::Dimension.
 struct DimensionInfo {
     VkImageViewType view;
     VkImageType image;
@@ -340,7 +340,7 @@ Result<DeviceImage> createImage(Context::State& context, MemoryPool& pool, const
     image.dimension = info.dimension;
     image.layers = info.layers;
     const DimensionInfo& dimension = kDimensions[static_cast<std::size_t>(info.dimension)];
-    const bool isVolume = info.dimension == package::TextureDimension::Volume;
+    const bool isVolume = info.dimension == package::TextureEntry::Dimension::Volume;
     const VkImageCreateInfo create{
         .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
         .flags = dimension.flags,

@@ -179,7 +179,7 @@ struct DeviceImage {
     VkExtent2D extent{};
     std::uint32_t mips = 1;
     VkComponentMapping components{};  // of the view
-    package::TextureDimension dimension = package::TextureDimension::Flat;
+    package::TextureEntry::Dimension dimension = package::TextureEntry::Dimension::Flat;
     std::uint32_t layers = 1;  // or faces, or slices
     VkDeviceSize bytes = 0;    // size in memory
 };
@@ -191,7 +191,7 @@ struct ImageInfo {
     VkImageUsageFlags usage = 0;
     VkImageAspectFlags aspect = VK_IMAGE_ASPECT_COLOR_BIT;
     VkComponentMapping components{};  // of the view
-    package::TextureDimension dimension = package::TextureDimension::Flat;
+    package::TextureEntry::Dimension dimension = package::TextureEntry::Dimension::Flat;
     std::uint32_t layers = 1;  // of all views; of a cube its faces, of a 3D image its slices
 };
 

@@ -116,7 +116,7 @@ void Uploader::startImage(const DeviceImage& target) {
 namespace {
 
 bool isVolume(const DeviceImage& image) {
-    return image.dimension == package::TextureDimension::Volume;
+    return image.dimension == package::TextureEntry::Dimension::Volume;
 }
 
 // The size of a mip in rows of texels or blocks, and of a row in bytes.

@@ -34,13 +34,13 @@ private:
 };
 
 using Difference = std::array<float, 3>;
-using Member = std::span<const Difference> MorphTargetView::*;
+using Member = std::span<const Difference> PrimitiveView::MorphTarget::*;
 
 // Joins the differences target by target. Targets that lack the attribute get zeros. The result is empty if
 // all of them lack it.
 std::vector<Difference> joined(const PrimitiveView& view, Member member) {
     const bool any = std::ranges::any_of(
-        view.targets, [&](const MorphTargetView& target) { return !(target.*member).empty(); });
+        view.targets, [&](const PrimitiveView::MorphTarget& target) { return !(target.*member).empty(); });
     std::vector<Difference> differences;
     for (std::size_t i = 0; any && i < view.targets.size(); ++i) {
         const std::span<const Difference> own = view.targets[i].*member;
@@ -59,9 +59,9 @@ Result<DeformSource> uploadDeformSource(Context::State& context, MemoryPool& poo
         return source;
     }
     Packing packing;
-    const std::vector<Difference> positions = joined(view, &MorphTargetView::positions);
-    const std::vector<Difference> normals = joined(view, &MorphTargetView::normals);
-    const std::vector<Difference> tangents = joined(view, &MorphTargetView::tangents);
+    const std::vector<Difference> positions = joined(view, &PrimitiveView::MorphTarget::positions);
+    const std::vector<Difference> normals = joined(view, &PrimitiveView::MorphTarget::normals);
+    const std::vector<Difference> tangents = joined(view, &PrimitiveView::MorphTarget::tangents);
     const std::vector<std::uint32_t> joints(view.joints.begin(), view.joints.end());
     const std::vector<float> weights(view.jointWeights.begin(), view.jointWeights.end());
     const VkDeviceSize offsets[] = {packing.add(positions), packing.add(normals), packing.add(tangents),

@@ -122,9 +122,9 @@ Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, 
     if (primitive.triangleCount == 0) {
         return primitive;
     }
-    CompactWords compact = how.form == VertexForm::Full ? CompactWords{} : compactWords(view);
+    CompactWords compact = how.form == SceneView::VertexForm::Full ? CompactWords{} : compactWords(view);
     // Shaders read words, so triangles of 16-bit indices must begin where the primitive does.
-    if (how.form != VertexForm::Full && primitive.vertexCount <= kMostShortVertices &&
+    if (how.form != SceneView::VertexForm::Full && primitive.vertexCount <= kMostShortVertices &&
         primitive.triangleCount <= how.unsplitTriangles) {
         compact.indices = shortIndices(content.indices);
         compact.forms |= gpu::kGeometryShortIndices;
@@ -173,7 +173,7 @@ void takeEntry(const package::PrimitiveEntry& entry, gpu::GeometryRecord& record
 
 package::KeyWords keyOf(const gpu::GeometryRecord& record) {
     return {record.featureLobes, record.featureInputs, record.featureModel,
-            std::bit_cast<package::OwnWords>(record.featureOwn)};
+            std::bit_cast<package::KeyWords::Own>(record.featureOwn)};
 }
 
 gpu::GeometryRecord makeGeometryRecord(const package::PrimitiveEntry& entry, const GpuPrimitive& primitive,
@@ -274,7 +274,8 @@ std::vector<float> joinAllAttributes(const Package& package, const PrimitiveView
     std::vector<float> joined(stride * view.positions.size());
     std::size_t offset = 0;
     for (const package::AttributeEntry& row : known) {
-        const auto given = std::ranges::find(view.attributes, package.string(row.name), &AttributeView::name);
+        const auto given =
+            std::ranges::find(view.attributes, package.string(row.name), &PrimitiveView::Attribute::name);
         for (std::size_t vertex = 0; vertex < view.positions.size(); ++vertex) {
             float* const target = &joined[vertex * stride + offset];
             if (given == view.attributes.end()) {

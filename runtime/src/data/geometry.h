@@ -49,7 +49,7 @@ BlasGeometry blasGeometry(const GpuPrimitive& primitive, std::uint32_t first, st
 
 // The settings of the upload of primitives.
 struct PrimitiveUpload {
-    VertexForm form = VertexForm::Compact;
+    SceneView::VertexForm form = SceneView::VertexForm::Compact;
     // A primitive with more triangles becomes several geometries, which may begin at any of them.
     std::uint64_t unsplitTriangles = 0;
     MemoryPool* builds = nullptr;  // for GpuPrimitive::buildInput

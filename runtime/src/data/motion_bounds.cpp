@@ -99,7 +99,7 @@ MotionBounds::MotionBounds(std::span<const PrimitiveView> primitives) {
         for (const auto& [joint, box] : joints) {
             part.joints.push_back({joint, box});
         }
-        for (const MorphTargetView& target : primitive.targets) {
+        for (const PrimitiveView::MorphTarget& target : primitive.targets) {
             Box range = Box::nothing();
             for (const std::array<float, 3>& difference : target.positions) {
                 range.extend(boxOf(difference));

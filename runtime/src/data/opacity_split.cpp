@@ -78,9 +78,9 @@ std::optional<KnownAlpha> knownAlpha(const ImageView& image) {
 
 // Texture coordinates as shaders read them (host/geometry.glsl).
 std::vector<std::array<float, 2>> coordinatesOf(std::span<const std::array<float, 2>> given,
-                                                VertexForm form) {
+                                                SceneView::VertexForm form) {
     std::vector<std::array<float, 2>> read(given.begin(), given.end());
-    if (form != VertexForm::Compact || given.empty()) {
+    if (form != SceneView::VertexForm::Compact || given.empty()) {
         return read;
     }
     const std::optional<std::vector<std::uint32_t>> words = packTexCoords(given);
@@ -98,11 +98,11 @@ std::vector<std::array<float, 2>> coordinatesOf(std::span<const std::array<float
     return read;
 }
 
-std::vector<float> vertexAlphaOf(std::span<const std::array<float, 4>> colors, VertexForm form) {
+std::vector<float> vertexAlphaOf(std::span<const std::array<float, 4>> colors, SceneView::VertexForm form) {
     std::vector<float> alpha;
     alpha.reserve(colors.size());
     const std::optional<PackedColors> packed =
-        form == VertexForm::Compact && !colors.empty() ? packColors(colors) : std::nullopt;
+        form == SceneView::VertexForm::Compact && !colors.empty() ? packColors(colors) : std::nullopt;
     for (std::size_t i = 0; i < colors.size(); ++i) {
         if (!packed) {
             alpha.push_back(colors[i][3]);
@@ -324,7 +324,7 @@ void appendBytes(std::vector<std::uint8_t>& bytes, const T& value) {
 DecidedTriangles decideTriangles(const Package& package, const PackageScene& known, const SceneView& scene,
                                  std::span<const std::uint8_t> materials, const BlasCapacity& capacity,
                                  std::uint32_t level) {
-    if (package.opacity() == nullptr || scene.opacity == OpacityUse::Tested) {
+    if (package.opacity() == nullptr || scene.opacity == SceneView::OpacityUse::Tested) {
         return {};
     }
     const MaterialTable table = tableWith(known.materials, materials);

@@ -67,7 +67,7 @@ Status checkDeclared(const Package& package, const PrimitiveView& view, const pa
                      const std::string& where) {
     for (const package::AttributeEntry& row : package.attributes()) {
         const std::string name(package.string(row.name));
-        const auto given = std::ranges::find(view.attributes, name, &AttributeView::name);
+        const auto given = std::ranges::find(view.attributes, name, &PrimitiveView::Attribute::name);
         if (given == view.attributes.end()) {
             if (entry.key.hasAny(row.feature) && row.hasFallback == 0 && !view.positions.empty()) {
                 return makeError("scene-package", where,
@@ -201,12 +201,12 @@ ImageLimits imageLimits(const Context::State& context) {
             core.maxImageDimensionCube, core.maxImageDimension3D};
 }
 
-Status checkDimension(package::TextureDimension given, package::TextureDimension wanted,
+Status checkDimension(package::TextureEntry::Dimension given, package::TextureEntry::Dimension wanted,
                       const std::string& where) {
     if (given == wanted) {
         return okStatus();
     }
-    const auto of = [](package::TextureDimension dimension) {
+    const auto of = [](package::TextureEntry::Dimension dimension) {
         return static_cast<std::size_t>(dimension) < std::size(package::kTextureDimensionNames)
                    ? std::string(namesOf(dimension)[static_cast<std::size_t>(dimension)].what)
                    : "of no known dimension";
@@ -259,7 +259,7 @@ Status checkImage(const ImageView& image, bool srgb, const std::string& where, c
                          "use values of TexelFormat and TexelChannel");
     }
     const TexelFormatInfo& info = infoOf(image.format);
-    if (image.dimension == package::TextureDimension::Volume && !hasVolumes(image.format)) {
+    if (image.dimension == package::TextureEntry::Dimension::Volume && !hasVolumes(image.format)) {
         return makeError("scene-image", where,
                          std::string("there are no 3D images in the format ") + info.name,
                          "give it in RGBA8 or in a BC format");
@@ -359,7 +359,7 @@ Diagnostic attributeError(const PrimitiveView& view, const std::string& what, co
 }
 
 Status checkTargets(const PrimitiveView& view) {
-    for (const MorphTargetView& target : view.targets) {
+    for (const PrimitiveView::MorphTarget& target : view.targets) {
         struct Member {
             std::size_t count;
             std::size_t base;

@@ -57,7 +57,7 @@ struct MotionShape {
 Status checkMotion(const MotionView& motion, const MotionShape& shape);
 
 // Error "texture-dimension": an image has another dimension than the package's shaders read.
-Status checkDimension(package::TextureDimension given, package::TextureDimension wanted,
+Status checkDimension(package::TextureEntry::Dimension given, package::TextureEntry::Dimension wanted,
                       const std::string& where);
 
 // Checks the size, the format, the levels and the number of bytes of an image that is read as colour in sRGB

@@ -314,9 +314,9 @@ std::vector<std::uint32_t> orderSplit(const PrimitiveView& view, std::span<const
 
 }  // namespace
 
-LeafOrder leafOrderFor(const Context::State& context, TraversalOrder wanted) {
+LeafOrder leafOrderFor(const Context::State& context, SceneView::TraversalOrder wanted) {
     const bool isCpu = context.limits.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
-    if (wanted == TraversalOrder::Input || (wanted == TraversalOrder::Auto && !isCpu)) {
+    if (wanted == SceneView::TraversalOrder::Input || (wanted == SceneView::TraversalOrder::Auto && !isCpu)) {
         return nullptr;
     }
     return context.leafOrder != nullptr ? context.leafOrder : halvingOrder;

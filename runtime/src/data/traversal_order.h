@@ -43,7 +43,7 @@ std::vector<std::uint32_t> halvingOrder(std::span<const LeafBox> leaves, std::ui
 
 // Returns how a scene is ordered on this device, or null if it keeps its order. Drivers of GPUs search for a
 // good tree themselves.
-LeafOrder leafOrderFor(const Context::State& context, TraversalOrder wanted);
+LeafOrder leafOrderFor(const Context::State& context, SceneView::TraversalOrder wanted);
 
 // Returns the capacity of one BLAS if triangles are ordered: one geometry. A driver that keeps the geometries
 // of a BLAS in sequence would mix parts of neighbours in its nodes. With one geometry each, instances can be

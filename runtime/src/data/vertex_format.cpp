@@ -178,9 +178,10 @@ GridPositions placeOnGrid(std::span<const std::array<float, 3>> positions, const
     return placed;
 }
 
-std::vector<GridPositions> packPositions(std::span<const PrimitiveView> primitives, VertexForm form) {
+std::vector<GridPositions> packPositions(std::span<const PrimitiveView> primitives,
+                                         SceneView::VertexForm form) {
     std::vector<GridPositions> packed(primitives.size());
-    for (std::size_t first = 0; first < primitives.size() && form != VertexForm::Full;) {
+    for (std::size_t first = 0; first < primitives.size() && form != SceneView::VertexForm::Full;) {
         const auto end =
             std::find_if(primitives.begin() + static_cast<std::ptrdiff_t>(first), primitives.end(),
                          [&](const PrimitiveView& other) { return other.mesh != primitives[first].mesh; });
@@ -188,7 +189,7 @@ std::vector<GridPositions> packPositions(std::span<const PrimitiveView> primitiv
         const std::span<const PrimitiveView> mesh = primitives.subspan(first, count);
         std::optional<PositionGrid> grid;
         if (std::ranges::none_of(mesh, deforms)) {
-            grid = form == VertexForm::Quantized ? coverByGrid(mesh) : findGrid(mesh);
+            grid = form == SceneView::VertexForm::Quantized ? coverByGrid(mesh) : findGrid(mesh);
         }
         for (std::size_t i = 0; grid && i < count; ++i) {
             packed[first + i] = placeOnGrid(mesh[i].positions, *grid);

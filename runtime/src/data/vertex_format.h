@@ -42,7 +42,8 @@ GridPositions placeOnGrid(std::span<const std::array<float, 3>> positions, const
 // Returns the positions of each primitive in the form that the scene asks for. Those of meshes that follow
 // joints or morph targets stay as they are, because the device computes with them. `primitives` are sorted by
 // mesh.
-std::vector<GridPositions> packPositions(std::span<const PrimitiveView> primitives, VertexForm form);
+std::vector<GridPositions> packPositions(std::span<const PrimitiveView> primitives,
+                                         SceneView::VertexForm form);
 
 // Returns the primitives with the values of `positions`, which must outlive the result, in place of their own
 // positions.

@@ -206,7 +206,7 @@ Status checkOutside(const FrameSize& size, const Outside& outside) {
     if (size.skyLight && outside.environment != nullptr && !outside.environment->statistics().sampled) {
         return makeError("environment-unsampled", "",
                          "the package samples the sky as a light, and the environment map can't be sampled",
-                         "create it with EnvironmentOptions::sampled, or compile with --no-sky-light");
+                         "create it with Environment::Options::sampled, or compile with --no-sky-light");
     }
     if (!size.environmentMap && outside.environment != nullptr) {
         return makeError(

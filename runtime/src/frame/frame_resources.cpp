@@ -284,17 +284,17 @@ std::vector<VkDescriptorSetLayoutBinding> setBindings(const Context::State& cont
 
 }  // namespace
 
-VkFormat vulkanFormat(package::LayerFormat format) {
+VkFormat vulkanFormat(package::LayerInfo::Format format) {
     switch (format) {
-        case package::LayerFormat::Float1:
+        case package::LayerInfo::Format::Float1:
             return VK_FORMAT_R32_SFLOAT;
-        case package::LayerFormat::Float4:
+        case package::LayerInfo::Format::Float4:
             return VK_FORMAT_R32G32B32A32_SFLOAT;
-        case package::LayerFormat::Half4:
+        case package::LayerInfo::Format::Half4:
             return VK_FORMAT_R16G16B16A16_SFLOAT;
-        case package::LayerFormat::Snorm4:
+        case package::LayerInfo::Format::Snorm4:
             return VK_FORMAT_R16G16B16A16_SNORM;
-        case package::LayerFormat::Integer:
+        case package::LayerInfo::Format::Integer:
             return VK_FORMAT_R32_UINT;
     }
     return VK_FORMAT_UNDEFINED;
@@ -472,9 +472,7 @@ Result<DescriptorSet> createFrameSet(Context::State& context, const FrameSize& s
         bind(gpu::kBindingLayers + i, frame.layers[i]);
     }
     if (environment != nullptr) {
-        write(gpu::kBindingEnvironment, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER,
-              {environment->sampler.get(), environment->map.view.get(),
-               VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL});
+        write(gpu::kBindingEnvironment, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, environment->image());
     }
     return made;
 }

@@ -176,7 +176,7 @@ VkDeviceSize listSlots(const FrameSize& size);
 std::uint64_t maxRayDispatch(const DeviceLimits& limits);
 
 // Returns the format of a layer's images.
-VkFormat vulkanFormat(package::LayerFormat format);
+VkFormat vulkanFormat(package::LayerInfo::Format format);
 
 // Returns the image that a binding leads to: its own, or that of the picture. Frames that do not accumulate
 // write the light of the primary surfaces there, and compose() adds to it.

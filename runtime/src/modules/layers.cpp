@@ -5,11 +5,11 @@
 namespace glint::package {
 namespace {
 
-using Subject = LayerSubject;
-using Format = LayerFormat;
-using Mean = LayerMean;
+using Subject = LayerInfo::Subject;
+using Format = LayerInfo::Format;
+using Mean = LayerInfo::Mean;
 
-constexpr LayerFormatInfo kFormats[] = {
+constexpr LayerInfo::FormatInfo kFormats[] = {
     {Format::Float1, 4, "r32f", 1},   {Format::Float4, 16, "rgba32f", 4},
     {Format::Half4, 8, "rgba16f", 4}, {Format::Snorm4, 8, "rgba16_snorm", 4},
     {Format::Integer, 4, "r32ui", 1},
@@ -131,7 +131,7 @@ constexpr LayerInfo kRows[] = {
      .function = "primaryShader",
      .absent = "uvec4(0xFFFFFFFFu)"},
     {.number = 13,
-     .demands = kLayerHistory,
+     .demands = LayerInfo::kHistory,
      .name = "motion",
      .what = "from here to where the point was in the frame before: pixels right and down, metres of depth",
      .subject = Subject::Surface,
@@ -163,14 +163,14 @@ constexpr LayerInfo kRows[] = {
      .continues = true,
      .from = "radiance"},
     {.number = 17,
-     .demands = kLayerRays,
+     .demands = LayerInfo::kRays,
      .name = "distance",
      .what = "that the ray travelled from the surface, metres; 0: no ray, 65504: it left the scene",
      .subject = Subject::Ray,
      .format = Format::Float1,
      .channels = "Z"},
     {.number = 18,
-     .demands = kLayerHistory | kLayerRays,
+     .demands = LayerInfo::kHistory | LayerInfo::kRays,
      .name = "virtual-motion",
      .what = "as motion, of what the surface shows: the mirrored or refracted point",
      .subject = Subject::Ray,
@@ -200,7 +200,7 @@ constexpr LayerInfo kRows[] = {
      .continues = true,
      .from = "bounce-radiance"},
     {.number = 22,
-     .demands = kLayerRays,
+     .demands = LayerInfo::kRays,
      .name = "bounce-distance",
      .what = "length of the bounce's ray, metres; 0: no ray, 65504: it left the scene",
      .subject = Subject::Bounce,
@@ -243,7 +243,7 @@ constexpr LayerInfo kRows[] = {
      .function = "primaryTextureLevel",
      .absent = "vec4(65504.0)"},
     {.number = 27,
-     .demands = kLayerRays,
+     .demands = LayerInfo::kRays,
      .name = "hit-shader",
      .what = "shader ID of what the ray hit; 4294967295: no ray, the two before: it left the scene, or ended "
              "on screen",
@@ -262,7 +262,7 @@ constexpr LayerInfo kRows[] = {
      .absent = "uvec4(0u)",
      .tally = "GLINT_TALLY_RAYS"},
     {.number = 29,
-     .demands = kLayerQueries,
+     .demands = LayerInfo::kQueries,
      .name = "candidates",
      .what = "triangles whose alpha these rays tested",
      .subject = Subject::Work,
@@ -283,7 +283,7 @@ constexpr LayerInfo kRows[] = {
      .absent = "uvec4(0u)",
      .tally = "GLINT_TALLY_NON_FINITE"},
     {.number = 31,
-     .demands = kLayerClock,
+     .demands = LayerInfo::kClock,
      .name = "clocks",
      .what = "ticks of the device's clock that shading the pixel and its rays took, over all samples",
      .subject = Subject::Work,
@@ -316,8 +316,8 @@ constexpr LayerInfo kRows[] = {
 
 }  // namespace
 
-const LayerFormatInfo& infoOf(LayerFormat format) {
-    return *std::ranges::find(kFormats, format, &LayerFormatInfo::format);
+const LayerInfo::FormatInfo& infoOf(LayerInfo::Format format) {
+    return *std::ranges::find(kFormats, format, &LayerInfo::FormatInfo::format);
 }
 
 std::span<const LayerInfo> layerTable() {
@@ -335,8 +335,8 @@ const LayerInfo* findLayer(std::uint32_t number) {
 }
 
 bool hasSources(const LayerInfo& info) {
-    return info.subject == LayerSubject::Light || info.subject == LayerSubject::Ray ||
-           info.subject == LayerSubject::Bounce;
+    return info.subject == LayerInfo::Subject::Light || info.subject == LayerInfo::Subject::Ray ||
+           info.subject == LayerInfo::Subject::Bounce;
 }
 
 std::string layerName(const LayerInfo& info, std::string_view source, std::uint32_t bounce) {
@@ -347,13 +347,13 @@ std::string layerName(const LayerInfo& info, std::string_view source, std::uint3
     return bounce == 0 ? name : name + "." + std::to_string(bounce);
 }
 
-LayerPass passOf(const LayerEntry& entry) {
+LayerInfo::Pass passOf(const LayerInfo::Entry& entry) {
     const LayerInfo* const info = findLayer(entry.layer);
     if (info != nullptr && !info->tally.empty()) {
-        return LayerPass::Several;
+        return LayerInfo::Pass::Several;
     }
-    const bool ofSurface = info != nullptr && info->subject == LayerSubject::Surface;
-    return ofSurface || entry.effect == 0 ? LayerPass::FirstHits : LayerPass::Compose;
+    const bool ofSurface = info != nullptr && info->subject == LayerInfo::Subject::Surface;
+    return ofSurface || entry.effect == 0 ? LayerInfo::Pass::FirstHits : LayerInfo::Pass::Compose;
 }
 
 std::uint32_t demandsOf(std::span<const PackageLayer> layers) {
@@ -372,10 +372,10 @@ std::uint32_t layerBounces(std::span<const PackageLayer> layers) {
     return bounces;
 }
 
-bool showsWalkedLight(const LayerEntry& entry, std::uint32_t walks) {
+bool showsWalkedLight(const LayerInfo::Entry& entry, std::uint32_t walks) {
     const LayerInfo* const info = findLayer(entry.layer);
-    const bool isLight =
-        info != nullptr && (info->subject == LayerSubject::Light || info->subject == LayerSubject::Bounce);
+    const bool isLight = info != nullptr && (info->subject == LayerInfo::Subject::Light ||
+                                             info->subject == LayerInfo::Subject::Bounce);
     return isLight && (entry.effect & walks) != 0;
 }
 

@@ -258,10 +258,10 @@ std::optional<std::uint64_t> readStamp(const std::filesystem::path& file) {
 
 }  // namespace package
 
-PackageWatch::PackageWatch(const std::filesystem::path& folder)
+Package::Watch::Watch(const std::filesystem::path& folder)
     : folder_(folder), stamp_(package::stampFile(folder)), counter_(package::readStamp(stamp_).value_or(0)) {}
 
-Result<std::shared_ptr<const Package>> PackageWatch::poll() try {
+Result<std::shared_ptr<const Package>> Package::Watch::poll() try {
     const std::optional<std::uint64_t> now = package::readStamp(stamp_);
     if (!now || *now == counter_) {
         return std::shared_ptr<const Package>();

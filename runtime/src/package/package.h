@@ -41,7 +41,7 @@ struct Package::State {
     std::span<const package::AttributeEntry> attributes;
     std::span<const package::EffectEntry> effectEntries;
     std::vector<package::EffectInfo> effects;  // the same, with their names
-    std::span<const package::LayerEntry> layerEntries;
+    std::span<const package::LayerInfo::Entry> layerEntries;
     std::vector<package::PackageLayer> layers;         // the same, with their rows and names
     std::span<const package::EmissionEntry> emission;  // empty without emissive lights
     std::span<const package::OpacityEntry> opacity;    // empty where alpha is not tested by Glint's own code

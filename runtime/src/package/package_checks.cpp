@@ -374,10 +374,10 @@ Status checkEffects(const Package::State& state, const std::string& where) {
     package::Effect last = 0;
     for (const package::EffectEntry& entry : state.effectEntries) {
         const bool isNext = std::has_single_bit(entry.effect) && entry.effect > last;
-        const bool isKnown = entry.kind <= package::EffectKind::Rays &&
+        const bool isKnown = entry.kind <= package::EffectInfo::Kind::Rays &&
                              (entry.abilities & ~std::uint32_t{package::kAllEffectAbilities}) == 0;
         // Only effects with rays have abilities.
-        const bool fits = entry.abilities == 0 || entry.kind == package::EffectKind::Rays;
+        const bool fits = entry.abilities == 0 || entry.kind == package::EffectInfo::Kind::Rays;
         if (!inStrings(state, entry.name) || entry.name.length == 0 || !isNext || !isKnown || !fits) {
             return altered(where, "an effect is not well formed");
         }
@@ -390,15 +390,15 @@ Status checkEffects(const Package::State& state, const std::string& where) {
 Status checkLayers(const Package::State& state, const std::string& where) {
     std::uint32_t rays = 0;
     for (const package::EffectInfo& effect : state.effects) {
-        rays |= effect.kind == package::EffectKind::Rays ? effect.effect : 0U;
+        rays |= effect.kind == package::EffectInfo::Kind::Rays ? effect.effect : 0U;
     }
     std::set<std::tuple<std::uint32_t, package::Effect, std::uint32_t>> seen;
-    for (const package::LayerEntry& entry : state.layerEntries) {
+    for (const package::LayerInfo::Entry& entry : state.layerEntries) {
         const package::LayerInfo* const info = package::findLayer(entry.layer);
         if (info == nullptr) {
             return altered(where, phrase("layer ", entry.layer, " is unknown"));
         }
-        using Subject = package::LayerSubject;
+        using Subject = package::LayerInfo::Subject;
         const bool ofBounce = info->subject == Subject::Bounce;
         const bool isOfEffect = std::has_single_bit(entry.effect) && (entry.effect & rays) != 0;
         const bool fits = entry.effect == 0 ? info->subject != Subject::Ray && !ofBounce
@@ -417,7 +417,7 @@ Status checkLayers(const Package::State& state, const std::string& where) {
 // Requires entries that checkLayers() accepts.
 std::vector<package::PackageLayer> layersOf(const Package::State& state) {
     std::vector<package::PackageLayer> layers;
-    for (const package::LayerEntry& entry : state.layerEntries) {
+    for (const package::LayerInfo::Entry& entry : state.layerEntries) {
         const package::LayerInfo& info = *package::findLayer(entry.layer);
         const auto effect = std::ranges::find(state.effects, entry.effect, &package::EffectInfo::effect);
         const std::string_view source = effect == state.effects.end() ? package::kDirectLight : effect->name;

@@ -179,7 +179,7 @@ std::uint32_t BackgroundPipelines::missing() const {
     return missing_;
 }
 
-PipelineProgress BackgroundPipelines::progress() const {
+Renderer::PipelineProgress BackgroundPipelines::progress() const {
     const std::lock_guard lock(mutex_);
     return {wanted_, wanted_ - static_cast<std::uint32_t>(waiting_.size()) - running_, adopted_, error_};
 }

@@ -70,7 +70,7 @@ public:
     // Returns the number of pipelines, other than spare ones, that are not made yet.
     std::uint32_t missing() const;
 
-    PipelineProgress progress() const;
+    Renderer::PipelineProgress progress() const;
 
 private:
     // Gives out as many jobs as there are pipelines to begin and threads left.

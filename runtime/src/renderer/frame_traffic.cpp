@@ -103,9 +103,9 @@ void addFirstShadows(const TrafficShape& shape, std::uint32_t picture, std::vect
 }
 
 // The bytes that a pass reads and writes of its layers. Light is divided by an albedo, which is read.
-TrafficRow layersOf(const TrafficShape& shape, package::LayerPass pass, std::string_view name) {
+TrafficRow layersOf(const TrafficShape& shape, package::LayerInfo::Pass pass, std::string_view name) {
     TrafficRow row{name, Unit::Pixel, 0, 0};
-    for (const package::LayerEntry& entry : shape.layers) {
+    for (const package::LayerInfo::Entry& entry : shape.layers) {
         if (package::passOf(entry) != pass) {
             continue;
         }
@@ -114,7 +114,7 @@ TrafficRow layersOf(const TrafficShape& shape, package::LayerPass pass, std::str
         row.written += bytes;
         row.read += shape.accumulates && info.continues ? bytes : 0;
         row.read +=
-            info.name.ends_with("demodulated") ? package::infoOf(package::LayerFormat::Half4).bytes : 0;
+            info.name.ends_with("demodulated") ? package::infoOf(package::LayerInfo::Format::Half4).bytes : 0;
     }
     return row;
 }
@@ -200,7 +200,7 @@ TrafficShape trafficShape(const Package& package, const RendererOptions& options
     for (const package::PackageLayer& layer : package.layers()) {
         shape.layers.push_back({layer.info->number, layer.effect, layer.bounce});
     }
-    shape.layerRays = (package::demandsOf(package.layers()) & package::kLayerRays) != 0;
+    shape.layerRays = (package::demandsOf(package.layers()) & package::LayerInfo::kRays) != 0;
     shape.layerBounces = package::layerBounces(package.layers());
     shape.layerWalks = package.sizedLights() && package::showWalkedLight(package.layers(), effects.walks);
     return shape;
@@ -215,7 +215,7 @@ std::vector<TrafficRow> trafficRows(const TrafficShape& shape) {
     rows.push_back({"first copy", Unit::Pixel, key, kWord});
     rows.push_back(
         {"first hits", Unit::Pixel, kWord + kIdentity, picture + (shape.marchesScreen ? kPixel : 0)});
-    rows.push_back(layersOf(shape, package::LayerPass::FirstHits, "first hits"));
+    rows.push_back(layersOf(shape, package::LayerInfo::Pass::FirstHits, "first hits"));
     if (shape.firstShadowBytes > 0) {
         addFirstShadows(shape, picture, rows);
     }
@@ -233,7 +233,7 @@ std::vector<TrafficRow> trafficRows(const TrafficShape& shape) {
         rows.push_back({"compose", Unit::Sample, shape.paths ? kWord : kStart, 0});
         const std::uint32_t weight = packsSamples(shape) ? aimBytes(shape) : kVector;
         rows.push_back({"compose", Unit::Sent, weight + (shape.paths ? kPixel : 0), 0});
-        rows.push_back(layersOf(shape, package::LayerPass::Compose, "compose"));
+        rows.push_back(layersOf(shape, package::LayerInfo::Pass::Compose, "compose"));
         rows.push_back(
             {"compose", Unit::Sent, (shape.layerRays ? kRayHit : 0) + shape.layerBounces * kBounce, 0});
         rows.push_back({"compose", Unit::Sample, shape.layerWalks ? kVector : 0, 0});
@@ -244,14 +244,14 @@ std::vector<TrafficRow> trafficRows(const TrafficShape& shape) {
     return rows;
 }
 
-TrafficCounts trafficCounts(const FrameCounters& counters, const TrafficShape& shape, double pixels) {
+TrafficCounts trafficCounts(const Renderer::Counters& counters, const TrafficShape& shape, double pixels) {
     TrafficCounts counts;
     const auto at = [&](Unit unit) -> double& { return counts.of[static_cast<std::size_t>(unit)]; };
     at(Unit::Pixel) = pixels;
     at(Unit::Sample) = pixels * shape.effects;
-    for (const EffectCounters& effect : counters.effects) {
+    for (const Renderer::EffectCounters& effect : counters.effects) {
         at(Unit::FirstShadowRay) += effect.waited;
-        if (effect.kind == package::EffectKind::Rays) {
+        if (effect.kind == package::EffectInfo::Kind::Rays) {
             at(Unit::Sent) += static_cast<double>(effect.rays) + effect.screenHits;
         }
     }

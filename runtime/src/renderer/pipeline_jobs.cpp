@@ -262,8 +262,9 @@ std::string textOf(const char (&field)[VK_MAX_DESCRIPTION_SIZE]) {
     return {field, strnlen(field, sizeof(field))};
 }
 
-PipelineStatistics::Statistic statisticOf(const VkPipelineExecutableStatisticKHR& raw) {
-    PipelineStatistics::Statistic statistic{textOf(raw.name), textOf(raw.description), raw.value.u64};
+Renderer::PipelineStatistics::Statistic statisticOf(const VkPipelineExecutableStatisticKHR& raw) {
+    Renderer::PipelineStatistics::Statistic statistic{textOf(raw.name), textOf(raw.description),
+                                                      raw.value.u64};
     switch (raw.format) {
         case VK_PIPELINE_EXECUTABLE_STATISTIC_FORMAT_BOOL32_KHR:
             statistic.value = raw.value.b32 != VK_FALSE;
@@ -282,8 +283,8 @@ PipelineStatistics::Statistic statisticOf(const VkPipelineExecutableStatisticKHR
 
 }  // namespace
 
-Result<std::vector<PipelineStatistics::Executable>> readExecutables(const Context::State& context,
-                                                                    VkPipeline pipeline) {
+Result<std::vector<Renderer::PipelineStatistics::Executable>> readExecutables(const Context::State& context,
+                                                                              VkPipeline pipeline) {
     const DeviceTable& vk = context.vk;
     const VkDevice device = context.handles.device;
     VkPipelineInfoKHR info{.sType = VK_STRUCTURE_TYPE_PIPELINE_INFO_KHR, .pipeline = pipeline};
@@ -293,13 +294,13 @@ Result<std::vector<PipelineStatistics::Executable>> readExecutables(const Contex
                              return vk.GetPipelineExecutablePropertiesKHR(device, &info, count, list);
                          },
                          {.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_PROPERTIES_KHR}));
-    std::vector<PipelineStatistics::Executable> executables;
+    std::vector<Renderer::PipelineStatistics::Executable> executables;
     for (std::uint32_t i = 0; i < properties.size(); ++i) {
-        PipelineStatistics::Executable executable{textOf(properties[i].name),
-                                                  textOf(properties[i].description),
-                                                  properties[i].stages,
-                                                  properties[i].subgroupSize,
-                                                  {}};
+        Renderer::PipelineStatistics::Executable executable{textOf(properties[i].name),
+                                                            textOf(properties[i].description),
+                                                            properties[i].stages,
+                                                            properties[i].subgroupSize,
+                                                            {}};
         VkPipelineExecutableInfoKHR which{.sType = VK_STRUCTURE_TYPE_PIPELINE_EXECUTABLE_INFO_KHR,
                                           .pipeline = pipeline,
                                           .executableIndex = i};
@@ -331,8 +332,8 @@ bool isCacheHit(const VkPipelineCreationFeedback& feedback) {
 
 }  // namespace
 
-PipelineStatistics describe(const MadePipeline& pipeline) {
-    PipelineStatistics statistics{pipeline.name, {}, {}, {}};
+Renderer::PipelineStatistics describe(const MadePipeline& pipeline) {
+    Renderer::PipelineStatistics statistics{pipeline.name, {}, {}, {}};
     if (isKnown(pipeline.feedback)) {
         statistics.creationMs = static_cast<double>(pipeline.feedback.duration) / kNanosecondsInMs;
         statistics.cacheHit = isCacheHit(pipeline.feedback);

@@ -102,11 +102,11 @@ Result<std::vector<MadePipeline>> makePipelines(std::span<const PipelineJob> job
 
 // Requires DeviceHandles::pipelineStatistics and a pipeline that was made with
 // VK_PIPELINE_CREATE_CAPTURE_STATISTICS_BIT_KHR. Error "vulkan-call".
-Result<std::vector<PipelineStatistics::Executable>> readExecutables(const Context::State& context,
-                                                                    VkPipeline pipeline);
+Result<std::vector<Renderer::PipelineStatistics::Executable>> readExecutables(const Context::State& context,
+                                                                              VkPipeline pipeline);
 
 // Returns the way in which the pipeline was made, without its executables.
-PipelineStatistics describe(const MadePipeline& pipeline);
+Renderer::PipelineStatistics describe(const MadePipeline& pipeline);
 
 // --- The ordering tile-sort ---
 

@@ -63,7 +63,7 @@ Result<std::vector<Pixel>> readImage(const Renderer::State& state, CommandRunner
 }
 
 // Widens the values of a layer to 32 bits.
-LayerValues toValues(std::span<const std::uint8_t> bytes, const package::LayerFormatInfo& format,
+LayerValues toValues(std::span<const std::uint8_t> bytes, const package::LayerInfo::FormatInfo& format,
                      LayerValues values) {
     const auto valuesOf = [&]<typename Stored>(Stored /*type*/, const auto& widen) {
         std::vector<Stored> stored(bytes.size() / sizeof(Stored));
@@ -72,19 +72,19 @@ LayerValues toValues(std::span<const std::uint8_t> bytes, const package::LayerFo
         std::ranges::transform(stored, values.reals.begin(), widen);
     };
     switch (format.format) {
-        case package::LayerFormat::Float1:
-        case package::LayerFormat::Float4:
+        case package::LayerInfo::Format::Float1:
+        case package::LayerInfo::Format::Float4:
             valuesOf(float{}, [](float value) { return value; });
             break;
-        case package::LayerFormat::Half4:
+        case package::LayerInfo::Format::Half4:
             valuesOf(std::uint16_t{}, [](std::uint16_t value) { return glm::unpackHalf1x16(value); });
             break;
-        case package::LayerFormat::Snorm4:
+        case package::LayerInfo::Format::Snorm4:
             valuesOf(std::int16_t{}, [](std::int16_t value) {
                 return std::max(static_cast<float>(value) / 32767.0F, -1.0F);
             });
             break;
-        case package::LayerFormat::Integer:
+        case package::LayerInfo::Format::Integer:
             values.integers.resize(bytes.size() / sizeof(std::uint32_t));
             std::memcpy(values.integers.data(), bytes.data(), bytes.size());
             break;
@@ -164,7 +164,7 @@ Result<LayerValues> Renderer::readLayer(std::string_view name) try {
     GLINT_TRY(auto runner, CommandRunner::create(state_->context));
     const DeviceImage& image =
         state_->frame.layers[static_cast<std::size_t>(found - state_->size.layers.begin())];
-    const package::LayerFormatInfo& format = package::infoOf(found->info->format);
+    const package::LayerInfo::FormatInfo& format = package::infoOf(found->info->format);
     const std::size_t count = std::size_t{state_->size.width} * state_->size.height;
     GLINT_TRY(auto bytes, readImage<std::uint8_t>(*state_, runner, image, count * format.bytes));
     LayerValues values =
@@ -255,8 +255,8 @@ GLINT_CATCH
 namespace {
 
 // hit/count.glsl says where the counters are.
-EffectCounters countersOf(const std::vector<std::uint32_t>& values, const package::EffectSet& all,
-                          const EffectName& effect) {
+Renderer::EffectCounters countersOf(const std::vector<std::uint32_t>& values, const package::EffectSet& all,
+                                    const EffectName& effect) {
     const auto count = [&](std::uint32_t kind) {
         const std::uint32_t countersOfCopy = package::countedEffects(all) * gpu::kCountsOfEffect;
         std::uint32_t place =
@@ -267,7 +267,7 @@ EffectCounters countersOf(const std::vector<std::uint32_t>& values, const packag
         }
         return sum;
     };
-    EffectCounters counters;
+    Renderer::EffectCounters counters;
     counters.effect = effect.effect;
     counters.kind = effect.kind;
     counters.name = effect.name;
@@ -303,7 +303,7 @@ void addTo(std::vector<std::uint32_t>& sums, const std::vector<std::uint32_t>& c
 
 // Adds the counters of a round that was read back at `bytes`.
 void addRound(const std::uint8_t* bytes, const FrameSize& size, const Renderer::State::Round& round,
-              FrameCounters& counters) {
+              Renderer::Counters& counters) {
     std::array<std::uint32_t, 2> lists{};
     static_assert(sizeof(lists) == kRoundCounterBytes);
     std::memcpy(lists.data(), bytes, sizeof(lists));
@@ -316,7 +316,7 @@ void addRound(const std::uint8_t* bytes, const FrameSize& size, const Renderer::
     }
     const std::vector<std::uint32_t> counts = bucketsOf(bytes + kRoundCounterBytes, size);
     addTo(counters.bucketCounts, counts);
-    for (EffectCounters& effect : counters.effects) {
+    for (Renderer::EffectCounters& effect : counters.effects) {
         if (effect.effect == round.effects) {
             addTo(effect.bucketCounts, counts);
         }
@@ -325,9 +325,9 @@ void addRound(const std::uint8_t* bytes, const FrameSize& size, const Renderer::
 
 }  // namespace
 
-EffectCounters FrameCounters::of(package::Effect effect) const {
-    const auto found = std::ranges::find(effects, effect, &EffectCounters::effect);
-    EffectCounters none;
+Renderer::EffectCounters Renderer::Counters::of(package::Effect effect) const {
+    const auto found = std::ranges::find(effects, effect, &Renderer::EffectCounters::effect);
+    Renderer::EffectCounters none;
     none.effect = effect;
     return found == effects.end() ? none : *found;
 }
@@ -349,12 +349,12 @@ std::vector<std::uint32_t> Renderer::State::hits() const {
     return sums;
 }
 
-Result<FrameCounters> Renderer::counters() try {
+Result<Renderer::Counters> Renderer::counters() try {
     GLINT_TRY_DO(checkRecorded(*state_));
     const std::uint8_t* const bytes = state_->frame.readback.mapped;
     std::vector<std::uint32_t> values(counterBytes(state_->size) / sizeof(std::uint32_t));
     std::memcpy(values.data(), bytes, values.size() * sizeof(values[0]));
-    FrameCounters counters;
+    Renderer::Counters counters;
     counters.draft = state_->drafted;
     counters.shadowRounds = state_->shadowRounds;
     for (const EffectName& effect : state_->effects) {
@@ -364,7 +364,7 @@ Result<FrameCounters> Renderer::counters() try {
     counters.unknownShader = values[gpu::kCounterUnknownShader];
     // These follow all others.
     for (std::size_t i = values.size() - state_->size.textureLevels; i < values.size(); ++i) {
-        counters.textureLevels.push_back(values[i] == 0 ? FrameCounters::kLevelNotRead
+        counters.textureLevels.push_back(values[i] == 0 ? Renderer::Counters::kLevelNotRead
                                                         : gpu::kFinestTextureLevel - values[i]);
     }
     counters.nonFinite = values[gpu::kCounterNonFinite];

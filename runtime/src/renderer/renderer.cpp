@@ -162,7 +162,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(Context& context, const Packa
     state->effects = effectsOf(package);
     state->caseNames = caseNamesOf(package);
     GLINT_TRY_DO(createFrameResources(contextState, size, state->frame));
-    if ((package::demandsOf(size.layers) & package::kLayerHistory) != 0) {
+    if ((package::demandsOf(size.layers) & package::LayerInfo::kHistory) != 0) {
         GLINT_TRY(state->history, MotionHistory::create(state->scene));
     }
     const VkDescriptorSetLayout layouts[] = {state->scene.setLayout.get(), state->frame.setLayout.get()};
@@ -327,9 +327,9 @@ GLINT_CATCH
 Result<std::vector<PassTiming>> Renderer::timings() try { return passTimings(*state_); }
 GLINT_CATCH
 
-PipelineProgress Renderer::pipelineProgress() const {
+Renderer::PipelineProgress Renderer::pipelineProgress() const {
     const auto& background = state_->pipelines.background;
-    PipelineProgress progress = background ? background->progress() : PipelineProgress{};
+    Renderer::PipelineProgress progress = background ? background->progress() : Renderer::PipelineProgress{};
     progress.draft = state_->pipelines.draft;
     progress.drafts = state_->drafts;
     return progress;
@@ -433,13 +433,13 @@ Renderer::PipelineMaking Renderer::pipelineMaking() const {
     return making;
 }
 
-Result<std::vector<PipelineStatistics>> Renderer::pipelineStatistics() const try {
+Result<std::vector<Renderer::PipelineStatistics>> Renderer::pipelineStatistics() const try {
     if (!state_->pipelines.captureStatistics) {
         return makeError("pipeline-statistics", "",
                          "the renderer was made without statistics of its pipelines",
                          "set RendererOptions::pipelineStatistics");
     }
-    std::vector<PipelineStatistics> list;
+    std::vector<Renderer::PipelineStatistics> list;
     for (const MadePipeline& pipeline : state_->pipelines.owned) {
         GLINT_TRY(auto executables, readExecutables(state_->context, pipeline.handle->get()));
         list.push_back(describe(pipeline));

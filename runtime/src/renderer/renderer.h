@@ -27,7 +27,7 @@ namespace glint {
 // An effect of the package.
 struct EffectName {
     package::Effect effect = 0;
-    package::EffectKind kind = package::EffectKind::Rays;
+    package::EffectInfo::Kind kind = package::EffectInfo::Kind::Rays;
     std::string name;
 };
 
@@ -57,7 +57,7 @@ struct Renderer::State final : PackageUser {
         std::uint32_t bounce = 1;
     };
     std::vector<Round> rounds;
-    std::uint32_t shadowRounds = 0;  // as FrameCounters has it, of the last recording
+    std::uint32_t shadowRounds = 0;  // as Renderer::Counters has it, of the last recording
     std::uint32_t orderedBands = 0;  // bands of the last recording whose first hits were ordered
     BounceLevels bounceLevels;
     std::unique_ptr<MotionHistory> history;  // null unless layers need it

@@ -106,13 +106,13 @@ Result<PipelineChoice> choosePipelines(const Context::State& context, const Pack
     }
     GLINT_TRY(auto tracer, chooseTracer(context, package, options));
     const std::uint32_t demands = package::demandsOf(package.layers());
-    if ((demands & package::kLayerQueries) != 0 && tracer != package::kTracerRayQuery) {
+    if ((demands & package::LayerInfo::kQueries) != 0 && tracer != package::kTracerRayQuery) {
         return makeError("package-tracer", "",
                          "the package's layer candidates counts what ray queries test, and the tracer is " +
                              std::string(nameOf(tracer)),
                          "use the tracer ray-query, with a strategy that has it, or leave out the layer");
     }
-    if ((demands & package::kLayerClock) != 0 && !context.handles.shaderClock) {
+    if ((demands & package::LayerInfo::kClock) != 0 && !context.handles.shaderClock) {
         return makeError(
             "device-layers", "",
             "the package's layer clocks reads a clock, which the device does not allow or was not "
@@ -207,11 +207,12 @@ std::uint32_t firstShadowBytes(const Package& package) {
 bool hasHalfPicture(const Package& package, const RendererOptions& options) {
     // Modules that write such layers have both formats of images, which must stay two types.
     const bool hasWideLayers = std::ranges::any_of(package.layers(), [](const package::PackageLayer& layer) {
-        return layer.info->format == package::LayerFormat::Float4 ||
-               layer.info->format == package::LayerFormat::Half4;
+        return layer.info->format == package::LayerInfo::Format::Float4 ||
+               layer.info->format == package::LayerInfo::Format::Half4;
     });
     const bool marches = options.screenMarch && package.shape().effects.screenStarts != 0;
-    return options.picture == PictureFormat::Half && !options.accumulate && !marches && !hasWideLayers;
+    return options.picture == RendererOptions::PictureFormat::Half && !options.accumulate && !marches &&
+           !hasWideLayers;
 }
 
 FrameSize frameSize(const Package& package, const PipelineChoice& choice, const RendererOptions& options,
@@ -249,7 +250,7 @@ FrameSize frameSize(const Package& package, const PipelineChoice& choice, const 
     size.firstShadowBytes = firstShadowBytes(package);
     size.rayPipeline = choice.tracer == package::kTracerRayPipeline;
     size.layers.assign(package.layers().begin(), package.layers().end());
-    size.layerRays = (package::demandsOf(size.layers) & package::kLayerRays) != 0;
+    size.layerRays = (package::demandsOf(size.layers) & package::LayerInfo::kRays) != 0;
     size.layerBounces = package::layerBounces(size.layers);
     size.layerWalks = size.sizedLights && package::showWalkedLight(size.layers, size.effects.walks);
     size.accumulates = options.accumulate;

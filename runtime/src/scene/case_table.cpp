@@ -83,7 +83,7 @@ std::vector<std::uint32_t> CaseTable::shaderIds() const {
     return ids;
 }
 
-Status CaseTable::checkAttributes(const MaterialKey& key, const std::string& where) const {
+Status CaseTable::checkAttributes(const SceneEditor::MaterialKey& key, const std::string& where) const {
     constexpr struct {
         package::Role role;
         AttributeMask attribute;
@@ -115,7 +115,7 @@ Status CaseTable::checkAttributes(const MaterialKey& key, const std::string& whe
     return okStatus();
 }
 
-MaterialKey CaseTable::asked(MaterialKey key) const {
+SceneEditor::MaterialKey CaseTable::asked(SceneEditor::MaterialKey key) const {
     const bool isBlended = (key.geometryFlags & gpu::kGeometryBlended) != 0;
     const bool ignoresBlended = isBlended && package_->alpha() != package::AlphaPolicy::Stochastic;
     const package::KeyWords& alphaTest =
@@ -140,7 +140,7 @@ MaterialKey CaseTable::asked(MaterialKey key) const {
     return key;
 }
 
-Status CaseTable::checkKnown(const MaterialKey& key, const std::string& where) const {
+Status CaseTable::checkKnown(const SceneEditor::MaterialKey& key, const std::string& where) const {
     package::KeyWords all = key.features;
     all |= key.hitFeatures;
     const auto found = knownModels_.find(all.model);
@@ -171,7 +171,7 @@ Status CaseTable::checkKnown(const MaterialKey& key, const std::string& where) c
     return okStatus();
 }
 
-Status CaseTable::checkEmitter(const MaterialKey& key, const std::string& where) const {
+Status CaseTable::checkEmitter(const SceneEditor::MaterialKey& key, const std::string& where) const {
     const package::EmissionEntry* const emission = package_->emission();
     if (emission == nullptr || (key.geometryFlags & gpu::kGeometryEmitter) == 0) {
         return okStatus();
@@ -191,9 +191,9 @@ Status CaseTable::checkEmitter(const MaterialKey& key, const std::string& where)
                                 unlike(key.features.inputs, read.inputs, always.inputs, sometimes.inputs)};
     if (read.model != 0 && always.model != gpu::kAnyModel) {
         const bool isOther = always.model != key.features.model;
-        const package::OwnWords own = unlike(key.features.own, read.own, always.own, sometimes.own);
+        const package::KeyWords::Own own = unlike(key.features.own, read.own, always.own, sometimes.own);
         differing.model = isOther || !own.isEmpty() ? key.features.model : 0;
-        differing.own = isOther ? package::OwnWords{} : own;
+        differing.own = isOther ? package::KeyWords::Own{} : own;
     }
     if (!isEmpty(differing)) {
         return makeError("scene-edit-case", where,
@@ -204,8 +204,8 @@ Status CaseTable::checkEmitter(const MaterialKey& key, const std::string& where)
     return okStatus();
 }
 
-Result<Shading> CaseTable::find(const MaterialKey& whole, const std::string& where) const {
-    const MaterialKey key = asked(whole);
+Result<Shading> CaseTable::find(const SceneEditor::MaterialKey& whole, const std::string& where) const {
+    const SceneEditor::MaterialKey key = asked(whole);
     GLINT_TRY_DO(checkKnown(key, where));
     GLINT_TRY_DO(checkEmitter(key, where));
     Shading shading{key.features, key.geometryFlags, 0, false};

@@ -31,10 +31,10 @@ public:
     // Finds the shader of a key. `where` is the material, for messages. A key of the package's own scenes has
     // the shader that they have. For others it is the case that has all of the key's features and takes the
     // fewest others into account. Errors: "scene-edit-feature", "scene-edit-case".
-    Result<Shading> find(const MaterialKey& whole, const std::string& where) const;
+    Result<Shading> find(const SceneEditor::MaterialKey& whole, const std::string& where) const;
     // Checks that the attributes include those that shaders of the key's features read. Error
     // "scene-edit-key".
-    Status checkAttributes(const MaterialKey& key, const std::string& where) const;
+    Status checkAttributes(const SceneEditor::MaterialKey& key, const std::string& where) const;
 
     // The shader IDs of the shader binding table of a strategy: those of the cases, then one for all others.
     std::vector<std::uint32_t> shaderIds() const;
@@ -45,10 +45,10 @@ public:
 
 private:
     // Returns the part of the key that the package's rays ask for.
-    MaterialKey asked(MaterialKey key) const;
-    Status checkKnown(const MaterialKey& key, const std::string& where) const;
+    SceneEditor::MaterialKey asked(SceneEditor::MaterialKey key) const;
+    Status checkKnown(const SceneEditor::MaterialKey& key, const std::string& where) const;
     // Checks that shaders compute the emission of a light with this key.
-    Status checkEmitter(const MaterialKey& key, const std::string& where) const;
+    Status checkEmitter(const SceneEditor::MaterialKey& key, const std::string& where) const;
 
     std::shared_ptr<const Package> package_;
     bool fallback_;
@@ -59,7 +59,7 @@ private:
     package::KeyWords known_;                                       // shared features of some primitive
     // What primitives of a model have, by its word in keys.
     struct KnownModel {
-        package::OwnWords own;
+        package::KeyWords::Own own;
         std::uint32_t flags = 0;  // of geometries
     };
     std::map<std::uint32_t, KnownModel> knownModels_;

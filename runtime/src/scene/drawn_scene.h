@@ -24,7 +24,7 @@ struct PackageFit {
     std::uint32_t scene = 0;               // its index, or kNoPackageScene
     std::uint64_t records = 0;             // recordsHash()
     std::vector<std::uint32_t> shaderIds;  // of the shader binding table
-    std::vector<EditReport::MissingCase>
+    std::vector<SceneEditor::Report::MissingCase>
         missing{};  // of a scene that is edited: materials that the fallback shades
 };
 

@@ -28,7 +28,7 @@ Diagnostic badValue(const std::string& where, std::string message, const char* h
     return makeError("scene-edit-value", where, std::move(message), hint);
 }
 
-Status checkUse(const SceneStore& store, const TextureUse& use, const std::string& where) {
+Status checkUse(const SceneStore& store, const SceneEditor::TextureUse& use, const std::string& where) {
     if (store.textures.find(use.texture) == nullptr) {
         return unknownHandle("texture");
     }
@@ -41,21 +41,22 @@ Status checkUse(const SceneStore& store, const TextureUse& use, const std::strin
 }
 
 // Checks that textures have the dimensions of their slots in records of the key's model.
-Status checkDimensions(const SceneStore& store, std::span<const TextureUse> uses, const MaterialKey& key,
-                       const std::string& where) {
-    for (const TextureUse& use : uses) {
+Status checkDimensions(const SceneStore& store, std::span<const SceneEditor::TextureUse> uses,
+                       const SceneEditor::MaterialKey& key, const std::string& where) {
+    for (const SceneEditor::TextureUse& use : uses) {
         const std::size_t place = placeOfTexture(store.scene.materialLayout, 0, use.slot);
         const RecordField* const field = store.scene.package.fields.findAt(place, key.features.model);
         if (field != nullptr) {
             GLINT_TRY_DO(checkDimension(store.textures.find(use.texture)->dimension,
-                                        static_cast<package::TextureDimension>(field->type), where));
+                                        static_cast<package::TextureEntry::Dimension>(field->type), where));
         }
     }
     return okStatus();
 }
 
 // Checks a source on its own, without the scene.
-Status checkSource(const SceneStore& store, const MaterialSource& source, const std::string& where) {
+Status checkSource(const SceneStore& store, const SceneEditor::MaterialSource& source,
+                   const std::string& where) {
     if (source.record.size() != store.scene.materialLayout.recordBytes) {
         return badValue(where,
                         phrase("the record has ", source.record.size(), " bytes, those of the package have ",
@@ -63,23 +64,23 @@ Status checkSource(const SceneStore& store, const MaterialSource& source, const 
                         "make the record in the package's layout");
     }
     for (std::size_t i = 0; i < source.textures.size(); ++i) {
-        const TextureUse& use = source.textures[i];
+        const SceneEditor::TextureUse& use = source.textures[i];
         GLINT_TRY_DO(checkUse(store, use, where));
         const auto earlier = std::span(source.textures).first(i);
-        if (std::ranges::find(earlier, use.slot, &TextureUse::slot) != earlier.end()) {
+        if (std::ranges::find(earlier, use.slot, &SceneEditor::TextureUse::slot) != earlier.end()) {
             return badValue(where, "two textures have the slot " + std::to_string(use.slot),
                             "give each slot at most one texture");
         }
     }
-    for (const MaterialKey& key : source.keys) {
+    for (const SceneEditor::MaterialKey& key : source.keys) {
         GLINT_TRY_DO(store.cases->checkAttributes(key, where));
         GLINT_TRY_DO(checkDimensions(store, source.textures, key, where));
     }
     return okStatus();
 }
 
-Result<std::vector<std::uint8_t>> makeRecord(SceneStore& store, const MaterialSource& source) {
-    for (const TextureUse& use : source.textures) {
+Result<std::vector<std::uint8_t>> makeRecord(SceneStore& store, const SceneEditor::MaterialSource& source) {
+    for (const SceneEditor::TextureUse& use : source.textures) {
         GLINT_TRY_DO(ensureSampler(store, use.sampler));
     }
     std::vector<std::uint8_t> record(source.record.begin(), source.record.end());
@@ -87,8 +88,9 @@ Result<std::vector<std::uint8_t>> makeRecord(SceneStore& store, const MaterialSo
     return record;
 }
 
-void countUses(SceneStore& store, std::uint32_t material, std::span<const TextureUse> uses, bool adds) {
-    for (const TextureUse& use : uses) {
+void countUses(SceneStore& store, std::uint32_t material, std::span<const SceneEditor::TextureUse> uses,
+               bool adds) {
+    for (const SceneEditor::TextureUse& use : uses) {
         countUse(store.textures.find(use.texture)->materials, material, adds);
     }
 }
@@ -146,21 +148,22 @@ std::set<std::uint32_t> instancesWith(const SceneStore& store, const StoredMater
     return found;
 }
 
-const MaterialKey* keyFor(std::span<const MaterialKey> keys, AttributeMask attributes) {
-    const auto found = std::ranges::find(keys, attributes, &MaterialKey::attributes);
+const SceneEditor::MaterialKey* keyFor(std::span<const SceneEditor::MaterialKey> keys,
+                                       AttributeMask attributes) {
+    const auto found = std::ranges::find(keys, attributes, &SceneEditor::MaterialKey::attributes);
     return found == keys.end() ? nullptr : &*found;
 }
 
 }  // namespace
 
-Result<Shading> shadingBy(const CaseTable& cases, std::span<const MaterialKey> keys, AttributeMask attributes,
-                          const std::string& where) {
-    const MaterialKey* const key = keyFor(keys, attributes);
+Result<Shading> shadingBy(const CaseTable& cases, std::span<const SceneEditor::MaterialKey> keys,
+                          AttributeMask attributes, const std::string& where) {
+    const SceneEditor::MaterialKey* const key = keyFor(keys, attributes);
     if (key == nullptr) {
         return makeError(
             "scene-edit-key", where,
             "the material has no key for a primitive with the attributes " + std::to_string(attributes),
-            "give a MaterialKey for each set of attributes that its primitives have");
+            "give a SceneEditor::MaterialKey for each set of attributes that its primitives have");
     }
     return cases.find(*key, where);
 }
@@ -188,10 +191,12 @@ Result<Shading> shadingOf(const SceneStore& store, MaterialHandle material, Attr
     return shadingBy(*store.cases, entry->keys, attributes, placeOf("material", material.index));
 }
 
-void addTo(EditReport& report, const CaseTable& cases, MaterialHandle material, const Shading& shading) {
-    const bool listed = std::ranges::any_of(report.missing, [&](const EditReport::MissingCase& other) {
-        return other.material == material && other.features == shading.features;
-    });
+void addTo(SceneEditor::Report& report, const CaseTable& cases, MaterialHandle material,
+           const Shading& shading) {
+    const bool listed =
+        std::ranges::any_of(report.missing, [&](const SceneEditor::Report::MissingCase& other) {
+            return other.material == material && other.features == shading.features;
+        });
     if (shading.missing && !listed) {
         report.missing.push_back(
             {material, shading.features, cases.package().featureNames(shading.features)});
@@ -199,9 +204,9 @@ void addTo(EditReport& report, const CaseTable& cases, MaterialHandle material, 
 }
 
 // A record says which textures it may read. A slot that no key reads holds zero.
-std::vector<TextureUse> usesOf(const PackageScene& known, std::span<const TextureHandle> textures,
-                               std::size_t material) {
-    std::vector<TextureUse> uses;
+std::vector<SceneEditor::TextureUse> usesOf(const PackageScene& known,
+                                            std::span<const TextureHandle> textures, std::size_t material) {
+    std::vector<SceneEditor::TextureUse> uses;
     for (std::uint32_t slot = 0; slot < known.materials.textureCount && !textures.empty(); ++slot) {
         const gpu::TextureRecord record = textureAt(known.materials, material, slot);
         if (std::ranges::all_of(std::as_bytes(std::span(&record, 1)),
@@ -241,8 +246,8 @@ Status ensureSampler(SceneStore& store, const package::SamplerEntry& entry) {
     return okStatus();
 }
 
-void settleTextures(const SceneStore& store, const MaterialTable& layout, std::span<const TextureUse> uses,
-                    std::span<std::uint8_t> record) {
+void settleTextures(const SceneStore& store, const MaterialTable& layout,
+                    std::span<const SceneEditor::TextureUse> uses, std::span<std::uint8_t> record) {
     const MaterialTable table = tableWith(layout, record);
     for (std::uint32_t slot = 0; slot < table.textureCount; ++slot) {
         gpu::TextureRecord settled = textureAt(table, 0, slot);
@@ -251,7 +256,7 @@ void settleTextures(const SceneStore& store, const MaterialTable& layout, std::s
         settled.texCoord = 0;
         settled.texels = {};
         settled.anisotropy = 1.0F;
-        const auto use = std::ranges::find(uses, slot, &TextureUse::slot);
+        const auto use = std::ranges::find(uses, slot, &SceneEditor::TextureUse::slot);
         if (use != uses.end()) {
             const StoredTexture& texture = *store.textures.find(use->texture);
             settled.textureIndex = use->texture.index;
@@ -330,7 +335,7 @@ Status SceneEditor::removeTexture(TextureHandle texture) try {
 }
 GLINT_CATCH
 
-Result<MaterialHandle> SceneEditor::addMaterial(const MaterialSource& source) try {
+Result<MaterialHandle> SceneEditor::addMaterial(const SceneEditor::MaterialSource& source) try {
     const std::string where = placeOf("material", store_->materialSlots.next().index);
     GLINT_TRY_DO(checkSource(*store_, source, where));
     GLINT_TRY(auto record, makeRecord(*store_, source));
@@ -342,11 +347,12 @@ Result<MaterialHandle> SceneEditor::addMaterial(const MaterialSource& source) tr
 }
 GLINT_CATCH
 
-Result<EditReport> SceneEditor::setMaterial(MaterialHandle material, const MaterialSource& source) try {
+Result<SceneEditor::Report> SceneEditor::setMaterial(MaterialHandle material,
+                                                     const SceneEditor::MaterialSource& source) try {
     GLINT_TRY(StoredMaterial* const entry, findNamed(store_->materialSlots, material, "material"));
     const std::string where = placeOf("material", material.index);
     GLINT_TRY_DO(checkSource(*store_, source, where));
-    EditReport report;
+    SceneEditor::Report report;
     bool changes = false;
     for (const AttributeMask attributes : attributesWith(*store_, material)) {
         GLINT_TRY(auto shading, shadingBy(*store_->cases, source.keys, attributes, where));

@@ -183,13 +183,13 @@ private:
         const std::string where = placeOf("material", index);
         const auto modelOf = [&] { return material.keys.empty() ? 0 : material.keys.front().features.model; };
         const std::uint32_t modelBefore = modelOf();
-        for (MaterialKey& key : material.keys) {
+        for (SceneEditor::MaterialKey& key : material.keys) {
             GLINT_TRY(key.features, features_.find(key.features, where));
             GLINT_TRY(key.hitFeatures, features_.find(key.hitFeatures, where));
             GLINT_TRY_DO(tables_.cases.checkAttributes(key, where));
         }
-        std::vector<TextureUse> uses;
-        for (TextureUse use : material.textures) {
+        std::vector<SceneEditor::TextureUse> uses;
+        for (SceneEditor::TextureUse use : material.textures) {
             if (const std::optional<std::uint32_t> slot = slotOf(use.slot, modelBefore, modelOf())) {
                 use.slot = *slot;
                 uses.push_back(use);
@@ -206,7 +206,7 @@ private:
     // The material is the package's, apart from the values that it has been given.
     Status takeMaterial(std::uint32_t index, std::uint32_t number, StoredMaterial& material) {
         material.textures = usesOf(known_, tables_.firstTextures, number);
-        for (const TextureUse& use : material.textures) {
+        for (const SceneEditor::TextureUse& use : material.textures) {
             if (store_.textures.find(use.texture) == nullptr) {
                 return otherContent(placeOf("material", index), "an edit has removed a texture of it");
             }
@@ -281,7 +281,7 @@ private:
     void countTextures() {
         tables_.textureUsers.resize(store_.textures.end());
         tables_.materialSlots.forEach([&](MaterialHandle handle, const StoredMaterial& material) {
-            for (const TextureUse& use : material.textures) {
+            for (const SceneEditor::TextureUse& use : material.textures) {
                 countUse(tables_.textureUsers[use.texture.index], handle.index, true);
             }
         });
@@ -326,7 +326,8 @@ private:
 }  // namespace
 
 void addKey(StoredMaterial& material, const package::PrimitiveEntry& entry, AttributeMask attributes) {
-    if (std::ranges::find(material.keys, attributes, &MaterialKey::attributes) == material.keys.end()) {
+    if (std::ranges::find(material.keys, attributes, &SceneEditor::MaterialKey::attributes) ==
+        material.keys.end()) {
         material.keys.push_back({attributes, entry.key, entry.key, entry.geometryFlags});
     }
 }

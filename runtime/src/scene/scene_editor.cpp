@@ -26,7 +26,7 @@ Status checkPrimitive(const SceneStore& store, const SceneEditor::EditedPrimitiv
     }
     for (const package::AttributeEntry& row : store.cases->package().attributes()) {
         const std::string name(store.cases->package().string(row.name));
-        const auto given = std::ranges::find(view.attributes, name, &AttributeView::name);
+        const auto given = std::ranges::find(view.attributes, name, &PrimitiveView::Attribute::name);
         if (given != view.attributes.end() &&
             (given->channels != row.channels ||
              given->values.size() != view.positions.size() * row.channels)) {
@@ -40,15 +40,16 @@ Status checkPrimitive(const SceneStore& store, const SceneEditor::EditedPrimitiv
 
 // Checks the materials of an instance of a mesh and reports those without a case. Materials of the mesh are
 // reported by the edits of the mesh.
-Result<EditReport> checkMaterials(const SceneStore& store, const StoredMesh& mesh,
-                                  std::span<const MaterialHandle> materials, const std::string& where) {
+Result<SceneEditor::Report> checkMaterials(const SceneStore& store, const StoredMesh& mesh,
+                                           std::span<const MaterialHandle> materials,
+                                           const std::string& where) {
     if (!materials.empty() && materials.size() != mesh.primitives.size()) {
         return makeError(
             "scene-edit-value", where,
             phrase("there are ", materials.size(), " materials for ", mesh.primitives.size(), " primitives"),
             "give one for each primitive, or none");
     }
-    EditReport report;
+    SceneEditor::Report report;
     for (std::size_t i = 0; i < materials.size(); ++i) {
         if (materials[i].generation == 0) {
             continue;
@@ -74,7 +75,7 @@ AttributeMask attributesOf(const Package& package, const PrimitiveView& primitiv
     std::uint32_t bit = kDeclaredAttributesShift;
     for (const package::AttributeEntry& row : package.attributes()) {
         const bool given = std::ranges::find(primitive.attributes, package.string(row.name),
-                                             &AttributeView::name) != primitive.attributes.end();
+                                             &PrimitiveView::Attribute::name) != primitive.attributes.end();
         mask |= AttributeMask{given} << bit++;
     }
     return mask;
@@ -101,7 +102,7 @@ Result<SceneEditor::AddedMesh> SceneEditor::addMesh(std::span<const EditedPrimit
     GLINT_TRY_DO(checkDeformation(shapes));
     const bool changes = use == MeshUse::Changing;
     const std::vector<GridPositions> positions =
-        packPositions(views, changes ? VertexForm::Full : store_->vertices);
+        packPositions(views, changes ? SceneView::VertexForm::Full : store_->vertices);
     const std::vector<PrimitiveView> placed = withPositions(views, positions);
     MeshContent content{placed, positions};
     content.changes = changes;
@@ -150,8 +151,8 @@ Status SceneEditor::setVertices(MeshHandle mesh, std::uint32_t primitive, const 
 }
 GLINT_CATCH
 
-Result<EditReport> SceneEditor::setMeshMaterial(MeshHandle mesh, std::uint32_t primitive,
-                                                MaterialHandle material) try {
+Result<SceneEditor::Report> SceneEditor::setMeshMaterial(MeshHandle mesh, std::uint32_t primitive,
+                                                         MaterialHandle material) try {
     GLINT_TRY(StoredMesh* const entry, findNamed(store_->meshes, mesh, "mesh"));
     if (primitive >= entry->primitives.size()) {
         return makeError("scene-edit-value", placeOf("mesh", mesh.index),
@@ -159,7 +160,7 @@ Result<EditReport> SceneEditor::setMeshMaterial(MeshHandle mesh, std::uint32_t p
     }
     StoredPrimitive& place = entry->primitives[primitive];
     GLINT_TRY(auto shading, shadingOf(*store_, material, place.attributes));
-    EditReport report;
+    SceneEditor::Report report;
     addTo(report, *store_->cases, material, shading);
     countUse(store_->materialSlots, place.material, &StoredMaterial::meshes, mesh.index, false);
     countUse(store_->materialSlots, material, &StoredMaterial::meshes, mesh.index, true);
@@ -252,8 +253,8 @@ Status SceneEditor::showInstance(InstanceHandle instance, bool visible) try {
 }
 GLINT_CATCH
 
-Result<EditReport> SceneEditor::setInstanceMesh(InstanceHandle instance, MeshHandle mesh,
-                                                std::span<const MaterialHandle> materials) try {
+Result<SceneEditor::Report> SceneEditor::setInstanceMesh(InstanceHandle instance, MeshHandle mesh,
+                                                         std::span<const MaterialHandle> materials) try {
     const StoredMesh* const wanted = store_->meshes.find(mesh);
     const bool known = store_->instanceSlots.find(instance) != nullptr;
     if (!known || wanted == nullptr) {
@@ -267,15 +268,15 @@ Result<EditReport> SceneEditor::setInstanceMesh(InstanceHandle instance, MeshHan
 }
 GLINT_CATCH
 
-Result<EditReport> SceneEditor::setInstanceMaterial(InstanceHandle instance, std::uint32_t primitive,
-                                                    MaterialHandle material) try {
+Result<SceneEditor::Report> SceneEditor::setInstanceMaterial(InstanceHandle instance, std::uint32_t primitive,
+                                                             MaterialHandle material) try {
     GLINT_TRY(StoredInstance* const entry, findNamed(store_->instanceSlots, instance, "instance"));
     const StoredMesh& mesh = *store_->meshes.find(entry->mesh);
     if (primitive >= mesh.primitives.size()) {
         return makeError("scene-edit-value", placeOf("instance", instance.index),
                          "its mesh has no primitive " + std::to_string(primitive), "count from 0");
     }
-    EditReport report;
+    SceneEditor::Report report;
     if (material.generation != 0) {
         GLINT_TRY(auto shading, shadingOf(*store_, material, mesh.primitives[primitive].attributes));
         addTo(report, *store_->cases, material, shading);

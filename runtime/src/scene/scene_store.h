@@ -61,15 +61,15 @@ struct StoredTexture {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     bool srgb = false;
-    package::TextureDimension dimension = package::TextureDimension::Flat;
+    package::TextureEntry::Dimension dimension = package::TextureEntry::Dimension::Flat;
     std::shared_ptr<const EmissionTexels> texels{};  // of a colour
     Users materials{};
 };
 
 // A material of a scene that is edited. Its record is in SceneStore::materials at the handle's index.
 struct StoredMaterial {
-    std::vector<MaterialKey> keys;
-    std::vector<TextureUse> textures;
+    std::vector<SceneEditor::MaterialKey> keys;
+    std::vector<SceneEditor::TextureUse> textures;
     bool isOwn = false;         // an edit has added or replaced it; else keys and textures are the package's
     bool hasOwnValues = false;  // an edit or the host has given its values
     Users meshes{};
@@ -162,7 +162,7 @@ struct SceneStore : SceneRecords {
     bool editable = false;  // the scene has an editor; otherwise it is sealed
     BlasCapacity capacity;
     LeafOrder leafOrder = nullptr;  // null: structures get their input as it is
-    VertexForm vertices = VertexForm::Compact;
+    SceneView::VertexForm vertices = SceneView::VertexForm::Compact;
     bool dataAccess = false;                         // BLASes let shaders read positions
     bool buildsTree = false;                         // the package chooses lights by a hierarchy
     std::optional<package::EmissionEntry> emission;  // none without emissive lights
@@ -343,22 +343,23 @@ AccelerationStructure* structureAt(SceneStore& store, const PartPlace& place);
 // Finds the shading of a material on a primitive. Has the errors that SceneEditor lists.
 Result<Shading> shadingOf(const SceneStore& store, MaterialHandle material, AttributeMask attributes);
 // The same for a material with these keys. `where` is for messages.
-Result<Shading> shadingBy(const CaseTable& cases, std::span<const MaterialKey> keys, AttributeMask attributes,
-                          const std::string& where);
+Result<Shading> shadingBy(const CaseTable& cases, std::span<const SceneEditor::MaterialKey> keys,
+                          AttributeMask attributes, const std::string& where);
 // Lists the key in the report if the fallback shades it.
-void addTo(EditReport& report, const CaseTable& cases, MaterialHandle material, const Shading& shading);
+void addTo(SceneEditor::Report& report, const CaseTable& cases, MaterialHandle material,
+           const Shading& shading);
 // The textures of a material of the package, whose textures have these handles by their numbers. They may
 // name what edits have removed.
-std::vector<TextureUse> usesOf(const PackageScene& known, std::span<const TextureHandle> textures,
-                               std::size_t material);
+std::vector<SceneEditor::TextureUse> usesOf(const PackageScene& known,
+                                            std::span<const TextureHandle> textures, std::size_t material);
 // Returns how many samplers are there if this one is not.
 std::size_t findSampler(const SceneStore& store, const package::SamplerEntry& entry);
 // Makes the sampler, unless it is there. Error "scene-edit-room".
 Status ensureSampler(SceneStore& store, const package::SamplerEntry& entry);
 Diagnostic noRoomForSampler(const SceneStore& store);
 // Writes into a record of this layout which textures it has. They and their samplers must be there.
-void settleTextures(const SceneStore& store, const MaterialTable& layout, std::span<const TextureUse> uses,
-                    std::span<std::uint8_t> record);
+void settleTextures(const SceneStore& store, const MaterialTable& layout,
+                    std::span<const SceneEditor::TextureUse> uses, std::span<std::uint8_t> record);
 // The material of a primitive of an instance.
 MaterialHandle materialOf(const SceneStore& store, const StoredInstance& instance, std::size_t primitive);
 // Writes a material's record. Lights follow if its emission has changed.
@@ -375,7 +376,7 @@ struct EditedTables {
     RecordStore materials;
     std::map<std::uint32_t, std::vector<MaterialHandle>> meshMaterials;  // of meshes that were uploaded
     std::vector<Users> textureUsers;                                     // by index
-    EditReport report;                                                   // materials without a case
+    SceneEditor::Report report;                                          // materials without a case
 };
 // Gives a material of the package the key of one of its primitives.
 void addKey(StoredMaterial& material, const package::PrimitiveEntry& entry, AttributeMask attributes);

@@ -36,7 +36,8 @@ std::shared_ptr<const EmissionTexels> texelsOf(const SceneStore& store, const St
         return store.texelsOf(record.textureIndex);
     }
     const StoredMaterial& material = *store.materialSlots.find(materialOf(store, instance, primitive));
-    const auto use = std::ranges::find(material.textures, store.emission->texture, &TextureUse::slot);
+    const auto use =
+        std::ranges::find(material.textures, store.emission->texture, &SceneEditor::TextureUse::slot);
     return use == material.textures.end() ? nullptr : store.textures.find(use->texture)->texels;
 }
 
@@ -194,8 +195,8 @@ void replaceEmission(SceneStore& store, const StoredTexture& texture) {
         return;
     }
     for (const auto& [material, uses] : texture.materials) {
-        const std::vector<TextureUse>& slots = store.materialSlots.at(material).textures;
-        const auto use = std::ranges::find(slots, store.emission->texture, &TextureUse::slot);
+        const std::vector<SceneEditor::TextureUse>& slots = store.materialSlots.at(material).textures;
+        const auto use = std::ranges::find(slots, store.emission->texture, &SceneEditor::TextureUse::slot);
         store.emittersDirty =
             store.emittersDirty || (use != slots.end() && store.textures.find(use->texture) == &texture &&
                                     store.emissiveMaterials.contains(material));

@@ -82,7 +82,7 @@ Status makePrimitive(SceneStore& store, const Package& package, const MeshConten
     MemoryPool& inputs = store.upload != nullptr ? store.upload->pool : scene.pool;
     GLINT_TRY(made.device, uploadPrimitive(scene.context, scene.pool, *store.uploader, view,
                                            {indices, declared, content.positions[index].words},
-                                           {content.changes ? VertexForm::Full : store.vertices,
+                                           {content.changes ? SceneView::VertexForm::Full : store.vertices,
                                             store.capacity.triangles, &inputs}));
     // A scene that has one pose needs them no longer when that is computed.
     MemoryPool& sources = store.keeps() ? scene.pool : inputs;

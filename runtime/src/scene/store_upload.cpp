@@ -148,7 +148,7 @@ private:
                 material.textures = usesOf(known_, store_.firstTextures, i);
                 material.hasOwnValues = std::ranges::find(scene_.changing, i, &ChangingMaterial::material) !=
                                         scene_.changing.end();
-                for (const TextureUse& use : material.textures) {
+                for (const SceneEditor::TextureUse& use : material.textures) {
                     countUse(store_.textures.find(use.texture)->materials, i, true);
                 }
                 store_.firstMaterials.push_back(store_.materialSlots.add(std::move(material)));

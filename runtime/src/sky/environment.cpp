@@ -89,7 +89,8 @@ Status uploadCounts(Environment::State& state, Uploader& uploader, const SkyCoun
 
 // Makes an environment, and queues its copies.
 Result<std::shared_ptr<Environment::State>> makeState(Context& context, const LinearImage& image,
-                                                      const EnvironmentOptions& options, Uploader& uploader) {
+                                                      const Environment::Options& options,
+                                                      Uploader& uploader) {
     GLINT_TRY(auto checked, checkMap(image));
     auto state = std::make_shared<Environment::State>(context.state());
     using Clock = std::chrono::steady_clock;
@@ -121,7 +122,7 @@ struct Environment::Upload : StagedCopies {
 };
 
 Result<std::unique_ptr<Environment>> Environment::record(Context& context, const LinearImage& image,
-                                                         const EnvironmentOptions& options,
+                                                         const Environment::Options& options,
                                                          VkCommandBuffer commands, std::uint64_t frame) try {
     auto upload = std::make_unique<Upload>(context.state());
     GLINT_TRY(auto state, makeState(context, image, options, *upload->uploader));
@@ -133,7 +134,7 @@ Result<std::unique_ptr<Environment>> Environment::record(Context& context, const
 GLINT_CATCH
 
 Result<std::unique_ptr<Environment>> Environment::create(Context& context, const LinearImage& image,
-                                                         const EnvironmentOptions& options) try {
+                                                         const Environment::Options& options) try {
     return makeOnce(context.state(),
                     [&](VkCommandBuffer commands) { return record(context, image, options, commands, 0); });
 }
@@ -147,6 +148,10 @@ void Environment::complete(std::uint64_t frame) {
 
 Environment::Environment(std::shared_ptr<const State> state) : state_(std::move(state)) {}
 Environment::~Environment() = default;
+
+VkDescriptorImageInfo Environment::image() const {
+    return state_->image();
+}
 
 const Environment::Statistics& Environment::statistics() const {
     return state_->statistics;

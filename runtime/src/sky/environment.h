@@ -12,6 +12,10 @@ namespace glint {
 struct Environment::State {
     explicit State(Context::State& contextState) : context(contextState), pool(contextState, "environment") {}
 
+    VkDescriptorImageInfo image() const {
+        return {sampler.get(), map.view.get(), VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+    }
+
     Context::State& context;
     MemoryPool pool;
     DeviceImage map;  // one mip for each level; layout SHADER_READ_ONLY_OPTIMAL

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <memory>
@@ -110,6 +111,24 @@ private:
     std::map<std::pair<const void*, std::size_t>, std::shared_ptr<const EmitterShape>> known_;
 };
 
+// Returns null if the host has not given any.
+Result<TexelMeans> texelMeans(std::span<const float> given, std::size_t triangles, const std::string& where) {
+    if (given.empty()) {
+        return TexelMeans();
+    }
+    const bool isRange =
+        std::ranges::all_of(given, [](float mean) { return std::isfinite(mean) && mean >= 0.0F; });
+    if ((given.size() != triangles && given.size() != 1) || !isRange) {
+        return makeError("engine-scene", where,
+                         "its lightTexels are not one for each triangle of lightCorners, or one for all, or "
+                         "are negative or not finite",
+                         "give the means of its texels, or leave them out");
+    }
+    std::vector<float> means(given.begin(), given.end());
+    means.resize(triangles, means.front());
+    return TexelMeans(std::make_shared<const std::vector<float>>(std::move(means)));
+}
+
 // The records of geometries, without what their entries say, and the lists that those name whose triangles
 // have materials of their own.
 struct Geometries {
@@ -127,8 +146,9 @@ Result<Geometries> makeGeometries(const EngineScene::View& scene) {
             return outOfRange(geometryPlace(i), "instance", view.instance, scene.instances.size());
         }
         GLINT_TRY(auto shape, shapes.find(view, geometryPlace(i)));
-        made.primitives.push_back(
-            {view.mesh, view.primitive, view.material, view.primitiveMaterials != 0, std::move(shape)});
+        GLINT_TRY(auto texels, texelMeans(view.lightTexels, view.lightCorners.size() / 3, geometryPlace(i)));
+        made.primitives.push_back({view.mesh, view.primitive, view.material, view.primitiveMaterials != 0,
+                                   std::move(shape), std::move(texels)});
         gpu::GeometryRecord& record = made.records.emplace_back(recordOf({}, view, view.instance));
         record.flags = std::uint32_t{view.hostFlags} << gpu::kGeometryHostFlagsShift;
         if (view.primitiveMaterials != 0) {
@@ -427,6 +447,7 @@ void gatherEmitters(EngineScene::State& state) {
             part.twoSided = (record.flags & gpu::kGeometryDoubleSided) != 0;
             part.luminance = emittedLuminance(state.materials.at(record.materialIndex), *state.host.emission);
             part.shape = shape;
+            part.texels = state.host.primitives[i].texels;
         }
         state.emitters = Emitters(*state.host.emission, std::move(parts));
         firsts = state.emitters.firstsOf(geometries.count());

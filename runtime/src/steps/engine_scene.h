@@ -67,9 +67,9 @@ struct EngineScene::State final : DrawnScene, SceneRecords {
         std::uint32_t mesh = 0;
         std::uint32_t primitive = 0;
         std::uint32_t material = EngineScene::View::Geometry::kOfPackage;
-        bool ownMaterials = false;  // each of its triangles names one
-        std::shared_ptr<const EmitterShape>
-            shape{};  // EngineScene::View::Geometry::lightCorners; may be null
+        bool ownMaterials = false;                    // each of its triangles names one
+        std::shared_ptr<const EmitterShape> shape{};  // View::Geometry::lightCorners; may be null
+        TexelMeans texels{};                          // View::Geometry::lightTexels
     };
     struct OwnMaterial {
         std::uint32_t material = 0;

@@ -250,6 +250,9 @@ Status RaySteps::begin(VkCommandBuffer commands, const RaySteps::Batch& batch) t
     GLINT_TRY_DO(checkBatch(*state_, batch));
     GLINT_TRY_DO(adoptPipelines(state_->context, state_->pipelines));
     if (state_->next && joinReplacement(*state_)) {
+        if (!batch.visibility) {
+            GLINT_TRY_DO(checkOutside(state_->next->size, outsideOf(batch)));
+        }
         switchPackage(*state_, commands);
     }
     GLINT_TRY_DO(checkReplaced(*state_));

@@ -49,21 +49,22 @@ struct Arguments {
 struct Variant {
     const char* name;
     bool shuffled;
-    TraversalOrder order;
+    SceneView::TraversalOrder order;
     LeafOrder leaves;  // null: the driver's order, halvingOrder()
     // Triangles and instances are ordered, but each mesh has one BLAS with its geometries in sequence.
     bool wholeMeshes = false;
 };
 
-constexpr Variant kVariants[] = {{"input", false, TraversalOrder::Input, nullptr},
-                                 {"Morton", false, TraversalOrder::Halving, mortonOrder},
-                                 {"SAH", false, TraversalOrder::Halving, sahOrder},
-                                 {"halving", false, TraversalOrder::Halving, nullptr},
-                                 {"halving, whole meshes", false, TraversalOrder::Input, nullptr, true},
-                                 {"shuffled, input", true, TraversalOrder::Input, nullptr},
-                                 {"shuffled, Morton", true, TraversalOrder::Halving, mortonOrder},
-                                 {"shuffled, SAH", true, TraversalOrder::Halving, sahOrder},
-                                 {"shuffled, halving", true, TraversalOrder::Halving, nullptr}};
+constexpr Variant kVariants[] = {
+    {"input", false, SceneView::TraversalOrder::Input, nullptr},
+    {"Morton", false, SceneView::TraversalOrder::Halving, mortonOrder},
+    {"SAH", false, SceneView::TraversalOrder::Halving, sahOrder},
+    {"halving", false, SceneView::TraversalOrder::Halving, nullptr},
+    {"halving, whole meshes", false, SceneView::TraversalOrder::Input, nullptr, true},
+    {"shuffled, input", true, SceneView::TraversalOrder::Input, nullptr},
+    {"shuffled, Morton", true, SceneView::TraversalOrder::Halving, mortonOrder},
+    {"shuffled, SAH", true, SceneView::TraversalOrder::Halving, sahOrder},
+    {"shuffled, halving", true, SceneView::TraversalOrder::Halving, nullptr}};
 constexpr std::size_t kHalving = 3;
 constexpr const char* kEmbree = "Embree";
 
@@ -163,7 +164,7 @@ double costOf(const session::SceneViewData& data, const Variant& variant) {
     for (std::size_t i = 0; i < 3 * leaves.size(); ++i) {
         leaves[i / 3].extend(largest->positions[largest->indices[i]]);
     }
-    const bool isInput = variant.order == TraversalOrder::Input && !variant.wholeMeshes;
+    const bool isInput = variant.order == SceneView::TraversalOrder::Input && !variant.wholeMeshes;
     const LeafOrder order = isInput ? inputOrder : variant.leaves != nullptr ? variant.leaves : halvingOrder;
     return test::halvedTreeCost(leaves, order(leaves, 1));
 }

@@ -21,7 +21,7 @@
 namespace glint::test {
 namespace {
 
-using Dimension = package::TextureDimension;
+using Dimension = package::TextureEntry::Dimension;
 using gltf::ImageShape;
 
 constexpr std::uint32_t kRgba8 = 37;  // numbers of VkFormat

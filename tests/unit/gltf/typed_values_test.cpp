@@ -221,7 +221,7 @@ TEST(TypedValues, TexturesAtRunTimeHaveTheirDimension) {
     made.textures["mood"] = {};
     const gltf::Scene scene = must(gltf::importMaterials({"list", {made}}, decoding));
     const gltf::Image& image = scene.images.at(0);
-    EXPECT_EQ(image.dimension, package::TextureDimension::Cube);
+    EXPECT_EQ(image.dimension, package::TextureEntry::Dimension::Cube);
     EXPECT_EQ(image.layers, 6);
     EXPECT_EQ(image.pixels, std::vector<std::uint8_t>(24, 255));
 }

@@ -280,7 +280,7 @@ TEST_F(MaterialPacks, AModelHas128FeaturesOfItsOwn) {
     material.give("EXT_zinc");
     const materials::FeatureMask key = compiler::makeKey(material, {}, {});
     EXPECT_EQ((key & ~materials::FeatureMask(~std::uint64_t{0})).count(), 129);
-    EXPECT_EQ(model->words(key).own, package::OwnWords::all());
+    EXPECT_EQ(model->words(key).own, package::KeyWords::Own::all());
     EXPECT_EQ(model->maskOf(model->words(key)), key);
     const package::KeyWords last = model->words(model->mask("zincAlloy127"));
     EXPECT_EQ(last.own.words, (std::array<std::uint32_t, 4>{0, 0, 0, 1U << 31}));
@@ -305,7 +305,7 @@ TEST(KeyWords, UnionsOfSeveralModelsKnowNothingAboutTheFeaturesOfEach) {
     EXPECT_EQ(set.model, 7U);
     set |= package::KeyWords{0, 0, 6};
     EXPECT_EQ(set.model, package::KeyWords::kAnyModel);
-    EXPECT_EQ(set.own, package::OwnWords::all());
+    EXPECT_EQ(set.own, package::KeyWords::Own::all());
     EXPECT_TRUE(set.hasAny(zinc));
     EXPECT_FALSE((package::KeyWords{0, 0, 6}).hasAny({0, 0, 7}));
 }

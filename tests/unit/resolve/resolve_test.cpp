@@ -215,13 +215,13 @@ TEST(Resolve, KeepsWhatNeedsAnotherBuild) {
     const Build build = resolved(scene, Settings(), drawing());
     Settings wanted;
     wanted.samples = 7;
-    wanted.renderer.picture = PictureFormat::Half;
+    wanted.renderer.picture = RendererOptions::PictureFormat::Half;
     wanted.compile.plan.merge = MergePolicy::None;
     wanted.package = "package";
     EXPECT_NE(changeBetween(build.settings, wanted) & kChangesPackage, 0U);
     const Settings shown = withoutRebuilding(build.settings, wanted);
     EXPECT_EQ(shown.samples, 7U);
-    EXPECT_EQ(shown.renderer.picture, PictureFormat::Half);
+    EXPECT_EQ(shown.renderer.picture, RendererOptions::PictureFormat::Half);
     EXPECT_EQ(shown.compile.plan.merge, build.settings.compile.plan.merge);
     EXPECT_EQ(shown.package, "");
     EXPECT_EQ(changeBetween(build.settings, shown), kChangesFrame | kChangesRenderer);

@@ -32,7 +32,7 @@ SceneView TestScene::view() {
             .images = imageViews_,
             .lights = lights,
             .traversalOrder = traversalOrder,
-            .vertices = VertexForm::Full};  // the shaders of these tests read floats and words
+            .vertices = SceneView::VertexForm::Full};  // the shaders of these tests read floats and words
 }
 
 TestScene::Mesh makeSquare(std::uint32_t mesh, std::uint32_t primitive, float z) {

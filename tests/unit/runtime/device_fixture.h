@@ -34,7 +34,7 @@ struct TestScene {
     std::vector<InstanceView> instances;
     std::vector<Pixels> images;
     std::vector<LightView> lights;
-    TraversalOrder traversalOrder = TraversalOrder::Auto;
+    SceneView::TraversalOrder traversalOrder = SceneView::TraversalOrder::Auto;
 
     // The view is valid until a member changes.
     SceneView view();

@@ -218,7 +218,7 @@ TEST_F(UploadTest, PartsBySidednessAndRecordsByInstance) {
     scene.meshes = {test::makeSquare(0, 0), test::makeSquare(0, 1), test::makeSquare(0, 2),
                     test::makeSquare(1, 0)};
     scene.instances = {{0, test::kIdentity}, {1, test::kIdentity}, {0, test::kIdentity}};
-    scene.traversalOrder = TraversalOrder::Input;
+    scene.traversalOrder = SceneView::TraversalOrder::Input;
     const std::unique_ptr<GpuScene> uploaded = upload(package, scene);
     ASSERT_NE(uploaded, nullptr);
     const GpuScene::Statistics& statistics = uploaded->statistics();
@@ -282,7 +282,7 @@ TEST_F(UploadTest, LargeMeshesAreSplit) {
     TestScene scene;
     scene.meshes = {test::makeSquare(0, 0), test::makeSquare(0, 1), test::makeSquare(0, 2)};
     scene.instances = {{0, test::kIdentity}};
-    scene.traversalOrder = TraversalOrder::Input;
+    scene.traversalOrder = SceneView::TraversalOrder::Input;
     const auto count = [&](std::uint64_t triangles, std::uint64_t geometries) {
         DeviceLimits& limits = context().state().limits;
         limits.accelerationStructure.maxPrimitiveCount = triangles;
@@ -301,7 +301,7 @@ TEST_F(UploadTest, LargeMeshesAreSplit) {
     EXPECT_EQ(count(6, 1), std::pair(3U, 3U));
     EXPECT_EQ(count(3, 3), std::pair(3U, 3U)) << "a primitive that fits is not torn";
     EXPECT_EQ(count(1, 3), std::pair(6U, 6U)) << "one that does not fit is";
-    scene.traversalOrder = TraversalOrder::Halving;
+    scene.traversalOrder = SceneView::TraversalOrder::Halving;
     EXPECT_EQ(count(6, 3), std::pair(3U, 3U)) << "a driver that halves gets each geometry by itself";
     EXPECT_EQ(count(1, 3), std::pair(6U, 6U));
 }
@@ -310,7 +310,7 @@ TEST_F(UploadTest, LargeMeshesAreSplit) {
 TEST_F(UploadTest, OrdersForCpus) {
     const Package package = load(test::makeDeviceSpec());
     TestScene scene = test::squareScene();
-    const auto orders = [&](VkPhysicalDeviceType type, TraversalOrder order) {
+    const auto orders = [&](VkPhysicalDeviceType type, SceneView::TraversalOrder order) {
         context().state().limits.deviceType = type;
         scene.traversalOrder = order;
         const std::unique_ptr<GpuScene> uploaded = upload(package, scene);
@@ -319,10 +319,10 @@ TEST_F(UploadTest, OrdersForCpus) {
     };
     constexpr VkPhysicalDeviceType kCpu = VK_PHYSICAL_DEVICE_TYPE_CPU;
     constexpr VkPhysicalDeviceType kGpu = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
-    EXPECT_TRUE(orders(kCpu, TraversalOrder::Auto));
-    EXPECT_FALSE(orders(kCpu, TraversalOrder::Input));
-    EXPECT_FALSE(orders(kGpu, TraversalOrder::Auto));
-    EXPECT_TRUE(orders(kGpu, TraversalOrder::Halving));
+    EXPECT_TRUE(orders(kCpu, SceneView::TraversalOrder::Auto));
+    EXPECT_FALSE(orders(kCpu, SceneView::TraversalOrder::Input));
+    EXPECT_FALSE(orders(kGpu, SceneView::TraversalOrder::Auto));
+    EXPECT_TRUE(orders(kGpu, SceneView::TraversalOrder::Halving));
 }
 
 TEST_F(UploadTest, BlasesKeepToTheStorageBufferRange) {

@@ -137,7 +137,7 @@ TEST_F(Failures, LostDevicesAreAKindOfTheirOwnAtEachCall) {
 
 TEST_F(Failures, WithoutDeviceMemoryNothingChanges) {
     const auto uploaded = upload(*package_, scene_);
-    const auto environment = std::move(*Environment::create(context(), sky()));
+    const auto environment = std::move(*Environment::create(context(), sky(), {}));
     const auto renderer = must(Renderer::create(context(), *package_, *uploaded, options()));
     const FrameOptions frame = frameWith(environment.get());
     const auto picture = renderer->render(frame);
@@ -152,7 +152,7 @@ TEST_F(Failures, WithoutDeviceMemoryNothingChanges) {
             return okStatus();
         },
         [&]() -> Status {
-            GLINT_TRY(auto made, Environment::create(context(), sky()));
+            GLINT_TRY(auto made, Environment::create(context(), sky(), {}));
             return okStatus();
         },
         [&]() -> Status {
@@ -248,7 +248,7 @@ TEST_F(Failures, AnotherHeapThatFitsIsTaken) {
 // Each allocation of the host in turn, or as many as there are in this time, at distances that grow.
 TEST_F(Failures, NoExceptionLeaves) {
     const auto uploaded = upload(*package_, scene_);
-    const auto environment = std::move(*Environment::create(context(), sky()));
+    const auto environment = std::move(*Environment::create(context(), sky(), {}));
     const auto renderer = must(Renderer::create(context(), *package_, *uploaded, options()));
     const FrameOptions frame = frameWith(environment.get());
     const auto picture = renderer->render(frame);
@@ -268,7 +268,7 @@ TEST_F(Failures, NoExceptionLeaves) {
             return okStatus();
         },
         [&]() -> Status {
-            GLINT_TRY(auto made, Environment::create(context(), map));
+            GLINT_TRY(auto made, Environment::create(context(), map, {}));
             return okStatus();
         },
         [&]() -> Status {

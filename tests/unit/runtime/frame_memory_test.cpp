@@ -172,11 +172,11 @@ TEST(FrameTraffic, HasTheShadowRaysOfFirstHits) {
     // Each ray is written and read. Each pixel's count is, too, and its surface and light are read again.
     EXPECT_EQ(bytesMoved(shape), before + 2 * 28.0 + 2 * 4.0 + 8.0 + 2 * 16.0);
 
-    FrameCounters counters;
+    Renderer::Counters counters;
     counters.pixelCounts = {3, 7};
     counters.shadowRounds = 3;
-    EffectCounters shadow;
-    shadow.kind = package::EffectKind::Light;
+    Renderer::EffectCounters shadow;
+    shadow.kind = package::EffectInfo::Kind::Light;
     shadow.rays = 20;  // of hits, too
     shadow.waited = 12;
     counters.effects = {shadow};

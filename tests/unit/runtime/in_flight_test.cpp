@@ -38,7 +38,7 @@ protected:
     std::unique_ptr<Environment> makeEnvironment(float radiance) {
         const LinearImage image{4, 2,
                                 std::vector<std::array<float, 4>>(8, {radiance, radiance, radiance, 1})};
-        return std::move(*Environment::create(context(), image));
+        return std::move(*Environment::create(context(), image, {}));
     }
     std::shared_ptr<const Package> share(const test::PackageSpec& spec) {
         return std::make_shared<const Package>(load(spec));

@@ -34,7 +34,7 @@ TEST(MotionBounds, AreThoseOfTheMeshAtRest) {
 TEST(MotionBounds, HoldMorphedAndSkinnedVertices) {
     const std::vector<std::array<float, 3>> positions{{0, 0, 0}, {1, 0, 0}};
     const std::vector<std::array<float, 3>> differences{{0, 4, 0}, {0, -2, 0}};
-    const std::vector<MorphTargetView> targets{{differences, {}, {}}};
+    const std::vector<PrimitiveView::MorphTarget> targets{{differences, {}, {}}};
     const std::vector<std::uint16_t> joints{0, 1};
     const std::vector<float> jointWeights{1.0F, 1.0F};
     PrimitiveView view;

@@ -50,8 +50,9 @@ const NamedRole kRoles[] = {
 };
 
 const package::EffectInfo kEffects[] = {
-    {package::kEffectShadow, package::EffectKind::Light, 0, "shadow"},
-    {package::kEffectReflection, package::EffectKind::Rays, package::kEffectStartsOnScreen, "reflection"},
+    {package::kEffectShadow, package::EffectInfo::Kind::Light, 0, "shadow"},
+    {package::kEffectReflection, package::EffectInfo::Kind::Rays, package::kEffectStartsOnScreen,
+     "reflection"},
 };
 
 package::EffectSet effectSet() {

@@ -161,7 +161,8 @@ TEST_F(PackageTest, RefusesEffectsThatAreNotWellFormed) {
     EXPECT_EQ(refused([](Effects& effects) { effects[1].effect = 6; }), "package-altered");  // two bits
     EXPECT_EQ(refused([](Effects& effects) { effects[1].effect = 0; }), "package-altered");
     EXPECT_EQ(refused([](Effects& effects) { effects[1].effect = 1; }), "package-altered");  // twice
-    EXPECT_EQ(refused([](Effects& effects) { effects[1].kind = package::EffectKind{3}; }), "package-altered");
+    EXPECT_EQ(refused([](Effects& effects) { effects[1].kind = package::EffectInfo::Kind{3}; }),
+              "package-altered");
     EXPECT_EQ(refused([](Effects& effects) { effects[1].abilities = 4; }), "package-altered");
     EXPECT_EQ(refused([](Effects& effects) { effects[0].abilities = package::kEffectWalks; }),
               "package-altered");  // lights have no rays to follow
@@ -169,7 +170,7 @@ TEST_F(PackageTest, RefusesEffectsThatAreNotWellFormed) {
     EXPECT_EQ(refused([](Effects& effects) { effects[1].abilities |= package::kEffectWalks; }),
               "package-altered");
     EXPECT_EQ(refused([](Effects& effects) {
-                  effects.push_back({{}, 8, package::EffectKind::Rays, 0, 0});
+                  effects.push_back({{}, 8, package::EffectInfo::Kind::Rays, 0, 0});
               }),
               "package-altered");
 }
@@ -329,7 +330,7 @@ TEST_F(PackageTest, BrokenPromisesAreErrors) {
         {"sampler", [](PackageSpec& s) { s.materials[0].textures[1].samplerIndex = 1; }},
         {"UV set", [](PackageSpec& s) { s.materials[0].textures[1].texCoord = 2; }},
         {"colour space", [](PackageSpec& s) { s.textures[0].srgb = 2; }},
-        {"dimension", [](PackageSpec& s) { s.textures[0].dimension = package::TextureDimension{4}; }},
+        {"dimension", [](PackageSpec& s) { s.textures[0].dimension = package::TextureEntry::Dimension{4}; }},
         {"wrap", [](PackageSpec& s) { s.samplers[0].wrapV = 3; }},
         {"filter", [](PackageSpec& s) { s.samplers[0].mip = 2; }},
         {"order", [](PackageSpec& s) { std::swap(s.primitives[0], s.primitives[1]); }},

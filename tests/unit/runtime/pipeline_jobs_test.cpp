@@ -86,7 +86,7 @@ TEST(BackgroundPipelines, CasesWithMostHitsComeFirst) {
     }
     EXPECT_EQ(names, (std::vector<std::string>{"case 0", "case 3", "case 1"}));
     EXPECT_EQ(background.take(9).size(), 1U);
-    const PipelineProgress progress = background.progress();
+    const Renderer::PipelineProgress progress = background.progress();
     EXPECT_EQ(progress.wanted, 4U);
     EXPECT_EQ(progress.made, 4U);
     EXPECT_EQ(progress.adopted, 4U);
@@ -150,7 +150,7 @@ TEST(BackgroundPipelines, ErrorsAreToldAndTheRestIsMade) {
     BackgroundPipelines background(jobs, std::move(planned), 0, 2);
     background.wait();
     EXPECT_EQ(background.take(9).size(), 2U);
-    const PipelineProgress progress = background.progress();
+    const Renderer::PipelineProgress progress = background.progress();
     EXPECT_EQ(progress.made, 3U);
     EXPECT_EQ(progress.adopted, 2U);
     ASSERT_TRUE(progress.error);

@@ -83,7 +83,7 @@ TEST(PipelineExecutables, AreReadWhole) {
         isIncompleteOnce = incomplete;
         const auto read = must(readExecutables(context, VK_NULL_HANDLE));
         ASSERT_EQ(read.size(), 2U);
-        const PipelineStatistics::Executable& first = read.front();
+        const Renderer::PipelineStatistics::Executable& first = read.front();
         EXPECT_EQ(first.name, "main");
         EXPECT_EQ(first.description, "the code");
         EXPECT_EQ(first.stages, VK_SHADER_STAGE_COMPUTE_BIT);
@@ -142,7 +142,7 @@ TEST_F(StatisticsOfARenderer, NameEveryPipeline) {
     EXPECT_EQ(told.size(), renderer->footprint().pipelines);
     EXPECT_EQ(askedExecutables, told.size());
     std::vector<std::string> names;
-    for (const PipelineStatistics& pipeline : told) {
+    for (const Renderer::PipelineStatistics& pipeline : told) {
         EXPECT_EQ(pipeline.executables.size(), 2U);
         names.push_back(pipeline.name);
     }

@@ -133,11 +133,11 @@ TEST(PositionGrid, PrimitivesOfAMeshShareTheirGrid) {
     right.push_back(shared);
     const std::vector<Float3> other = randomPositions(9, 0.0F, 1.0F);
     const PrimitiveView views[] = {viewOf(left, 3), viewOf(right, 3), viewOf(other, 4)};
-    const std::vector<GridPositions> packed = packPositions(views, VertexForm::Quantized);
+    const std::vector<GridPositions> packed = packPositions(views, SceneView::VertexForm::Quantized);
     ASSERT_EQ(packed.size(), 3U);
     EXPECT_EQ(packed[0].values.back(), packed[1].values.back());
     EXPECT_NE(packed[2].words[0], packed[0].words[0]) << "another mesh has another grid";
-    for (const GridPositions& primitive : packPositions(views, VertexForm::Compact)) {
+    for (const GridPositions& primitive : packPositions(views, SceneView::VertexForm::Compact)) {
         EXPECT_TRUE(primitive.words.empty()) << "compact keeps what 16 bits would change";
     }
     const std::vector<PrimitiveView> placed = withPositions(views, packed);
@@ -151,16 +151,16 @@ TEST(PositionGrid, WhatMovesOrIsNotFiniteStaysAsItIs) {
     const PrimitiveView infinite = viewOf(broken);
     EXPECT_FALSE(coverByGrid({&infinite, 1}));
     std::vector<PrimitiveView> views{viewOf(positions), viewOf(positions)};
-    const MorphTargetView target{positions, {}, {}};
+    const PrimitiveView::MorphTarget target{positions, {}, {}};
     views[1].targets = {&target, 1};
-    for (const GridPositions& primitive : packPositions(views, VertexForm::Quantized)) {
+    for (const GridPositions& primitive : packPositions(views, SceneView::VertexForm::Quantized)) {
         EXPECT_TRUE(primitive.words.empty()) << "a seam would open where only one primitive moves";
     }
     views[1].targets = {};
-    for (const GridPositions& primitive : packPositions(views, VertexForm::Compact)) {
+    for (const GridPositions& primitive : packPositions(views, SceneView::VertexForm::Compact)) {
         EXPECT_EQ(primitive.values, positions);
     }
-    for (const GridPositions& primitive : packPositions(views, VertexForm::Full)) {
+    for (const GridPositions& primitive : packPositions(views, SceneView::VertexForm::Full)) {
         EXPECT_TRUE(primitive.words.empty());
     }
 }

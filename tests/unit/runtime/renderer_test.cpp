@@ -182,7 +182,7 @@ TEST_P(RendererTest, CountersAndTimingsNameThePasses) {
     EXPECT_EQ(timed[0], 2U);
     EXPECT_GT(timed[1], 2U);
 
-    const FrameCounters counters = must(renderer_->counters());
+    const Renderer::Counters counters = must(renderer_->counters());
     EXPECT_EQ(counters.rays, kWidth * kHeight);
     EXPECT_EQ(counters.unknownShader, 0U);
     EXPECT_EQ(counters.pixelCounts, (std::vector<std::uint32_t>{560, 400}));

@@ -122,7 +122,7 @@ public:
         for (const Renderer::LayerImage& layer : renderer_->layers()) {
             GLINT_TRY(auto values, renderer_->readLayer(layer.name));
             layers.push_back({std::string(layer.name), std::string(layer.info->channels),
-                              layer.info->format == package::LayerFormat::Half4, std::move(values)});
+                              layer.info->format == package::LayerInfo::Format::Half4, std::move(values)});
         }
         return layers;
     }
@@ -172,7 +172,7 @@ private:
         report_.hasDetails = !setup_.arguments.stats.empty();
         report_.countsLight = options_.countsLight;
         report_.traffic.shape = trafficShape(package, options_);
-        report_.traffic.shape.binsRays = setup_.settings.frame.binning != Binning::None;
+        report_.traffic.shape.binsRays = setup_.settings.frame.binning != FrameOptions::Binning::None;
         return okStatus();
     }
 
@@ -247,7 +247,7 @@ private:
                                                static_cast<double>(report_.width) * report_.height);
         report_.textures.levels.clear();
         for (const std::uint32_t level : report_.counters.textureLevels) {
-            const bool isRead = level != FrameCounters::kLevelNotRead;
+            const bool isRead = level != Renderer::Counters::kLevelNotRead;
             report_.textures.levels.push_back(isRead ? std::optional(level) : std::nullopt);
         }
         if (!setup_.arguments.coverage.empty()) {

@@ -78,23 +78,23 @@ std::string filesOf(const RenderReport& report) {
 // A gate of an effect, with the number of rays that it kept.
 struct Gate {
     const char* name;
-    std::uint32_t EffectCounters::*count;
+    std::uint32_t Renderer::EffectCounters::*count;
 };
 constexpr Gate kGates[] = {
-    {"sky", &EffectCounters::skippedSky},       {"unlit", &EffectCounters::skippedUnlit},
-    {"rough", &EffectCounters::skippedRough},   {"black", &EffectCounters::skippedBlack},
-    {"absent", &EffectCounters::skippedAbsent}, {"faint", &EffectCounters::skippedFaint},
-    {"facing", &EffectCounters::skippedFacing}, {"range", &EffectCounters::skippedRange},
-    {"cone", &EffectCounters::skippedCone},
+    {"sky", &Renderer::EffectCounters::skippedSky},       {"unlit", &Renderer::EffectCounters::skippedUnlit},
+    {"rough", &Renderer::EffectCounters::skippedRough},   {"black", &Renderer::EffectCounters::skippedBlack},
+    {"absent", &Renderer::EffectCounters::skippedAbsent}, {"faint", &Renderer::EffectCounters::skippedFaint},
+    {"facing", &Renderer::EffectCounters::skippedFacing}, {"range", &Renderer::EffectCounters::skippedRange},
+    {"cone", &Renderer::EffectCounters::skippedCone},
 };
 
 using SkippedRays = std::pair<std::string_view, std::uint32_t>;
-std::vector<SkippedRays> skippedOf(const EffectCounters& effect) {
+std::vector<SkippedRays> skippedOf(const Renderer::EffectCounters& effect) {
     return base::mapped<SkippedRays>(
         kGates, [&](const Gate& gate) { return SkippedRays(gate.name, effect.*gate.count); });
 }
 
-std::string effectText(const EffectCounters& effect) {
+std::string effectText(const Renderer::EffectCounters& effect) {
     std::string text = fmt::format("{} rays: {} hit, {} missed", effect.rays, effect.hits, effect.misses);
     if (effect.segments > 0) {
         text += fmt::format("; {} on their way", effect.segments);
@@ -150,7 +150,7 @@ std::string toText(const TextureReport& textures) {
 
 }  // namespace
 
-void RenderReport::addHits(const FrameCounters& sample) {
+void RenderReport::addHits(const Renderer::Counters& sample) {
     // The first bucket is for misses.
     hits.resize(std::max(hits.size(), sample.bucketCounts.empty() ? 0 : sample.bucketCounts.size() - 1));
     for (std::size_t bucket = 1; bucket < sample.bucketCounts.size(); ++bucket) {
@@ -209,8 +209,8 @@ static base::Fields fieldsOf(const MemoryItem*) {
             output<&T::bytes>("bytes", "Size of all of them.")};
 }
 
-static base::Fields fieldsOf(const EffectCounters*) {
-    using T = EffectCounters;
+static base::Fields fieldsOf(const Renderer::EffectCounters*) {
+    using T = Renderer::EffectCounters;
     using base::output;
     return {output<&T::name>("name", "Name of the effect."),
             output<&T::rays>("rays",
@@ -279,13 +279,13 @@ static std::string toText(const StartReport& start) {
         start.rendererMs, start.firstSampleMs);
 }
 
-std::string tableOf(std::span<const PipelineStatistics> pipelines) {
+std::string tableOf(std::span<const Renderer::PipelineStatistics> pipelines) {
     Rows rows{{"pipeline", "executable", "subgroup"}};
     for (const inspect::FactInfo& info : inspect::factTable()) {
         rows.front().emplace_back(info.column);
     }
-    for (const PipelineStatistics& pipeline : pipelines) {
-        for (const PipelineStatistics::Executable& executable : pipeline.executables) {
+    for (const Renderer::PipelineStatistics& pipeline : pipelines) {
+        for (const Renderer::PipelineStatistics::Executable& executable : pipeline.executables) {
             const inspect::PipelineFacts facts = inspect::factsOf(executable);
             std::vector<std::string>& row = rows.emplace_back();
             row = {pipeline.name, executable.name,
@@ -417,7 +417,7 @@ std::vector<base::Field> sceneStatistics() {
 }
 
 std::vector<base::Field> counters() {
-    using C = FrameCounters;
+    using C = Renderer::Counters;
     constexpr auto kAt = &RenderReport::counters;
     return {
         output<kAt, &C::rays>("rays", "Number of rays of all effects whose hits are shaded."),
@@ -483,7 +483,7 @@ base::Fields fieldsOf(const RenderReport*) {
         output<&T::passes>("passes", "Passes of the last sample, in order."),
         base::group("counters", "Counters of the last sample.", counters()),
         output<&T::view>("view", "The debug picture of the last frame; null without --view."),
-        output<&T::counters, &FrameCounters::effects>(
+        output<&T::counters, &Renderer::Counters::effects>(
             "effects", "The package's effects in a fixed order, with what each did in the last sample."),
         base::group(
             "footprint", "Resources that the renderer holds for a frame.",
@@ -509,7 +509,7 @@ TextureReport textureReport(std::span<const ImageView> images) {
 
 std::string toText(const RenderReport& report, Detail detail) {
     const GpuScene::Statistics& scene = report.sceneStatistics;
-    const FrameCounters& counters = report.counters;
+    const Renderer::Counters& counters = report.counters;
     const double bytesOfPixel = static_cast<double>(report.footprint.bytes) /
                                 std::max(static_cast<double>(report.width) * report.height, 1.0);
     Rows rows{
@@ -543,8 +543,8 @@ std::string toText(const RenderReport& report, Detail detail) {
     rows.push_back({"pipelines", toText(report.pipelines)});
     rows.push_back({"first sample", toText(report.start)});
     rows.push_back({"render", formatMilliseconds(report.renderMs)});
-    for (const EffectCounters& effect : counters.effects) {
-        if (!report.countsLight && effect.kind != package::EffectKind::Rays) {
+    for (const Renderer::EffectCounters& effect : counters.effects) {
+        if (!report.countsLight && effect.kind != package::EffectInfo::Kind::Rays) {
             continue;  // not counted
         }
         rows.push_back({effect.name, effectText(effect)});

@@ -48,12 +48,13 @@ struct StartReport {
 struct PipelineReport {
     std::uint32_t count = 0;
     Renderer::PipelineMaking making;
-    std::optional<PipelineCacheReport> cache;                   // absent: none is kept
-    std::optional<std::vector<PipelineStatistics>> statistics;  // absent: not asked for, or not to be had
+    std::optional<PipelineCacheReport> cache;  // absent: none is kept
+    std::optional<std::vector<Renderer::PipelineStatistics>>
+        statistics;  // absent: not asked for, or not to be had
 };
 
 // Returns a table with a row for each executable, and the facts that inspect::factsOf() finds.
-std::string tableOf(std::span<const PipelineStatistics> pipelines);
+std::string tableOf(std::span<const Renderer::PipelineStatistics> pipelines);
 // Returns a cell of tables: "72", "38 %", or "-".
 std::string factText(const inspect::FactInfo& info, const inspect::PipelineFacts& facts);
 
@@ -143,13 +144,13 @@ struct RenderReport {
     double renderMs = 0.0;                   // wall clock, all samples and the read-back
     std::vector<PassTiming> passes;          // of the last sample, of the last frame
     TrafficReport traffic;                   // of the last sample
-    FrameCounters counters;                  // of the last sample, of the last frame; nonFinite: of all
+    Renderer::Counters counters;             // of the last sample, of the last frame; nonFinite: of all
     std::vector<FrameReport> frames;         // with --frames
     std::optional<measure::View> view;       // of the last frame, with --view
     std::vector<Renderer::PixelPath> paths;  // of the last sample, row by row; for --coverage only
     std::vector<std::uint64_t> hits;         // by shader ID, of all samples that were given to addHits()
 
-    void addHits(const FrameCounters& sample);
+    void addHits(const Renderer::Counters& sample);
 };
 
 // Returns the error "order-check" if hits are lost, doubled or misplaced; RendererOptions::checkOrder counts

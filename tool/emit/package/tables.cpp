@@ -418,7 +418,7 @@ using package::TextureEntry;
 
 MaterialTables makeMaterialTables(const gltf::Scene& scene, const MaterialLayout& layout) {
     MaterialTables tables;
-    std::map<std::tuple<std::uint32_t, std::uint16_t, TextureDimension>, std::uint32_t> indexOf;
+    std::map<std::tuple<std::uint32_t, std::uint16_t, TextureEntry::Dimension>, std::uint32_t> indexOf;
     for (const materials::Material& material : scene.materials) {
         std::vector<std::uint8_t> record = makeMaterialRecord(material, layout);
         for (const auto& [i, info] : material.textures) {

@@ -49,7 +49,7 @@ public:
     Status level(const ImageShape& shape, int level, std::span<std::uint8_t> target, std::size_t unit,
                  basist::transcoder_texture_format format, std::uint32_t flags) {
         const auto layers = static_cast<std::uint32_t>(shape.layers);
-        const bool isCube = shape.dimension == package::TextureDimension::Cube;
+        const bool isCube = shape.dimension == package::TextureEntry::Dimension::Cube;
         const std::size_t bytes = target.size() / layers;
         for (std::uint32_t i = 0; i < layers; ++i) {
             if (!transcoder_.transcode_image_level(static_cast<std::uint32_t>(level), isCube ? 0 : i,

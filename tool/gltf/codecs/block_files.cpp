@@ -283,7 +283,7 @@ struct Header {
 };
 
 bool isFlat(const BlockFile& image) {
-    return image.dimension == package::TextureDimension::Flat;
+    return image.dimension == package::TextureEntry::Dimension::Flat;
 }
 
 // Finds the format by its number. Returns whether Glint reads it.
@@ -309,7 +309,7 @@ bool findFormat(std::uint32_t format, BlockFile& image) {
 
 // Reads the dimension by what the file has beside rows and columns, and the size.
 Status readShape(const FileReader& file, BlockFile& image) {
-    using Dimension = package::TextureDimension;
+    using Dimension = package::TextureEntry::Dimension;
     const std::uint32_t depth = file.word(28);
     const std::uint32_t layers = file.word(32);
     const std::uint32_t faces = file.word(36);

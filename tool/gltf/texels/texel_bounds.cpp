@@ -423,7 +423,7 @@ std::array<materials::ValueInterval, 4> valuesOf(const TexelRange& range, PixelF
 }
 
 bool hasKnownTexels(const Image& image) {
-    return image.dimension == package::TextureDimension::Flat &&
+    return image.dimension == package::TextureEntry::Dimension::Flat &&
            (image.storage == Storage::Texels ||
             (image.storage == Storage::Blocks && image.levels == fullLevels(image.width, image.height)));
 }

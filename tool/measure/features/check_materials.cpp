@@ -57,7 +57,7 @@ Result<std::unique_ptr<FeatureEvaluator>> FeatureEvaluator::create(const gltf::S
 
     observer.progress("making the pipeline");
     session::SceneViewData data = session::makeSceneView(scene);
-    data.vertices = VertexForm::Full;  // frames of surfaces are compared exactly
+    data.vertices = SceneView::VertexForm::Full;  // frames of surfaces are compared exactly
     GLINT_TRY(evaluator->scene_,
               session::DeviceScene::upload(*evaluator->context_, std::move(package), std::move(data)));
     GLINT_TRY(evaluator->kernel_, SceneKernel::create(*evaluator->scene_.gpu, kernel.spirv));

@@ -152,10 +152,10 @@ void addCheckedTextures(gltf::Scene& scene) {
     scene.samplers.push_back(sampler);
     scene.textures.push_back({0, 0});
     // One of each other dimension with the same texels.
-    using package::TextureDimension;
-    for (const auto& [dimension, layers] : {std::pair(TextureDimension::Array, 4),
-                                            {TextureDimension::Cube, 6},
-                                            {TextureDimension::Volume, 8}}) {
+    using package::TextureEntry;
+    for (const auto& [dimension, layers] : {std::pair(TextureEntry::Dimension::Array, 4),
+                                            {TextureEntry::Dimension::Cube, 6},
+                                            {TextureEntry::Dimension::Volume, 8}}) {
         gltf::Image other = scene.images.front();
         other.dimension = dimension;
         other.layers = layers;

@@ -105,7 +105,7 @@ Diagnostic missingLayer(const ViewChoice& choice, std::string_view layer) {
 Result<package::Effect> effectOf(const ViewChoice& choice, const Package& package) {
     std::vector<std::string_view> known;
     for (const package::EffectInfo& effect : package.effects()) {
-        if (effect.kind == package::EffectKind::Rays) {
+        if (effect.kind == package::EffectInfo::Kind::Rays) {
             if (choice.source.empty() || choice.source == effect.name) {
                 return effect.effect;
             }
@@ -128,7 +128,7 @@ Status readEverySource(const ViewChoice& choice, Renderer& renderer, ViewInput& 
         return okStatus();
     }
     for (const package::EffectInfo& effect : input.package->effects()) {
-        if (effect.kind != package::EffectKind::Rays) {
+        if (effect.kind != package::EffectInfo::Kind::Rays) {
             continue;
         }
         const std::string name = package::layerName(*package::findLayer(wanted), effect.name, 0);
@@ -202,7 +202,7 @@ Result<View> makeView(const ViewChoice& choice, Renderer& renderer, ViewInput in
                       std::optional<std::array<double, 2>> range) {
     const Package& package = *input.package;
     const bool ofRaysAlone = std::ranges::any_of(choice.info->layers, [](std::string_view layer) {
-        return package::findLayer(layer)->subject == package::LayerSubject::Ray;
+        return package::findLayer(layer)->subject == package::LayerInfo::Subject::Ray;
     });
     package::Effect effect = 0;
     if (ofRaysAlone) {
@@ -313,7 +313,7 @@ constexpr std::uint32_t kMarkBroken = 0xFFFFFF01;
 // Shows the only layer of the input, one value after the other.
 void showLayer(const ViewInput& input, ViewValues& values) {
     const auto& [name, layer] = *input.layers.begin();
-    const bool counts = package::findLayer(name)->mean == package::LayerMean::Sum;
+    const bool counts = package::findLayer(name)->mean == package::LayerInfo::Mean::Sum;
     values.categories = {{kMarkNothing, {"none", {100, 100, 100}}},
                          {kMarkBroken, {"not finite", {255, 0, 255}}}};
     for (const std::uint32_t number : layer.integers) {
@@ -338,8 +338,8 @@ const ViewInfo& infoOfLayer(const package::LayerInfo& layer) {
     static const std::vector<ViewInfo> kLayers = [] {
         std::vector<ViewInfo> infos;
         for (const package::LayerInfo& one : package::layerTable()) {
-            const bool isNumber =
-                one.format == package::LayerFormat::Integer && one.mean != package::LayerMean::Sum;
+            const bool isNumber = one.format == package::LayerInfo::Format::Integer &&
+                                  one.mean != package::LayerInfo::Mean::Sum;
             infos.push_back({.name = one.name,
                              .what = one.what,
                              .scale = isNumber ? ViewScale::Categories : ViewScale::Linear,
@@ -355,7 +355,7 @@ const ViewInfo& infoOfLayer(const package::LayerInfo& layer) {
 image::Color8 colorOfPixel(const package::LayerInfo& info, const float* value, std::size_t channels,
                            const std::array<double, 2>& scale, double exposure) {
     if (info.channels == "RGB") {
-        const bool isLight = info.format == package::LayerFormat::Float4;
+        const bool isLight = info.format == package::LayerInfo::Format::Float4;
         return image::toDisplay({value[0], value[1], value[2]}, isLight ? exposure : 0.0);
     }
     image::Color8 color{};

@@ -327,7 +327,7 @@ void Window::finishSamples() {
             continue;
         }
         one->timedFrame = recorded;
-        if (const Result<FrameCounters> counters = one->picture.renderer().counters(); counters) {
+        if (const Result<Renderer::Counters> counters = one->picture.renderer().counters(); counters) {
             one->counters = *counters;
         }
         if (const Result<std::vector<PassTiming>> passes = one->picture.renderer().timings(); passes) {

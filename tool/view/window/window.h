@@ -61,7 +61,7 @@ private:
         compiler::Settings wanted;       // as the panel shows it
         compiler::Settings ordered;      // of the last build that was ordered
         PassHistory history;
-        FrameCounters counters;
+        Renderer::Counters counters;
         std::uint64_t timedFrame = 0;  // of the last times that were read
         bool buildFailed = false;      // the last one; the picture is that of a build before it
     };
@@ -244,7 +244,7 @@ private:
     std::size_t validationSeen_ = 0;
 
     base::InputWatch watch_;
-    std::optional<PackageWatch> packageWatch_;
+    std::optional<Package::Watch> packageWatch_;
     base::Clock::time_point polled_{};
 
     std::vector<KeyPress> keys_;

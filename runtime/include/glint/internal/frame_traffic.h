@@ -7,7 +7,7 @@
 #include <glint/internal/package_format.h>
 #include <glint/internal/package_modules.h>
 #include <glint/layers.h>
-#include <glint/result.h>
+#include <glint/renderer.h>
 
 #include <cstdint>
 #include <iterator>
@@ -16,10 +16,6 @@
 #include <vector>
 
 namespace glint {
-
-class Package;
-struct FrameCounters;
-struct RendererOptions;
 
 // The unit for which a pass moves bytes.
 enum class TrafficUnit : std::uint32_t {
@@ -70,7 +66,7 @@ struct TrafficShape {
     bool halfPicture = false;
     bool marchesScreen = false;
     bool binsRays = false;
-    std::vector<package::LayerEntry> layers{};
+    std::vector<package::LayerInfo::Entry> layers{};
     bool layerRays = false;  // they need the hits of rays
     std::uint32_t layerBounces = 0;
     bool layerWalks = false;  // they need the lights that walks find
@@ -99,7 +95,7 @@ struct TrafficCounts {
     }
 };
 // Shadow rays of first hits are counted with RendererOptions::countsLight.
-TrafficCounts trafficCounts(const FrameCounters& counters, const TrafficShape& shape, double pixels);
+TrafficCounts trafficCounts(const Renderer::Counters& counters, const TrafficShape& shape, double pixels);
 
 // The sum of the rows.
 struct TrafficSum {

@@ -37,9 +37,9 @@ struct EffectSet {
 
     constexpr void add(const EffectInfo& info) {
         all |= info.effect;
-        (info.kind == EffectKind::Light     ? lights
-         : info.kind == EffectKind::Surface ? surfaces
-                                            : rays) |= info.effect;
+        (info.kind == EffectInfo::Kind::Light     ? lights
+         : info.kind == EffectInfo::Kind::Surface ? surfaces
+                                                  : rays) |= info.effect;
         screenStarts |= (info.abilities & kEffectStartsOnScreen) != 0 ? info.effect : 0U;
         walks |= (info.abilities & kEffectWalks) != 0 ? info.effect : 0U;
     }
@@ -140,8 +140,8 @@ enum class SectionKind : std::uint32_t {
     Emission = 11,   // one EmissionEntry, in packages with emissive lights
     Features = 12,   // FeatureEntry: every feature of materials that the compiler knew, by ascending bits
     Opacity = 13,    // one OpacityEntry, in packages that test alpha by Glint's own code
-    Layers = 14,     // LayerEntry (glint/layers.h), by the index of their images, in packages with layers
-    Fields = 15,     // FieldEntry: the fields and textures of records, by model and ascending offsets
+    Layers = 14,  // LayerInfo::Entry (glint/layers.h), by the index of their images, in packages with layers
+    Fields = 15,  // FieldEntry: the fields and textures of records, by model and ascending offsets
 };
 
 struct PackageSection {
@@ -213,7 +213,7 @@ struct SceneEntry {
 struct EffectEntry {
     StringRef name;
     Effect effect;  // one bit
-    EffectKind kind;
+    EffectInfo::Kind kind;
     std::uint32_t abilities;  // EffectAbility bits
     std::uint32_t pad;
 };

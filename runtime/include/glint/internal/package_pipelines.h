@@ -14,7 +14,7 @@ namespace glint {
 // A pipeline that renderers of a package make.
 struct PackagePipeline {
     // Without executables if the device reports none, or if the pipeline could not be made.
-    PipelineStatistics statistics;
+    Renderer::PipelineStatistics statistics;
     // Its modules: first the one that it is named after, with the cases that share its code.
     std::vector<package::ModuleKey> modules;
     std::uint32_t strategies = 0;       // package::Strategy bits of the renderers that have it

@@ -59,7 +59,7 @@ struct Exposure {
     // overlap do not overlap here, so their sum is larger.
     std::map<std::string, double> passes;  // by name; those of cases together, as "shade cases"
     HitTimes hits;                         // the times in which strategies differ
-    FrameCounters counters;                // of the last sample
+    Renderer::Counters counters;           // of the last sample
 };
 
 // Milliseconds of the stretches of one sample (Timing::Frame) that are of this kind.

@@ -86,9 +86,9 @@ struct BenchPoint {
     std::vector<double> errorRatios;  // to the default with the same seed, in the chosen metric
     // The errors of the mean of all rounds' pictures.
     std::optional<image::ImageErrors> errorOfMean;
-    bool sameImage = true;   // as the default's, bit-exact, in every round
-    LinearImage image;       // of the first round
-    FrameCounters counters;  // of its last sample
+    bool sameImage = true;        // as the default's, bit-exact, in every round
+    LinearImage image;            // of the first round
+    Renderer::Counters counters;  // of its last sample
     Renderer::Footprint footprint;
     std::uint32_t cases = 0;
     std::string tracer;

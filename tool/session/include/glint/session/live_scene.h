@@ -89,7 +89,7 @@ private:
     Status followInstance(const gltf::Scene& scene, std::size_t index);
     Status followLight(std::size_t index, bool isPlaced);
     Status followMaterials(const gltf::Scene& scene);
-    void note(const gltf::Scene& scene, const EditReport& report);
+    void note(const gltf::Scene& scene, const SceneEditor::Report& report);
 
     const Package& package_;
     GpuScene& gpu_;

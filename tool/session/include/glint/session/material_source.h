@@ -16,10 +16,10 @@ namespace glint::session {
 // The arrays behind a MaterialSource.
 struct MaterialSourceData {
     std::vector<std::uint8_t> record;
-    std::vector<MaterialKey> keys;
-    std::vector<TextureUse> textures;
+    std::vector<SceneEditor::MaterialKey> keys;
+    std::vector<SceneEditor::TextureUse> textures;
 
-    MaterialSource view() const {
+    SceneEditor::MaterialSource view() const {
         return {record, keys, textures};
     }
 };

@@ -43,9 +43,9 @@ struct SceneViewData {
     bool moves = false;                // as in SceneView
     bool editable = false;             // as in SceneView
     std::uint32_t textureRoom = 1024;  // as in SceneView
-    TraversalOrder traversalOrder = TraversalOrder::Auto;
-    OpacityUse opacity = OpacityUse::Proved;
-    VertexForm vertices = VertexForm::Compact;
+    SceneView::TraversalOrder traversalOrder = SceneView::TraversalOrder::Auto;
+    SceneView::OpacityUse opacity = SceneView::OpacityUse::Proved;
+    SceneView::VertexForm vertices = SceneView::VertexForm::Compact;
     std::vector<MaterialView> materials;  // those that animations change
     // The sizes of the scene's lights, as LightView::size.
     float directionalSize = 0.0F;
@@ -73,8 +73,8 @@ struct SceneViewData {
     // The data to which the spans of primitives, instances and materials point.
     compiler::MaterialLayout materialLayout;  // of the package's records; without fields until useLayoutOf()
     std::vector<std::vector<std::uint8_t>> materialRecords;
-    std::vector<std::vector<AttributeView>> attributes;
-    std::vector<std::vector<MorphTargetView>> targets;
+    std::vector<std::vector<PrimitiveView::Attribute>> attributes;
+    std::vector<std::vector<PrimitiveView::MorphTarget>> targets;
     std::vector<std::vector<std::array<float, 12>>> joints;
     std::vector<std::vector<float>> weights;
 

@@ -75,7 +75,7 @@ SkyChoice skyForLights(std::vector<LitPatch> patches);
 // Errors: of the file
 // ("file-open", "image-format", …) and of Environment::create(), with the file as their place.
 Result<std::unique_ptr<Environment>> loadEnvironment(Context& context, const std::string& file,
-                                                     const EnvironmentOptions& options,
+                                                     const Environment::Options& options,
                                                      std::vector<Diagnostic>& notes);
 
 }  // namespace glint::session
