@@ -108,7 +108,7 @@ private:
     NodeId quotientOfLess(const Node& node);
     NodeId triangleSum(const Node& node);
     NodeId intoChoice(const Node& node);
-    NodeId weightedSum(const Node& sum, NodeId one, std::vector<NodeId> weights);
+    NodeId weightedSum(const Node& sum, NodeId one, const std::vector<NodeId>& weights);
     NodeId bareOf(NodeId id) const;  // without refinements
     void operandsOf(Op op, NodeId id, std::vector<NodeId>& operands) const;
     NodeId unitPart(const Node& node, NodeId part, NodeId length2, double leastLength);

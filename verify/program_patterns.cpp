@@ -15,7 +15,7 @@ constexpr double kSplitFactor = 4097.0;  // Veltkamp's, in shaders/bsdf/exact.gl
 NodeId ProgramBuilder::plainOf(NodeId id) const {
     for (;;) {
         const Node& known = node(id);
-        if (known.op == Op::SphereSum) {
+        if (known.op == Op::SphereSum || known.op == Op::SquareOfRoot) {
             id = known.b;
         } else if (known.op == Op::Bounded || known.op == Op::UnitSum || known.op == Op::PartOfUnit ||
                    known.op == Op::WeightedUnit || known.op == Op::UnitQuotient || known.op == Op::Share ||
@@ -23,8 +23,6 @@ NodeId ProgramBuilder::plainOf(NodeId id) const {
             id = known.a;
         } else if (known.op == Op::CircleSum) {
             id = known.c;
-        } else if (known.op == Op::SquareOfRoot) {
-            id = known.b;
         } else {
             return id;
         }

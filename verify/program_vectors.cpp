@@ -1,5 +1,6 @@
 // Bounds for components of vectors: normalised, mirrored, on a circle or a sphere; and for their products and
 // sums.
+#include "base/lists.h"
 #include "verify/program_builder.h"
 
 #include <algorithm>
@@ -298,7 +299,7 @@ ProgramBuilder::UnitComponent ProgramBuilder::unitComponentOf(NodeId id) {
 }
 
 // A sum of squares with these weights before they are squared, whose sum without weights is `one`.
-NodeId ProgramBuilder::weightedSum(const Node& sum, NodeId one, std::vector<NodeId> weights) {
+NodeId ProgramBuilder::weightedSum(const Node& sum, NodeId one, const std::vector<NodeId>& weights) {
     const NodeId whole = appendOnce(sum);
     const bool wasAuxiliary = std::exchange(makesAuxiliary_, true);
     NodeId least = kNoNode;
@@ -320,10 +321,7 @@ NodeId ProgramBuilder::sumOfNormalized(const Node& given) {
         return kNoNode;
     }
     const bool wasAuxiliary = std::exchange(makesAuxiliary_, true);
-    std::vector<UnitComponent> found;
-    for (const NodeId part : parts) {
-        found.push_back(unitComponentOf(part));
-    }
+    const auto found = base::mapped<UnitComponent>(parts, [&](NodeId part) { return unitComponentOf(part); });
     const NodeId one = constant(1.0, given.format);
     makesAuxiliary_ = wasAuxiliary;
     std::vector<NodeId> components;

@@ -1,6 +1,7 @@
 #include "verify/specialise.h"
 
 #include "verify/evaluate.h"
+#include "verify/program_builder.h"
 
 #include <utility>
 

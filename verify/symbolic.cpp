@@ -1,5 +1,6 @@
 #include "verify/symbolic.h"
 
+#include "base/lists.h"
 #include "verify/symbolic_operations.h"
 #include "verify/symbolic_state.h"
 
@@ -68,10 +69,8 @@ private:
     SymbolicValue joined(const std::vector<SymbolicState>& states, const Ways& ways, const ValueOf& valueOf) {
         SymbolicValue all;
         for (std::size_t k = 0; k < valueOf(ways.front())->nodes.size(); ++k) {
-            std::vector<NodeId> values;
-            for (const auto& way : ways) {
-                values.push_back(valueOf(way)->nodes[k]);
-            }
+            const auto values =
+                base::mapped<NodeId>(ways, [&](const auto& way) { return valueOf(way)->nodes[k]; });
             all.nodes.push_back(joinValues(builder_, states, values));
         }
         return all;

@@ -1,5 +1,7 @@
 #include "verify/symbolic_state.h"
 
+#include "base/lists.h"
+
 #include <algorithm>
 
 namespace glint::verify {
@@ -167,10 +169,7 @@ SymbolicState join(ProgramBuilder& builder, const std::vector<SymbolicState>& st
     }
     SymbolicState joined;
     // Pairs of opposite guards become the guard around them, until nothing changes.
-    std::vector<NodeId> guards;
-    for (const SymbolicState& state : states) {
-        guards.push_back(state.guard);
-    }
+    auto guards = base::mapped<NodeId>(states, &SymbolicState::guard);
     builder.setGuard(kNoNode);
     for (bool changed = true; changed && guards.size() > 1;) {
         changed = false;
@@ -218,10 +217,8 @@ SymbolicState join(ProgramBuilder& builder, const std::vector<SymbolicState>& st
         }
         auto merged = std::make_shared<std::vector<NodeId>>();
         for (std::size_t k = 0; k < memory->size(); ++k) {
-            std::vector<NodeId> values;
-            for (const SymbolicState& state : states) {
-                values.push_back(state.memories.at(number)->at(k));
-            }
+            const auto values = base::mapped<NodeId>(
+                states, [&](const SymbolicState& state) { return state.memories.at(number)->at(k); });
             merged->push_back(joinValues(builder, states, values));
         }
         joined.memories[number] = std::move(merged);

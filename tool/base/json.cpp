@@ -105,7 +105,7 @@ void JsonReader::eachMember(
     }
     for (const auto& [name, value] : object.items()) {
         if (ok()) {
-            use(name, value, place + "/" + name);
+            use(name, value, fmt::format("{}/{}", place, name));
         }
     }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <iterator>
 #include <vector>
 
 namespace glint::base {
@@ -10,6 +11,7 @@ namespace glint::base {
 template <typename Value, typename List, typename Make>
 std::vector<Value> mapped(List&& list, const Make& make) {
     std::vector<Value> values;
+    values.reserve(std::size(list));
     for (auto&& element : list) {
         values.emplace_back(std::invoke(make, element));
     }

@@ -90,8 +90,8 @@ base::Json shadersToJson(const Outcome& outcome) {
         }
         list.push_back({{"id", shader.shaderId},
                         {"name", shader.name},
-                        {"always", featuresToJson(*outcome.plan.model, shader.always)},
-                        {"sometimes", featuresToJson(*outcome.plan.model, shader.sometimes)},
+                        {"always", outcome.plan.model->names(shader.always)},
+                        {"sometimes", outcome.plan.model->names(shader.sometimes)},
                         {"keys", shader.keys.size()},
                         {"share", compiler::roundedShare(shader.share)},
                         {"reason", toString(shader.reason)},

@@ -5,6 +5,7 @@
 #include "cli/options/options.h"
 #include "cli/report.h"
 #include "cli/table.h"
+#include "emit/package/manifest.h"
 
 #include <fmt/format.h>
 

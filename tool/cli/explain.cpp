@@ -289,15 +289,14 @@ base::Json toJson(const ExplainArguments& arguments, const compiler::Build& buil
                   const compiler::KnownCosts& costs, const std::vector<int>& materials) {
     const gltf::Scene& scene = build.scenes->scenes().front();
     const compiler::PlanOptions& options = build.settings.compile.plan;
-    base::Json result{
-        {"scene", arguments.scene},
-        {"sceneInFile", base::jsonOf(compiler::orNone(gltf::sceneInFile(scene)))},
-        {"scenesInFile", listOf(scene.scenesInFile, base::textOrNull)},
-        {"merge", nameOf(options.merge)},
-        {"alpha", nameOf(options.keys.alpha)},
-        {"hitLobes", featuresToJson(*build.plan.model, options.keys.keptLobes & build.plan.model->lobes)},
-        {"variant", base::textOrNull(scene.variant)},
-        {"variants", scene.variants}};
+    base::Json result{{"scene", arguments.scene},
+                      {"sceneInFile", base::jsonOf(compiler::orNone(gltf::sceneInFile(scene)))},
+                      {"scenesInFile", listOf(scene.scenesInFile, base::textOrNull)},
+                      {"merge", nameOf(options.merge)},
+                      {"alpha", nameOf(options.keys.alpha)},
+                      {"hitLobes", build.plan.model->names(options.keys.keptLobes & build.plan.model->lobes)},
+                      {"variant", base::textOrNull(scene.variant)},
+                      {"variants", scene.variants}};
     if (arguments.wholePlan) {
         result["plan"] = planToJson(build);
         return result;

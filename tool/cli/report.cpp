@@ -25,10 +25,6 @@ static base::Fields fieldsOf(const TrafficRow*) {
 
 namespace glint::cli {
 
-base::Json featuresToJson(const materials::MaterialModel& model, materials::FeatureMask mask) {
-    return listOf(model.names(mask), [](std::string_view name) { return std::string(name); });
-}
-
 base::Json materialsToJson(const gltf::SceneList& scenes, std::span<const int> materials) {
     return listOf(materials, [&](int material) -> base::Json {
         const gltf::SceneList::Place place = scenes.place(material);
@@ -42,11 +38,6 @@ base::Json droppedToJson(const gltf::SceneList& scenes, const compiler::Plan& pl
                 {"reason", dropped.reason},
                 {"materials", materialsToJson(scenes, dropped.materials)}};
     });
-}
-
-std::string featureList(const materials::MaterialModel& model, materials::FeatureMask mask) {
-    const std::vector<std::string_view> names = model.names(mask);
-    return base::join({names.begin(), names.end()});
 }
 
 std::string droppedText(const compiler::Plan& plan) {

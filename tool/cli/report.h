@@ -41,14 +41,11 @@ base::Json listOf(List&& list, const ToJson& toJson) {
     return json;
 }
 
-base::Json featuresToJson(const materials::MaterialModel& model, materials::FeatureMask mask);
 // Returns [{"scene", "index", "name"}]; `materials` are indices into scenes.materials().
 base::Json materialsToJson(const gltf::SceneList& scenes, std::span<const int> materials);
 // Returns [{"feature", "reason", "materials"}].
 base::Json droppedToJson(const gltf::SceneList& scenes, const compiler::Plan& plan);
 
-// Returns the names of the features of a mask, "a, b", or "-".
-std::string featureList(const materials::MaterialModel& model, materials::FeatureMask mask);
 // Returns one line for each feature and reason, with the number of materials. Empty if nothing was dropped.
 std::string droppedText(const compiler::Plan& plan);
 

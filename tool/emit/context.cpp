@@ -18,8 +18,8 @@ namespace {
 constexpr std::size_t kMaxNameLength = 64;
 constexpr std::size_t kMaxNamesListed = 8;
 
-std::string featureList(const materials::MaterialModel& model, materials::FeatureMask mask) {
-    const std::vector<std::string_view> names = model.names(mask);
+std::string featureList(const materials::MaterialModel& model, const materials::FeatureMask& mask) {
+    const std::vector<std::string> names = model.names(mask);
     return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 

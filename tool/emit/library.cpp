@@ -198,7 +198,7 @@ Result<std::vector<PackageFile>> makeLibrary(const gltf::SceneList& scenes, cons
     GLINT_TRY(const auto sources, librarySources(scenes, plan, settings));
     MaterialCodeOfCases codeOfCases(plan);
     std::vector<PackageFile> files{fileOf("glint_host.glsl", hostText(sources))};
-    const auto add = [&](const mustache::data& context, materials::FeatureMask features,
+    const auto add = [&](const mustache::data& context, const materials::FeatureMask& features,
                          const std::string& name) -> Status {
         GLINT_TRY(const auto code, codeOfCases.find(sources, features));
         GLINT_TRY(const auto text, makeFile(sources, *code, context, name));

@@ -116,7 +116,7 @@ void addLayers(mustache::data& context, const materials::MaterialModel& model,
             entry.set("number", std::to_string(++number));
             mirrors.push_back(entry);
         }
-        layers.push_back(std::move(entry));
+        layers.push_back(entry);
         lower.push_back(layer);
     }
     mustache::data diffuse(mustache::data::type::list);
@@ -163,7 +163,7 @@ std::vector<const materials::FeatureCode*> codeOf(const materials::MaterialModel
 
 // Returns the attributes that code of the used features reads, in the order of their values.
 std::vector<const materials::VertexAttribute*> attributesOf(const materials::MaterialModel& model,
-                                                            materials::FeatureMask used) {
+                                                            const materials::FeatureMask& used) {
     std::vector<const materials::VertexAttribute*> attributes;
     for (const materials::VertexAttribute& attribute : model.attributes) {
         if (used.has(model.features[static_cast<std::size_t>(attribute.feature)].bit)) {
@@ -185,7 +185,7 @@ std::string channelsOf(const materials::VertexAttribute& attribute) {
 
 }  // namespace
 
-std::string vertexAttributeCode(const materials::MaterialModel& model, materials::FeatureMask used) {
+std::string vertexAttributeCode(const materials::MaterialModel& model, const materials::FeatureMask& used) {
     const std::vector<const materials::VertexAttribute*> attributes = attributesOf(model, used);
     if (attributes.empty()) {
         return "#define GLINT_VERTEX_ATTRIBUTES 0\n";
@@ -232,7 +232,7 @@ std::string vertexAttributeCode(const materials::MaterialModel& model, materials
 }
 
 Status addMaskCode(const SourceSet& sources, const materials::MaterialModel& model,
-                   materials::FeatureMask used, SourceSet& generated) {
+                   const materials::FeatureMask& used, SourceSet& generated) {
     const std::vector<const materials::FeatureCode*> code = codeOf(model, used);
     constexpr CodeFile kStages[] = {&materials::FeatureCode::coordinates, &materials::FeatureCode::opacity};
     mustache::data context;
@@ -256,7 +256,7 @@ materials::FeatureMask maskCodeFeatures(const materials::MaterialModel& model) {
 }
 
 Status addMaterialCode(const SourceSet& sources, const materials::MaterialModel& model,
-                       materials::FeatureMask used, SourceSet& generated) {
+                       const materials::FeatureMask& used, SourceSet& generated) {
     const std::vector<const materials::FeatureCode*> code = codeOf(model, used);
     constexpr CodeFile kStages[] = {&materials::FeatureCode::coordinates, &materials::FeatureCode::surface,
                                     &materials::FeatureCode::bsdf, &materials::FeatureCode::emission};

@@ -19,17 +19,17 @@ materials::FeatureMask maskCodeFeatures(const materials::MaterialModel& model);
 // Adds "generated/layers.glsl", "layers_sky.glsl", "layers_traced.glsl" and "material_stages.glsl" for the
 // features of `used` to `generated`. `sources` has the templates. Has the errors of renderTemplate().
 Status addMaterialCode(const SourceSet& sources, const materials::MaterialModel& model,
-                       materials::FeatureMask used, SourceSet& generated);
+                       const materials::FeatureMask& used, SourceSet& generated);
 
 // Adds "generated/mask_stages.glsl" in the same way: the code that decides about the opacity of candidates of
 // rays and of rasterised triangles, which may be of any case. `used` must be the features of the whole
 // package.
 Status addMaskCode(const SourceSet& sources, const materials::MaterialModel& model,
-                   materials::FeatureMask used, SourceSet& generated);
+                   const materials::FeatureMask& used, SourceSet& generated);
 
 // Returns "generated/attributes.glsl": the attributes of vertices that the features of `used` read beside
 // those of glTF.
-std::string vertexAttributeCode(const materials::MaterialModel& model, materials::FeatureMask used);
+std::string vertexAttributeCode(const materials::MaterialModel& model, const materials::FeatureMask& used);
 
 // Says what to do about an error in GLSL to which packs or a host may have contributed, and which feature it
 // is of. `host` is the folder of --host.

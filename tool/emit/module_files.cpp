@@ -1,6 +1,7 @@
 #include "emit/module_files.h"
 
 #include "base/files.h"
+#include "base/lists.h"
 #include "cache/store.h"
 #include "emit/context.h"
 #include "emit/glsl/passes.h"
@@ -293,10 +294,8 @@ Status joinModuleFile(const ModuleText& source, std::string_view text, const fs:
         }
         parts.push_back(std::move(part.module));
     }
-    std::vector<const CachedModule*> pointers;
-    for (const CachedModule& part : parts) {
-        pointers.push_back(&part);
-    }
+    const auto pointers =
+        base::mapped<const CachedModule*>(parts, [](const CachedModule& part) { return &part; });
     const Result<CachedModule> joined = joinMeasured(source.source, source.options, pointers);
     return joined ? base::writeFile(output, packFile(text, *joined)) : Status(joined.error());
 }

@@ -50,7 +50,7 @@ public:
           settings_(settings),
           drafts_(drafts),
           codeOfCases_(codeOfCases),
-          ofEmitters_(ofEmitters) {}
+          ofEmitters_(std::move(ofEmitters)) {}
 
     // Makes the texts of the switch. Has the errors of renderTemplate().
     Status makeSwitches() {

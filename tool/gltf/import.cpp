@@ -191,7 +191,7 @@ Status addRunTimeValues(const Document& document, Scene& scene) {
             rest.model().parameters[static_cast<std::size_t>(edited.parameter)];
         const materials::ValueInterval& range = edited.range;
         for (int i = 0; i < parameter.numbers; ++i) {
-            const auto place = static_cast<std::size_t>(parameter.first + i);
+            const auto place = static_cast<std::size_t>(parameter.first) + static_cast<std::size_t>(i);
             if (rest.values[place] < range.low || rest.values[place] > range.high) {
                 return document.error(
                     "material-list", edited.pointer,

@@ -145,7 +145,7 @@ void fold(materials::Material& material, int slot, const Constant& constant) {
             continue;
         }
         for (int i = 0; i < parameter.numbers; ++i) {
-            const auto place = static_cast<std::size_t>(parameter.first + i);
+            const auto place = static_cast<std::size_t>(parameter.first) + static_cast<std::size_t>(i);
             const int channel = parameter.scaledByChannels[static_cast<std::size_t>(i)];
             if (channel >= 0 && !isScaled[place]) {
                 // As a device multiplies them.

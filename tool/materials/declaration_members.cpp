@@ -121,14 +121,14 @@ Json roleOf() {
 Json own() {
     return {{"enum", {"own"}}};
 }
-constexpr auto name = matching<kNamePattern>;
-constexpr auto file = matching<kFilePattern>;
+constexpr auto kName = matching<kNamePattern>;
+constexpr auto kFile = matching<kFilePattern>;
 
 // --- The members ---
 
 constexpr MemberRow kRows[] = {
     {"$schema", at({File}), text, "This schema, for editors."},
-    {"name", at({File, Parameter, Texture, Attribute, Derived, Feature}), name,
+    {"name", at({File, Parameter, Texture, Attribute, Derived, Feature}), kName,
      "The name, unique in all declarations; in a model of a pack, unique in the model.",
      at({File, Parameter, Texture, Attribute, Derived, Feature})},
     {"about", at({File, Parameter, Texture, Attribute, Derived, Feature}), text, "One sentence about it."},
@@ -168,25 +168,25 @@ constexpr MemberRow kRows[] = {
     {"when", at({Reason, Effect}), text, "A condition.", at({Reason, Effect})},
     {"because", at({Reason, Excludes}), text, "The condition in words.", at({Reason, Excludes})},
     {"sets", at({Replaces}), byName<value>, "Values that the replaced parameters have."},
-    {"but", at({Excludes}), list<name>, "The features that stay."},
+    {"but", at({Excludes}), list<kName>, "The features that stay."},
 
-    {"surface", at({Glsl}), file, "The file of nameSurface(), which changes colour, normal and roughness."},
-    {"bsdf", at({Glsl}), file,
+    {"surface", at({Glsl}), kFile, "The file of nameSurface(), which changes colour, normal and roughness."},
+    {"bsdf", at({Glsl}), kFile,
      "The file of nameBsdf(), which changes the BSDF of the base and sets the layer."},
-    {"layer", at({Glsl}), file,
+    {"layer", at({Glsl}), kFile,
      "The file of a layer over the base: its struct, and the functions that evaluate, sample and weigh it."},
-    {"model", at({Glsl}), file,
+    {"model", at({Glsl}), kFile,
      "The file of a model in place of the base: its struct, and the functions that evaluate and sample it."},
-    {"diffuse", at({Glsl}), file,
+    {"diffuse", at({Glsl}), kFile,
      "The file of nameDiffuse(), which stands in for Lambert's law in the base's diffuse lobe, and of its "
      "struct."},
-    {"emission", at({Glsl}), file,
+    {"emission", at({Glsl}), kFile,
      "The file of nameEmission(), which changes the light that the surface emits."},
-    {"coordinates", at({Glsl}), file,
+    {"coordinates", at({Glsl}), kFile,
      "The file of nameCoordinates(), which changes the coordinates at which textures are read."},
-    {"opacity", at({Glsl}), file,
+    {"opacity", at({Glsl}), kFile,
      "The file of nameOpacity(), which changes the alpha that masks are tested by."},
-    {"after", at({Glsl}), list<name>,
+    {"after", at({Glsl}), list<kName>,
      "Names of declarations whose GLSL runs before, at each stage; the layer lies over theirs."},
     {"coversEmission", at({Glsl}), flag, "True: the layer takes what it reflects from the emission, too."},
     {"traced", at({Glsl}), flag, "True: rays may trace the layer's reflection."},
@@ -207,7 +207,7 @@ constexpr MemberRow kRows[] = {
     {"type", at({Parameter}), nameOf<kTypes>, "The type of the value."},
     {"type", at({Attribute, Derived}), vectorType, "The type of the value.", at({Attribute, Derived})},
     {"count", at({Parameter}), elements, "Makes it an array of so many values."},
-    {"values", at({Parameter}), list<name, 1>, "The names that a value of an enum may be."},
+    {"values", at({Parameter}), list<kName, 1>, "The names that a value of an enum may be."},
     {"default", at({Parameter}), value,
      "The value of a material whose file gives none; every type but address needs it."},
     {"default", at({Attribute}), oneOrList<finite>,
@@ -217,13 +217,13 @@ constexpr MemberRow kRows[] = {
     {"also", at({Parameter}), list<number, 1, 1>, "One further valid value."},
     {"unit", at({Parameter, Derived}), text, "The unit; the range of radians is a turn."},
     {"record", at({Parameter}), flag, "False: records do not have it."},
-    {"of", at({Parameter, Texture, Derived}), name, "The feature whose keys need it."},
+    {"of", at({Parameter, Texture, Derived}), kName, "The feature whose keys need it."},
     {"role", at({Parameter}), roleOf<Parameter>,
      "What Glint itself reads it for. If a parameter has the role already, this one fills it."},
     {"role", at({Texture}), roleOf<Texture>,
      "What Glint itself reads it for. If a texture has the role already, this one fills it."},
     {"role", at({Feature}), roleOf<Feature>, "What Glint itself has to know it for."},
-    {"is", at({Parameter, Texture}), name, "The parameter or texture of another base model that it fills."},
+    {"is", at({Parameter, Texture}), kName, "The parameter or texture of another base model that it fills."},
     {"value", at({Derived}), oneOrList<text>, "An expression.", at({Derived})},
 
     {"color", at({Texture}), flag, "True: sRGB."},

@@ -19,6 +19,7 @@ struct ValueInterval {
     bool isExact() const {
         return low == high;
     }
+    // The compiler generates a comparison with 0 here. NOLINTNEXTLINE(modernize-use-nullptr)
     auto operator<=>(const ValueInterval&) const = default;
 };
 

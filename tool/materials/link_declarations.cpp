@@ -402,7 +402,7 @@ Expression ModelBuilder::expression(const DeclarationJson& json, const std::stri
     return std::move(*parsed);
 }
 
-void ModelBuilder::linkFeature(const Members& members, int index, FeatureMask onlyWith) {
+void ModelBuilder::linkFeature(const Members& members, int index, const FeatureMask& onlyWith) {
     if (members.has("given")) {
         featureAt(index).given = expression(members["given"], members.at("given"), true);
     }

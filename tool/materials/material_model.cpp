@@ -318,8 +318,8 @@ std::vector<int> MaterialModel::indicesOf(const FeatureMask& mask) const {
     return indices;
 }
 
-std::vector<std::string_view> MaterialModel::names(const FeatureMask& mask) const {
-    std::vector<std::string_view> names;
+std::vector<std::string> MaterialModel::names(const FeatureMask& mask) const {
+    std::vector<std::string> names;
     for (const int index : indicesOf(mask)) {
         names.emplace_back(features[static_cast<std::size_t>(index)].name);
     }
@@ -464,7 +464,8 @@ std::string MaterialModel::featureDefines(const FeatureMask& used) const {
     }
     for (const BaseModel& model : models) {
         for (int i = 0; i <= model.bits && used.has(model.firstBit - 1); ++i) {
-            const Feature& feature = features[static_cast<std::size_t>(model.feature + i)];
+            const Feature& feature =
+                features[static_cast<std::size_t>(model.feature) + static_cast<std::size_t>(i)];
             const int bit = feature.bit - model.firstBit;
             const std::string rest =
                 fmt::format("{}u, {}, 0x{:x}u)", feature.model + 1, std::max(bit, 0) / 32,

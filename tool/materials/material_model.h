@@ -330,7 +330,7 @@ struct NeutralReason {
     FeatureMask onlyWith = 0;
     FeatureMask onlyWithout = 0;
 
-    bool countsIn(FeatureMask key) const {
+    bool countsIn(const FeatureMask& key) const {
         return (onlyWith & ~key) == 0 && (onlyWithout & key) == 0;
     }
 };
@@ -542,7 +542,7 @@ public:
     // Returns the features of a set with an end, as ascending indices into `features`.
     std::vector<int> indicesOf(const FeatureMask& mask) const;
     // Returns their names in the same order.
-    std::vector<std::string_view> names(const FeatureMask& mask) const;
+    std::vector<std::string> names(const FeatureMask& mask) const;
     // Returns the numbers that any texture of the slot can hold: those of one that is not flat come from the
     // program alone, in any format.
     ValueInterval anyTexel(int texture) const {

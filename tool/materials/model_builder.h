@@ -115,7 +115,7 @@ private:
 
     std::optional<Symbol> resolve(std::string_view function, const std::vector<std::string_view>& names);
     Expression expression(const DeclarationJson& json, const std::string& where, bool isCondition);
-    void linkFeature(const Members& members, int index, FeatureMask onlyWith);
+    void linkFeature(const Members& members, int index, const FeatureMask& onlyWith);
     void link(const File& file);
     void linkTexture(const File& file, const Members& members);
     // In keys of another base model, the texture's reasons are those that this model gives, if it gives any.

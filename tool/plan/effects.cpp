@@ -1,5 +1,6 @@
 #include "plan/effects.h"
 
+#include "base/lists.h"
 #include "plan/key.h"
 
 #include <fmt/format.h>
@@ -41,11 +42,9 @@ std::vector<Surface> surfacesOf(std::span<const materials::Material> materials,
             {primitive.material, primitive.hasTexCoords0, primitive.hasTexCoords1, std::move(seen)},
             &primitive);
     }
-    std::vector<Surface> surfaces;
-    for (const auto& [key, primitive] : found) {
-        surfaces.push_back({&materials[static_cast<std::size_t>(primitive->material)], primitive});
-    }
-    return surfaces;
+    return base::mapped<Surface>(found, [&](const auto& entry) {
+        return Surface{&materials[static_cast<std::size_t>(entry.second->material)], entry.second};
+    });
 }
 
 std::string nameOf(const materials::Material& material) {

@@ -267,8 +267,7 @@ materials::FeatureMask makeKey(const materials::Material& material,
     const materials::MaterialModel& model = material.model();
     const materials::FeatureMask whole = KeyMaker(material, primitive, keepAllLobes(options)).make(dropped);
     const bool keepsAll = (options.keptLobes & model.lobes) == model.lobes;
-    const materials::FeatureMask kept =
-        keepsAll ? whole : KeyMaker(material, primitive, options).make(nullptr);
+    materials::FeatureMask kept = keepsAll ? whole : KeyMaker(material, primitive, options).make(nullptr);
     if (dropped != nullptr) {
         for (const materials::Feature& feature : model.features) {
             if (whole.has(feature.bit) && !kept.has(feature.bit)) {

@@ -256,8 +256,8 @@ std::string formatLock(const LockedIds& ids, const materials::MaterialModel& mod
     return text;
 }
 
-std::string lockKeyName(materials::FeatureMask mask, const materials::MaterialModel& model) {
-    const std::vector<std::string_view> names = model.names(mask);
+std::string lockKeyName(const materials::FeatureMask& mask, const materials::MaterialModel& model) {
+    const std::vector<std::string> names = model.names(mask);
     return names.empty() ? std::string(kNoFeatures) : fmt::format("{}", fmt::join(names, " "));
 }
 

@@ -67,7 +67,7 @@ std::string formatLock(const LockedIds& ids,
                        const materials::MaterialModel& model = materials::builtinMaterialModel());
 
 // Returns a key as the file has it: "baseColorTexture texCoord0", or "-".
-std::string lockKeyName(materials::FeatureMask mask,
+std::string lockKeyName(const materials::FeatureMask& mask,
                         const materials::MaterialModel& model = materials::builtinMaterialModel());
 
 }  // namespace glint::compiler

@@ -285,7 +285,7 @@ std::vector<int> byShare(Keys keys) {
 
 // Groups the keys whose masks agree in the bits of `distinguishes`.
 std::vector<Cluster> groupBy(Keys keys, const std::vector<int>& indices,
-                             materials::FeatureMask distinguishes) {
+                             const materials::FeatureMask& distinguishes) {
     std::map<materials::FeatureMask, Cluster> groups;
     for (const int key : indices) {
         groups[keys[static_cast<std::size_t>(key)].mask & distinguishes].keys.push_back(key);
@@ -304,7 +304,7 @@ void append(std::vector<CaseKeys>& cases, std::vector<Cluster> clusters, CaseRea
     }
 }
 
-std::vector<CaseKeys> mergeByMask(Keys keys, materials::FeatureMask distinguishes, CaseReason reason) {
+std::vector<CaseKeys> mergeByMask(Keys keys, const materials::FeatureMask& distinguishes, CaseReason reason) {
     std::vector<CaseKeys> cases;
     append(cases, groupBy(keys, byShare(keys), distinguishes), reason);
     return cases;

@@ -72,7 +72,7 @@ std::string listSome(const List& list, const Describe& describe) {
 }
 
 // Returns "clearcoat normals (Varnish)": the key as in the file, with a material that has it.
-std::string describeKey(materials::FeatureMask mask, const Plan& plan, const gltf::SceneList& scenes) {
+std::string describeKey(const materials::FeatureMask& mask, const Plan& plan, const gltf::SceneList& scenes) {
     const auto key = std::ranges::find(plan.keys, mask, &Key::mask);
     const bool known = key != plan.keys.end() && !key->materials.empty();
     return lockKeyName(mask, *plan.model) +
@@ -99,7 +99,7 @@ public:
             update_.added.empty()
                 ? std::string("IDs of keys change")
                 : fmt::format("{} without a shader ID: {}", base::counted(update_.added.size(), "key"),
-                              listSome(update_.added, [&](materials::FeatureMask mask) {
+                              listSome(update_.added, [&](const materials::FeatureMask& mask) {
                                   return describeKey(mask, plan_, scenes_);
                               }));
         return makeError("lock-outdated", request_.file,
@@ -146,7 +146,7 @@ private:
         if (update_.stale.empty()) {
             return;
         }
-        const std::string list = listSome(update_.stale, [&](materials::FeatureMask mask) {
+        const std::string list = listSome(update_.stale, [&](const materials::FeatureMask& mask) {
             return fmt::format("{} {}", before_.ids.at(mask), lockKeyName(mask, *plan_.model));
         });
         const bool many = update_.stale.size() > 1;

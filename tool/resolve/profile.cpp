@@ -24,14 +24,6 @@ constexpr std::uint64_t kMaxProfileBytes = 1ULL << 26;
 constexpr double kMaxHits = 0x1p48;
 constexpr std::size_t kMaxKeys = std::size_t{1} << 16;
 
-std::vector<std::string> featureNames(const materials::MaterialModel& model, materials::FeatureMask mask) {
-    std::vector<std::string> names;
-    for (const std::string_view name : model.names(mask)) {
-        names.emplace_back(name);
-    }
-    return names;
-}
-
 // Returns nothing if this version of Glint lacks one of the features.
 std::optional<materials::FeatureMask> maskOf(const materials::MaterialModel& model,
                                              const std::vector<std::string>& features) {
@@ -103,10 +95,10 @@ Profile makeProfile(const gltf::SceneList& scenes, const Plan& plan, const mater
     }
     profile.variant = scenes.variant();
     profile.alpha = nameOf(options.alpha);
-    profile.hitLobes = featureNames(*plan.model, options.keptLobes & plan.model->lobes);
+    profile.hitLobes = plan.model->names(options.keptLobes & plan.model->lobes);
     for (const Key& key : plan.keys) {
         ProfileKey entry;
-        entry.features = featureNames(*plan.model, key.mask);
+        entry.features = plan.model->names(key.mask);
         for (const int material : key.materials) {
             entry.materials.push_back(scenes.materialName(material));
         }

@@ -349,10 +349,7 @@ private:
         for (const std::string& name : settings_.packLobes) {
             const int feature = model.findFeature(name);
             if (feature < 0 || !model.features[static_cast<std::size_t>(feature)].isLobe) {
-                std::vector<std::string> names;
-                for (const std::string_view lobe : model.names(model.lobes)) {
-                    names.emplace_back(lobe);
-                }
+                const std::vector<std::string> names = model.names(model.lobes);
                 return makeError("hit-lobe-unknown", "",
                                  fmt::format("neither Glint nor a pack has a lobe \"{}\"{}", name,
                                              base::suggestion(name, names)),

@@ -525,6 +525,7 @@ std::optional<Diagnostic> nothingSeen(const gltf::Scene& scene, const SceneViewD
         }
     }
     std::vector<std::string> reasons;
+    reasons.reserve(groups.size());
     for (const auto& [reason, group] : groups) {
         reasons.push_back(fmt::format("{} {} {} ({}{})", group.count,
                                       group.count == 1 ? "instance is" : "instances are",

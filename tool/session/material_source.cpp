@@ -32,7 +32,7 @@ materials::PrimitiveInputs inputsOf(const Package& package, const materials::Mat
 }
 
 SceneEditor::MaterialKey keyFor(const Package& package, const materials::Material& material,
-                                AttributeMask attributes, materials::FeatureMask keptLobes) {
+                                AttributeMask attributes, const materials::FeatureMask& keptLobes) {
     const materials::PrimitiveInputs inputs = inputsOf(package, material.model(), attributes);
     // The runtime leaves out what the package does not ask for.
     constexpr package::AlphaPolicy kAlpha = package::AlphaPolicy::Stochastic;
@@ -70,7 +70,7 @@ MaterialSourceData makeMaterialSource(const Package& package, const compiler::Ma
                                       const gltf::Scene& scene, const materials::Material& material,
                                       std::span<const EditedTextures> textures,
                                       std::span<const AttributeMask> attributes,
-                                      materials::FeatureMask keptLobes) {
+                                      const materials::FeatureMask& keptLobes) {
     MaterialSourceData data;
     data.record = compiler::makeMaterialRecord(material, layout);
     const int model = modelOf(material);

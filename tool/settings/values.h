@@ -282,7 +282,7 @@ inline std::string hitLobesOf(const Settings& settings) {
         return std::string(kAll);
     }
     const bool hasBase = (kept & baseLobes()) == baseLobes();
-    std::vector<std::string_view> words =
+    std::vector<std::string> words =
         materials::builtinMaterialModel().names(hasBase ? kept & ~baseLobes() : kept);
     if (hasBase) {
         words.insert(words.begin(), "base");
@@ -319,8 +319,8 @@ inline std::vector<SettingWord> hitLobeWords() {
     const materials::MaterialModel& model = materials::builtinMaterialModel();
     std::vector<SettingWord> words{{std::string(kAll), "as primary surfaces do"},
                                    {"base", fmt::format("{}", fmt::join(model.names(baseLobes()), ", "))}};
-    for (const std::string_view name : model.names(model.lobes)) {
-        words.push_back({std::string(name), ""});
+    for (std::string& name : model.names(model.lobes)) {
+        words.push_back({std::move(name), ""});
     }
     return words;
 }

@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "spirv/optimize.h"
 #include "spirv/reader.h"
 
@@ -434,10 +435,7 @@ private:
 
     // Joins the loads of a stretch of a block in which nothing writes memory.
     void join(const std::vector<Load>& stretch) {
-        std::vector<const Load*> sorted;
-        for (const Load& load : stretch) {
-            sorted.push_back(&load);
-        }
+        auto sorted = base::mapped<const Load*>(stretch, [](const Load& load) { return &load; });
         std::ranges::stable_sort(sorted, [](const Load* a, const Load* b) {
             return std::tuple(a->place.sum(), a->place.offset) < std::tuple(b->place.sum(), b->place.offset);
         });

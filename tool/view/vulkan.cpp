@@ -113,9 +113,9 @@ Status createCommands(const Context& context, VkCommandPool& pool, VkCommandBuff
 Result<OneTimeCommands> OneTimeCommands::create(const Context& context) {
     OneTimeCommands made;
     VkCommandPool pool = VK_NULL_HANDLE;
-    const Status created = createCommands(context, pool, made.commands_);
+    Status created = createCommands(context, pool, made.commands_);
     made.pool_ = {context.handles().device, pool};
-    GLINT_TRY_DO(created);
+    GLINT_TRY_DO(std::move(created));
     VkCommandBufferBeginInfo begin{};
     begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
     begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;

@@ -211,6 +211,7 @@ struct KeyWords {
         friend constexpr Own operator|(const Own& a, const Own& b) {
             return ~(~a & ~b);
         }
+        // The compiler generates a comparison with 0 here. NOLINTNEXTLINE(modernize-use-nullptr)
         auto operator<=>(const Own&) const = default;
     };
 

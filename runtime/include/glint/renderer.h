@@ -79,7 +79,7 @@ public:
     // have other images); in a scene that is edited also "texture-trusted", and those of SceneEditor for
     // materials that the package has no shader for. replacementProgress() has errors of making pipelines in
     // the background, and those of edits after the call.
-    Result<Replacement> replacePackage(std::shared_ptr<const Package> package);
+    Result<Replacement> replacePackage(const std::shared_ptr<const Package>& package);
     ReplacementProgress replacementProgress() const;
     // Gives up a package that waits, for all renderers of the scene. Recordings continue with the old
     // package. Without such a package nothing changes.

@@ -372,7 +372,7 @@ public:
     // changes. Errors: those of create(); "scene-package" and "engine-scene" (the package does not suit what
     // the host has given; EngineScene::update() can give what it needs), "ray-steps" (it has other bindings
     // or answers), and those of Renderer::replacePackage() for a scene that Glint has uploaded.
-    Result<PackageReplacement> replacePackage(std::shared_ptr<const Package> package);
+    Result<PackageReplacement> replacePackage(const std::shared_ptr<const Package>& package);
     PackageProgress replacementProgress() const;
     // Gives up a package that waits, for all RaySteps of the scene. Recordings continue with the old package.
     // Without such a package nothing changes.

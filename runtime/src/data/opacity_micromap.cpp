@@ -38,6 +38,7 @@ std::vector<MicromapUsage> countUsages(std::span<const MicromapRecord> records) 
         ++counts[{record.subdivisionLevel, record.format}];
     }
     std::vector<MicromapUsage> usages;
+    usages.reserve(counts.size());
     for (const auto& [kind, count] : counts) {
         usages.push_back({count, kind.first, kind.second});
     }

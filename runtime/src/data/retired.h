@@ -24,7 +24,7 @@ public:
         if (isThere(resource)) {
             bytes_ += bytes;
             count_ += bytes > 0 ? 1 : 0;
-            resources_.push_back(std::make_shared<Resource>(std::move(resource)));
+            resources_.push_back(std::make_shared<Resource>(std::forward<Resource>(resource)));
         }
     }
     bool isEmpty() const {

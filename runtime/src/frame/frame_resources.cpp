@@ -424,7 +424,7 @@ Result<NextBuffers> createNextBuffers(Context::State& context, const FrameSize& 
     return buffers;
 }
 
-std::vector<Buffer> replaceBuffers(NextBuffers next, FrameResources& frame) {
+std::vector<Buffer> replaceBuffers(NextBuffers&& next, FrameResources& frame) {
     std::vector<Buffer> earlier;
     for (auto& [member, buffer] : next.exchanges) {
         earlier.push_back(std::exchange(frame.*member, std::move(buffer)));

@@ -218,7 +218,7 @@ bool haveSameImages(const FrameSize& first, const FrameSize& second);
 Result<NextBuffers> createNextBuffers(Context::State& context, const FrameSize& now, const FrameSize& next);
 
 // Returns the buffers that were exchanged, which commands in flight may still use.
-std::vector<Buffer> replaceBuffers(NextBuffers next, FrameResources& frame);
+std::vector<Buffer> replaceBuffers(NextBuffers&& next, FrameResources& frame);
 
 // Returns all buffers, with names for reports.
 std::vector<std::pair<const char*, const Buffer*>> buffersOf(const FrameResources& frame,

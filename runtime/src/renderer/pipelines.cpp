@@ -333,7 +333,7 @@ private:
                          {key},
                          {},
                          turn});
-    }
+    }  // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks): std::function owns what it copies
 
     // The source points into the package.
     void addRays(std::string name, const package::ModuleKey& key, RayPipelineSource source,

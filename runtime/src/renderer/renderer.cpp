@@ -242,7 +242,7 @@ Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) try
 }
 GLINT_CATCH
 
-Result<Renderer::Replacement> Renderer::replacePackage(std::shared_ptr<const Package> package) try {
+Result<Renderer::Replacement> Renderer::replacePackage(const std::shared_ptr<const Package>& package) try {
     return beginReplacement(*state_, package);
 }
 GLINT_CATCH

@@ -101,6 +101,7 @@ void poseLights(SceneStore& store, std::span<const LightView> lights) {
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const LightHandle handle = store.firstLights[i];
         const gpu::LightRecord record = makeLightRecord(lights[i]);
+        // Floats count by their bits. NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
         const bool changes = std::memcmp(&record, &store.lastLights[i], sizeof record) != 0;
         store.lastLights[i] = record;
         if (changes && store.lightSlots.find(handle) != nullptr) {

@@ -10,6 +10,7 @@ namespace {
 using Instance = VkAccelerationStructureInstanceKHR;
 
 bool isSame(const Instance& a, const Instance& b) {
+    // Floats count by their bits. NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 

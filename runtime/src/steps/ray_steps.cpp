@@ -359,7 +359,7 @@ GLINT_CATCH
 Result<std::vector<PassTiming>> RaySteps::timings() try { return passTimings(*state_); }
 GLINT_CATCH
 
-Result<PackageReplacement> RaySteps::replacePackage(std::shared_ptr<const Package> package) try {
+Result<PackageReplacement> RaySteps::replacePackage(const std::shared_ptr<const Package>& package) try {
     return beginReplacement(*state_, package);
 }
 GLINT_CATCH

@@ -81,7 +81,7 @@ bool isTaken(const CLI::Option& option) {
 }
 
 bool isOfDeviceReport(const CLI::Option& option) {
-    const std::string group = option.get_group();
+    const std::string& group = option.get_group();
     return std::ranges::find(kOfDeviceReport, option.get_name()) != std::end(kOfDeviceReport) ||
            (group != kGroup && option.get_name() != "--output" &&
             std::ranges::find(kTakenGroups, group) != std::end(kTakenGroups));

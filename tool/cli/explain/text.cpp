@@ -104,7 +104,7 @@ std::string mergedText(const compiler::Build& build, const compiler::CaseCost& e
     Rows rows{{"  why", fmt::format("{}: {}", toString(shaderCase.reason), explain(shaderCase.reason))},
               {"  merged", fmt::format("{:.2f} in vain, {:.0f} spared ({} fewer)", entry.inVain, entry.saved,
                                        base::counted(shaderCase.keys.size() - 1, "case"))},
-              {"  all have", featureList(*build.plan.model, shaderCase.always)}};
+              {"  all have", base::join(build.plan.model->names(shaderCase.always))}};
     std::string label = "  branches on";
     for (const compiler::BranchCost& branch : entry.branches) {
         rows.push_back({label, fmt::format("{}, in {} of its hits: {:.2f}", branch.feature->name,
@@ -118,8 +118,8 @@ std::string mergedText(const compiler::Build& build, const compiler::CaseCost& e
                                            materialsText(build, planKey.materials), percent(planKey.share),
                                            key.own.instructions, fetchesText(key.own), leavingText(key))});
         const materials::FeatureMask besides = planKey.mask & ~shaderCase.always;
-        rows.push_back(
-            {"", besides != 0 ? "  with " + featureList(*build.plan.model, besides) : "  with nothing else"});
+        rows.push_back({"", besides != 0 ? "  with " + base::join(build.plan.model->names(besides))
+                                         : "  with nothing else"});
         label.clear();
     }
     if (entry.nearest) {
@@ -173,7 +173,7 @@ base::Json toJson(const compiler::CodeEstimate& code) {
 base::Json keyToJson(const compiler::Build& build, const compiler::KeyCost& cost) {
     const compiler::Key& key = build.plan.keys[static_cast<std::size_t>(cost.key)];
     return {{"mask", toHex(key.mask)},
-            {"features", featuresToJson(*build.plan.model, key.mask)},
+            {"features", build.plan.model->names(key.mask)},
             {"materials", materialsToJson(*build.scenes, key.materials)},
             {"share", compiler::roundedShare(key.share)},
             {"own", {{"instructions", cost.own.instructions}, {"textureFetches", cost.own.fetches}}},
@@ -196,8 +196,8 @@ base::Json caseToJson(const compiler::Build& build, const compiler::CaseCost& co
             {"name", shaderCase.name},
             {"reason", toString(shaderCase.reason)},
             {"share", compiler::roundedShare(shaderCase.share)},
-            {"always", featuresToJson(*build.plan.model, shaderCase.always)},
-            {"sometimes", featuresToJson(*build.plan.model, shaderCase.sometimes)},
+            {"always", build.plan.model->names(shaderCase.always)},
+            {"sometimes", build.plan.model->names(shaderCase.sometimes)},
             {"estimate", toJson(cost.code)},
             {"ownInstructions", cost.ownInstructions},
             {"inVain", cost.inVain},
@@ -331,9 +331,8 @@ std::set<materials::FeatureMask> primaryMasksOf(const compiler::Build& build, co
 }
 
 base::Json primaryToJson(const compiler::Build& build, const compiler::Key& key, int material) {
-    return listOf(primaryMasksOf(build, key, material), [&](const materials::FeatureMask& mask) {
-        return featuresToJson(*build.plan.model, mask);
-    });
+    return listOf(primaryMasksOf(build, key, material),
+                  [&](const materials::FeatureMask& mask) { return build.plan.model->names(mask); });
 }
 
 // The values of the material that animations or programs change: planning drops no feature for one of them.
@@ -365,7 +364,7 @@ base::Json materialToJson(const compiler::Build& build, int material) {
     const auto keyOfMaterial = [&](const compiler::Key* key) -> base::Json {
         const compiler::Case& shader = caseOf(build, key->shaderId);
         return {{"mask", toHex(key->mask)},
-                {"features", featuresToJson(*build.plan.model, key->mask)},
+                {"features", build.plan.model->names(key->mask)},
                 {"onPrimarySurfaces", primaryToJson(build, *key, material)},
                 {"share", compiler::roundedShare(key->share)},
                 {"case",
@@ -374,8 +373,8 @@ base::Json materialToJson(const compiler::Build& build, int material) {
                   {"keys", shader.keys.size()},
                   {"share", compiler::roundedShare(shader.share)},
                   {"reason", toString(shader.reason)},
-                  {"always", featuresToJson(*build.plan.model, shader.always)},
-                  {"sometimes", featuresToJson(*build.plan.model, shader.sometimes)}}},
+                  {"always", build.plan.model->names(shader.always)},
+                  {"sometimes", build.plan.model->names(shader.sometimes)}}},
                 {"primitives", primitivesOf(build, *key, material)}};
     };
     const auto dropToJson = [](const Drop& drop) -> base::Json {
@@ -394,17 +393,17 @@ Rows materialRows(const compiler::Build& build, int material, Detail detail) {
     for (const compiler::Key* key : keysOf(build, material)) {
         const compiler::Case& shader = caseOf(build, key->shaderId);
         rows.push_back({"  key", toHex(key->mask)});
-        rows.push_back({"    features", featureList(*build.plan.model, key->mask)});
+        rows.push_back({"    features", base::join(build.plan.model->names(key->mask))});
         for (const materials::FeatureMask& mask : primaryMasksOf(build, *key, material)) {
             if (mask != key->mask) {
-                rows.push_back({"    primary only", featureList(*build.plan.model, mask & ~key->mask)});
+                rows.push_back({"    primary only", base::join(build.plan.model->names(mask & ~key->mask))});
             }
         }
         rows.push_back(
             {"    case", shaderTitle(static_cast<std::uint64_t>(shader.shaderId), shader.name, detail)});
         rows.push_back({"    why", whyText(shader)});
         rows.push_back({"    hits", sharesText(build, *key, shader)});
-        rows.push_back({"    branches on", featureList(*build.plan.model, shader.sometimes)});
+        rows.push_back({"    branches on", base::join(build.plan.model->names(shader.sometimes))});
         rows.push_back({"    primitives", base::firstOf(primitivesOf(build, *key, material), 1)});
     }
     if (rows.empty()) {

@@ -217,7 +217,9 @@ void addWords(const CLI::Option& option, std::vector<std::string>& words) {
             const std::string& value = values[i];
             const bool isOff = value == "false" || value == "off";
             const bool isOn = value == "true" || value == "on";
-            words.push_back(isOff ? "--no-" + name.substr(2) : isOn ? name : name + "=" + value);
+            words.push_back(isOff  ? "--no-" + name.substr(2)
+                            : isOn ? name
+                                   : fmt::format("{}={}", name, value));
         }
         return;
     }

@@ -80,6 +80,7 @@ public:
         : command_(command), before_(command.option_defaults()->get_group()) {
         command.option_defaults()->group(name);
     }
+    // The short name needs no memory. NOLINTNEXTLINE(bugprone-exception-escape)
     ~OptionGroup() {
         command_.option_defaults()->group(before_);
     }

@@ -190,7 +190,7 @@ std::string explainMissing(const std::string& name, const CLI::App& command) {
 }  // namespace
 
 std::string explain(const CLI::ParseError& error, const CLI::App& command) {
-    const std::string message = error.what();
+    std::string message = error.what();
     const auto before = [&](std::string_view text) { return message.substr(0, message.find(text)); };
     const auto after = [&](std::string_view text) {
         const std::size_t at = message.find(text);

@@ -159,11 +159,6 @@ ManifestFile fileOf(std::string name, std::uint64_t bytes, std::uint64_t hash) {
     return {std::move(name), bytes, base::hexHash(hash)};
 }
 
-std::vector<std::string> namesOf(const materials::MaterialModel& model, materials::FeatureMask mask) {
-    const std::vector<std::string_view> names = model.names(mask);
-    return {names.begin(), names.end()};
-}
-
 // Returns "textureLod" for "texture-lod".
 std::string memberName(std::string_view setting) {
     std::string name;
@@ -272,8 +267,8 @@ std::vector<ManifestCase> casesOf(const gltf::SceneList& scenes, const CompiledP
         ManifestCase& entry = list.emplace_back();
         entry.id = static_cast<std::uint32_t>(shaderCase.shaderId);
         entry.name = shaderCase.name;
-        entry.always = namesOf(*package.plan.model, shaderCase.always);
-        entry.sometimes = namesOf(*package.plan.model, shaderCase.sometimes);
+        entry.always = package.plan.model->names(shaderCase.always);
+        entry.sometimes = package.plan.model->names(shaderCase.sometimes);
         entry.keys = shaderCase.keys.size();
         entry.share = roundedShare(shaderCase.share);
         entry.reason = toString(shaderCase.reason);
@@ -329,7 +324,7 @@ Manifest manifestOf(const gltf::SceneList& scenes, const CompiledPackage& packag
         manifest.host = *host;
     }
     manifest.packs = packNames(model);
-    manifest.hitLobes = namesOf(model, settings.plan.keys.keptLobes & model.lobes);
+    manifest.hitLobes = model.names(settings.plan.keys.keptLobes & model.lobes);
     manifest.settings = settingsOf(settings);
     manifest.counts = {scenes.materials().size(), plan.keysPossible,
                        plan.keys.size(),          static_cast<std::size_t>(caseCount(plan)),
@@ -349,7 +344,7 @@ Manifest manifestOf(const gltf::SceneList& scenes, const CompiledPackage& packag
         }
     }
     for (const Key& key : plan.keys) {
-        manifest.keys.push_back({namesOf(model, key.mask), toHex(key.mask), key.primitives.size(),
+        manifest.keys.push_back({model.names(key.mask), toHex(key.mask), key.primitives.size(),
                                  placesOf(scenes, key.materials), roundedShare(key.share),
                                  static_cast<std::uint32_t>(key.shaderId)});
     }

@@ -275,7 +275,7 @@ SamplerEntry samplerEntry(const gltf::Sampler& sampler) {
 }
 
 std::uint32_t geometryFlags(const materials::Material& material, const materials::PrimitiveInputs& inputs,
-                            materials::FeatureMask hitKey, AlphaPolicy alpha, ShadowThrough through) {
+                            const materials::FeatureMask& hitKey, AlphaPolicy alpha, ShadowThrough through) {
     const bool tested =
         alpha != AlphaPolicy::Opaque && (hitKey & material.model().mask(Role::AlphaTest)) != 0;
     const bool blended = tested && material.alphaMode == materials::AlphaMode::Blend;

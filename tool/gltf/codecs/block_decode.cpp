@@ -230,7 +230,7 @@ void unpackChannel(const std::uint8_t* block, std::size_t channel, BlockTexels& 
     std::array<int, 8> palette{a, b, 0, 0, 0, 0, 0, 255};
     const int steps = a > b ? 7 : 5;
     for (int i = 1; i < steps; ++i) {
-        palette[static_cast<std::size_t>(i + 1)] = ((steps - i) * a + i * b + steps / 2) / steps;
+        palette[static_cast<std::size_t>(i) + 1] = ((steps - i) * a + i * b + steps / 2) / steps;
     }
     std::uint64_t bits = 0;
     for (std::size_t i = 8; i-- > 2;) {

@@ -317,8 +317,10 @@ void decodeColors(std::span<std::uint8_t> bytes) {
         std::memcpy(color.data(), &bytes[i], sizeof color);
         using Signed = std::make_signed_t<T>;
         const int y = color[0];
+        // Their signs count. NOLINTBEGIN(bugprone-signed-char-misuse)
         const int orange = static_cast<Signed>(color[1]);
         const int green = static_cast<Signed>(color[2]);
+        // NOLINTEND(bugprone-signed-char-misuse)
         // An alpha of 0 has no such bit and is not valid.
         const int scale = std::max((1 << std::bit_width(color[3])) - 1, 1);
         const int alpha = color[3] & (scale >> 1);

@@ -348,7 +348,7 @@ private:
                             fmt::format("has {} numbers; the input needs {}", input.numbers.size(),
                                         parameter->numbers - (name == "base_color" ? 1 : 0)));
             }
-            made.values[parameter->declared] = std::move(numbers);
+            made.values[parameter->declared] = numbers;
             if (!input.file.empty()) {
                 GLINT_TRY(const std::string slot, slotOf(name, inputs));
                 const Numbers tiling = input.tiling.empty() ? Numbers{1.0, 1.0} : input.tiling;

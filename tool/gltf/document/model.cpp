@@ -9,11 +9,12 @@ namespace tinygltf {
 
 // tinygltf calls a function of this name to parse its text. The function that this declares is found first,
 // so that the document that Glint has parsed and checked is not parsed again: the text is a pointer to it.
+// NOLINTNEXTLINE(readability-identifier-naming)
 void JsonParse(nlohmann::json& document, const char* checked, unsigned length, bool throws);
 
 // tinygltf 2.8 and later look for the function here.
 namespace detail {
-using tinygltf::JsonParse;
+using tinygltf::JsonParse;  // NOLINT(misc-unused-using-decls)
 }
 
 }  // namespace tinygltf

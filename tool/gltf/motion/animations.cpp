@@ -371,6 +371,7 @@ struct KeyframeForm {
     // width.
     std::optional<ValueKind> kind{};
 
+    // The compiler generates a comparison with 0 here. NOLINTNEXTLINE(modernize-use-nullptr)
     auto operator<=>(const KeyframeForm&) const = default;
 };
 

@@ -79,7 +79,7 @@ void warnOfUnread(Document& document, const Target& target, const std::string& p
     for (const auto& [name, accessor] : target) {
         if (!name.starts_with('_') &&
             std::ranges::find(kTargetAttributes, name) == std::end(kTargetAttributes)) {
-            document.warn("morph-attribute", pointer + "/" + name,
+            document.warn("morph-attribute", fmt::format("{}/{}", pointer, name),
                           "Glint does not morph this attribute; its differences are left out",
                           "animate the texture's transform instead, or give each shape a mesh of its own");
         }

@@ -1,3 +1,4 @@
+#include "base/lists.h"
 #include "emit/compile.h"
 #include "emit/feature_kernel.h"
 #include "materials/declarations.h"
@@ -289,10 +290,9 @@ Result<FeaturePicture> paintLobe(const FeatureOnDevice& on) {
         }
     }
     GLINT_TRY(const auto outputs, on.evaluator.run(inputs));
-    std::vector<float> brightness;
-    for (const compiler::FeatureKernelOutput& output : outputs) {
-        brightness.push_back(*std::ranges::max_element(output.reflected));
-    }
+    auto brightness = base::mapped<float>(outputs, [](const compiler::FeatureKernelOutput& output) {
+        return *std::ranges::max_element(output.reflected);
+    });
     std::ranges::sort(brightness);
     const float white = std::max(brightness[brightness.size() * 99 / 100], 1e-6F);
     for (std::size_t i = 0; i < pixels.size(); ++i) {

@@ -322,9 +322,9 @@ std::vector<double> checkedValues(const materials::Parameter& parameter) {
     if (parameter.type->kind == materials::NumberKind::Truth ||
         parameter.type->kind == materials::NumberKind::Name) {
         std::vector<double> values{fallback};
-        for (double value = parameter.low; value <= parameter.high; ++value) {
-            if (value != fallback) {
-                values.push_back(value);
+        for (int i = 0; parameter.low + i <= parameter.high; ++i) {
+            if (parameter.low + i != fallback) {
+                values.push_back(parameter.low + i);
             }
         }
         return values;

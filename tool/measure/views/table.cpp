@@ -289,7 +289,7 @@ void showBranches(const ViewInput& input, ViewValues& values) {
                        [&](std::size_t i, std::uint32_t branches) { filler.number(i, branches); });
 }
 
-double weightOfFeatures(materials::FeatureMask always, materials::FeatureMask sometimes,
+double weightOfFeatures(const materials::FeatureMask& always, const materials::FeatureMask& sometimes,
                         const ViewInput& input) {
     const compiler::CodeEstimate code = compiler::estimateCode(always, sometimes, *input.model);
     return code.instructions + compiler::kFetchCost * code.fetches;

@@ -264,7 +264,7 @@ void Window::drawMaterials(const gltf::Scene& scene) {
         for (int material = 0; material < static_cast<int>(scene.materials.size()); ++material) {
             const std::string title = titleOf(scene, material);
             if (controls_.mark(
-                    name + "=" + title,
+                    fmt::format("{}={}", name, title),
                     ImGui::Selectable(fmt::format("{}##{}", title, material).c_str(), material == present))) {
                 chosen = Edit{.kind = EditKind::Material, .node = session::nodeLabel(scene, selected_)};
                 chosen->material = std::to_string(material);
