@@ -51,17 +51,21 @@ void addAlternatives(const compiler::Build& build, compiler::BenchFacts& facts) 
     asked.skyLight = build.asked.compile.skyLight;
     asked.sizedLights = build.asked.compile.sizedLights;
     asked.lightSamples.reset();
+    const compiler::EffectPlan ofLit = planEffects(*build.scenes, asked, true);
+    // No change but that of the roughness matters to the effects.
     const auto planWith = [&](const auto& change) {
         compiler::CompileSettings settings = asked;
         change(settings);
-        return planLight(*build.scenes, settings);
+        return planLight(*build.scenes, settings, ofLit);
     };
     facts.lightsMayEmit =
         planWith([](auto& settings) { settings.emissiveLights = compiler::EmissiveLights::On; }).ok();
     facts.skyMayLight = planWith([](auto& settings) { settings.skyLight = compiler::SkyLight::On; }).ok();
     facts.sizedMayShow =
         planWith([](auto& settings) { settings.sizedLights = compiler::SizedLights::On; }).ok();
-    if (const auto plan = planWith([](auto& settings) { settings.effects.maxReflectionRoughness = 1.0F; })) {
+    compiler::CompileSettings anyRoughness = asked;
+    anyRoughness.effects.maxReflectionRoughness = 1.0F;
+    if (const auto plan = planLight(*build.scenes, anyRoughness)) {
         facts.effectsOfAnyRoughness = namesOfChosen(plan->effects);
         facts.manyLights = plan->samples > 0;
     }

@@ -79,11 +79,11 @@ const std::vector<materials::EffectDeclaration>& declaredEffects(const gltf::Sce
 class LightPlanner {
 public:
     LightPlanner(const gltf::SceneList& scenes, const CompileSettings& settings,
-                 std::vector<std::string> replaced)
+                 std::vector<std::string> replaced, const EffectPlan& ofLit)
         : scenes_(scenes),
           settings_(settings),
           replaced_(std::move(replaced)),
-          lit_(planEffects(true)),
+          lit_(ofLit),
           plan_{.effects = lit_} {}
 
     Result<LightPlan> plan() && {
@@ -103,7 +103,7 @@ public:
         const bool isAnyLit = settings_.addsLight || plan_.emissive == EmissiveLights::On ||
                               plan_.sky == SkyLight::On || std::ranges::any_of(scenes_.scenes(), isLit);
         if (!isAnyLit) {
-            plan_.effects = planEffects(false);
+            plan_.effects = planEffects(scenes_, settings_, false);
         }
         return std::move(plan_);
     }
@@ -115,23 +115,6 @@ private:
         std::string_view needs;
         std::string_view ofHost;
     };
-
-    EffectPlan planEffects(bool lit) const {
-        EffectPlan plan = decideEffects(scenes_.materials(), scenes_.primitives(), {lit}, settings_.effects);
-        if (settings_.passes == package::Passes::Steps) {
-            // The host decides which surfaces send rays. What hits need of the effects is their shadow rays.
-            const bool lights = settings_.answer == package::HitAnswer::Radiance;
-            plan.effects = effectSetOf(declaredEffects(scenes_), lights ? plan.effects.lights : 0U);
-            for (EffectDecision& decision : plan.decisions) {
-                if (decision.chosen && (plan.effects.all & decision.effect) == 0) {
-                    decision.chosen = false;
-                    decision.reason =
-                        "the steps of a host's own rays have no effects but the shadows of hits";
-                }
-            }
-        }
-        return plan;
-    }
 
     // Returns whether there are emissive triangles, and no more than the setting takes.
     bool emits() const {
@@ -229,15 +212,32 @@ private:
     const gltf::SceneList& scenes_;
     const CompileSettings& settings_;
     const std::vector<std::string> replaced_;  // files of shaders/host
-    const EffectPlan lit_;                     // of a package with a light
+    const EffectPlan& lit_;                    // of a package with a light
     LightPlan plan_;
 };
 
 }  // namespace
 
-Result<LightPlan> planLight(const gltf::SceneList& scenes, const CompileSettings& settings) {
+EffectPlan planEffects(const gltf::SceneList& scenes, const CompileSettings& settings, bool isLit) {
+    EffectPlan plan = decideEffects(scenes.materials(), scenes.primitives(), {isLit}, settings.effects);
+    if (settings.passes == package::Passes::Steps) {
+        // The host decides which surfaces send rays. What hits need of the effects is their shadow rays.
+        const bool lights = settings.answer == package::HitAnswer::Radiance;
+        plan.effects = effectSetOf(declaredEffects(scenes), lights ? plan.effects.lights : 0U);
+        for (EffectDecision& decision : plan.decisions) {
+            if (decision.chosen && (plan.effects.all & decision.effect) == 0) {
+                decision.chosen = false;
+                decision.reason = "the steps of a host's own rays have no effects but the shadows of hits";
+            }
+        }
+    }
+    return plan;
+}
+
+Result<LightPlan> planLight(const gltf::SceneList& scenes, const CompileSettings& settings,
+                            const EffectPlan& ofLit) {
     GLINT_TRY(auto replaced, replacedHostFiles(settings.host));
-    return LightPlanner(scenes, settings, std::move(replaced)).plan();
+    return LightPlanner(scenes, settings, std::move(replaced), ofLit).plan();
 }
 
 std::size_t countEmitters(const gltf::SceneList& scenes, std::size_t index) {

@@ -64,11 +64,18 @@ struct LightPlan {
     std::uint32_t samples = 0;  // CompileSettings::lightSamples
 };
 
+// Returns the effects of a package, where `isLit` says whether it has a light.
+EffectPlan planEffects(const gltf::SceneList& scenes, const CompileSettings& settings, bool isLit);
+
 // Decides by the materials that primitives use, by the lights of the scenes, and by the files of shaders/host
 // that the host replaces. Errors: those of hostFiles(); "emissive-lights", "sky-light", "sized-lights" and
 // "lights" if the settings demand what a host with lights of its own, a package without shadow rays, or steps
-// can't have.
-Result<LightPlan> planLight(const gltf::SceneList& scenes, const CompileSettings& settings);
+// can't have. `ofLit` is planEffects() with a light.
+Result<LightPlan> planLight(const gltf::SceneList& scenes, const CompileSettings& settings,
+                            const EffectPlan& ofLit);
+inline Result<LightPlan> planLight(const gltf::SceneList& scenes, const CompileSettings& settings) {
+    return planLight(scenes, settings, planEffects(scenes, settings, true));
+}
 
 // Returns the number of triangles of all instances of a scene that emit light, now or at a time of an
 // animation.
