@@ -66,10 +66,10 @@ AttributeMask attributesOf(const Package& package, const PrimitiveView& primitiv
 // Errors of all functions: "scene-edit-handle" (a handle names nothing), "scene-edit-used" (something else
 // still uses the thing to be removed), "scene-edit-value" (a number is not finite, or an index out of range),
 // and those of memory and Vulkan's calls. Errors of those that give a primitive a material: "scene-edit-key"
-// (the material has no MaterialKey for the primitive's attributes), "scene-edit-feature" (the
-// package has no code for a feature, which the fallback lacks as well) and "scene-edit-case" (no case of the
-// package has the key, or no code samples lights with the key, and the package has no fallback); the message
-// has the names of the features.
+// (the material has no MaterialKey for the primitive's attributes), "scene-edit-feature" (the package has no
+// code for a feature, which the fallback lacks as well) and "scene-edit-case" (no case of the package has the
+// key, or no code samples lights with the key, and the package has no fallback); the message has the names of
+// the features.
 class SceneEditor {
 public:
     ~SceneEditor() = default;
