@@ -21,7 +21,8 @@ install(DIRECTORY runtime/include/glint DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} 
 install(DIRECTORY shaders/interop DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/glint/shaders FILES_MATCHING PATTERN "*.h")
 if(GLINT_BUILD_COMPILER)
   # The headers that those of the libraries include. All others are internal.
-  foreach(header base/fields_fwd.h base/files.h base/memo.h emit/compile.h emit/glsl/text.h emit/material_compiler.h
+  foreach(header base/fields_fwd.h base/files.h base/memo.h base/shared_array.h emit/compile.h emit/glsl/text.h
+                 emit/material_compiler.h
                  emit/material_layout.h
                  emit/package/compiled_package.h gltf/animation.h gltf/import.h gltf/import_options.h gltf/material_set.h
                  gltf/planning_inputs.h gltf/scene.h gltf/scene_list.h gltf/texels/fit.h gltf/texels/levels.h
