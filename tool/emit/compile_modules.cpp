@@ -150,9 +150,18 @@ public:
         jobs_ = jobs > 0 ? jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
         base::runParallel(order.size(), jobs, [&](std::size_t place) {
             const std::size_t text = order[place];
-            results_[text] = compile(text);
-            done_[text] = true;
-            done_[text].notify_all();
+            const auto finish = [&](Result<CompiledText> result) {
+                results_[text] = std::move(result);
+                done_[text] = true;
+                done_[text].notify_all();
+            };
+            try {
+                finish(compile(text));
+            } catch (...) {
+                // Joins that wait for it end, too.
+                finish(makeError("internal", "", "a part was not compiled"));
+                throw;
+            }
             tellProgress(order.size());
             return results_[text]->ok();
         });

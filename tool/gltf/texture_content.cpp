@@ -166,7 +166,7 @@ public:
                 });
         }
         base::runParallel(works_.size(), options_.jobs, [&](std::size_t i) {
-            // No exception may leave a thread.
+            // One image fails alone.
             try {
                 readImage(scene_.images[i], works_[i]);
             } catch (const std::bad_alloc&) {
