@@ -30,7 +30,7 @@ materials::Material fullOf(const char* texture, const Content& content) {
 }
 
 // Returns what differs from the key of a material whose textures may hold anything.
-std::vector<std::string_view> lostBy(const char* texture, const Content& content,
+std::vector<std::string> lostBy(const char* texture, const Content& content,
                                      Dropped* dropped = nullptr) {
     const materials::FeatureMask whole = compiler::makeKey(fullMaterial(), fullPrimitive(), kTested, nullptr);
     const materials::FeatureMask key =
@@ -44,7 +44,7 @@ TEST(TextureContent, OfOnesIsNotRead) {
         const std::string& name = texture.name;
         const bool hasDirections =
             name == "normalTexture" || name == "clearcoatNormalTexture" || name == "anisotropyTexture";
-        const std::vector<std::string_view> lost = lostBy(name.c_str(), kOnes);
+        const std::vector<std::string> lost = lostBy(name.c_str(), kOnes);
         EXPECT_EQ(std::ranges::find(lost, name) != lost.end(), !hasDirections) << name;
     }
     // One channel that is not 1 is enough to read it, if it is one that is read.
@@ -54,7 +54,7 @@ TEST(TextureContent, OfOnesIsNotRead) {
     almost = kOnes;
     almost[0].low = 0.0;
     EXPECT_EQ(lostBy("metallicRoughnessTexture", almost),
-              (std::vector<std::string_view>{"metallicRoughnessTexture"}));
+              (std::vector<std::string>{"metallicRoughnessTexture"}));
 }
 
 TEST(TextureContent, OfZerosTakesTheLobeWithIt) {
@@ -67,7 +67,7 @@ TEST(TextureContent, OfZerosTakesTheLobeWithIt) {
         {"iridescenceTexture", "iridescence"},   {"anisotropyTexture", "anisotropy"}};
     for (const auto& row : kRows) {
         Dropped dropped;
-        const std::vector<std::string_view> lost = lostBy(row.texture, kZeros, &dropped);
+        const std::vector<std::string> lost = lostBy(row.texture, kZeros, &dropped);
         EXPECT_NE(std::ranges::find(lost, row.feature), lost.end()) << row.texture;
         const std::string reason = reasonFor(dropped, row.feature);
         EXPECT_NE(reason.find("(by what textures hold: " + std::string(row.texture) + "."), std::string::npos)
@@ -81,7 +81,7 @@ TEST(TextureContent, OfZerosIsReadWhereItsProductCounts) {
     for (const char* const texture :
          {"baseColorTexture", "metallicRoughnessTexture", "emissiveTexture", "specularTexture",
           "specularColorTexture", "sheenRoughnessTexture", "clearcoatRoughnessTexture", "thicknessTexture"}) {
-        const std::vector<std::string_view> lost = lostBy(texture, kZeros);
+        const std::vector<std::string> lost = lostBy(texture, kZeros);
         EXPECT_EQ(std::ranges::find(lost, texture), lost.end()) << texture;
     }
 }
@@ -122,7 +122,7 @@ TEST(TextureContent, OfRoughnessDecidesAboutReflections) {
 TEST(TextureContent, OfFlatNormalsIsNotRead) {
     Content flat{{{127.0 / 255.0, 128.0 / 255.0}, {128.0 / 255.0, 128.0 / 255.0}, {1.0, 1.0}, {1.0, 1.0}}};
     for (const char* const texture : {"normalTexture", "clearcoatNormalTexture"}) {
-        const std::vector<std::string_view> lost = lostBy(texture, flat);
+        const std::vector<std::string> lost = lostBy(texture, flat);
         EXPECT_NE(std::ranges::find(lost, texture), lost.end()) << texture;
     }
     flat[1].high = 129.0 / 255.0;

@@ -27,7 +27,7 @@ package::SamplerEntry samplerEntry(const gltf::Sampler& sampler);
 // Returns the flags of a geometry with this material (kGeometry* of shaders/interop/scene.h), except whether
 // its triangles are lights. `hitKey` is the key with the lobes that hits keep.
 std::uint32_t geometryFlags(const materials::Material& material, const materials::PrimitiveInputs& inputs,
-                            materials::FeatureMask hitKey, package::AlphaPolicy alpha,
+                            const materials::FeatureMask& hitKey, package::AlphaPolicy alpha,
                             package::ShadowThrough through);
 
 // Error "scene-index" where an index of `scene` leads nowhere; importScene() never makes such a scene.

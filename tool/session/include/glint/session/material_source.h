@@ -43,6 +43,6 @@ MaterialSourceData makeMaterialSource(const Package& package, const compiler::Ma
                                       const gltf::Scene& scene, const materials::Material& material,
                                       std::span<const EditedTextures> textures,
                                       std::span<const AttributeMask> attributes = {},
-                                      materials::FeatureMask keptLobes = materials::kAllFeatures);
+                                      const materials::FeatureMask& keptLobes = materials::kAllFeatures);
 
 }  // namespace glint::session
