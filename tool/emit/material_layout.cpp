@@ -267,6 +267,20 @@ int MaterialLayout::slotOf(int texture, int ofModel) const {
                                                                                                 : found->slot;
 }
 
+void MaterialLayout::makeIndex() {
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+        byName.emplace(fields[i].name, i);
+        for (const int one : fields[i].models) {
+            byModel[one].fields.push_back(i);
+        }
+    }
+    for (std::size_t i = 0; i < textures.size(); ++i) {
+        for (const int one : textures[i].models) {
+            byModel[one].textures.push_back(i);
+        }
+    }
+}
+
 MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, std::span<const RecordUse> uses) {
     MaterialLayout layout;
     layout.model = &model;
@@ -275,10 +289,6 @@ MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, std::sp
     const auto add = [&](RecordField field, std::vector<std::size_t> which) {
         field.models = modelsOf(uses, which);
         if (!field.models.empty()) {
-            layout.byName.emplace(field.name, layout.fields.size());
-            for (const int one : field.models) {
-                layout.byModel[one].fields.push_back(layout.fields.size());
-            }
             layout.fields.push_back(std::move(field));
             usesOfField.push_back(std::move(which));
         }
@@ -307,13 +317,11 @@ MaterialLayout makeMaterialLayout(const materials::MaterialModel& model, std::sp
         std::vector<std::size_t> which = needs.ofTexture(static_cast<int>(i));
         std::vector<int> models = modelsOf(uses, which);
         if (!models.empty()) {
-            for (const int one : models) {
-                layout.byModel[one].textures.push_back(layout.textures.size());
-            }
             layout.textures.push_back({static_cast<int>(i), 0, std::move(models)});
             usesOfTexture.push_back(std::move(which));
         }
     }
+    layout.makeIndex();
     for (const RecordUse& use : uses) {
         layout.modelCount += use.models.size();
         layout.turnsFrames = layout.turnsFrames || (use.used & model.mask(Role::TurnedFrames)) != 0;

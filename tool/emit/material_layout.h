@@ -50,7 +50,9 @@ struct MaterialLayout {
     std::uint32_t textureOffset = 0;
     std::uint32_t textureCount = 0;
     std::uint32_t bytes = 0;
-    bool turnsFrames = false;                                  // Some key has turnedFrames.
+    bool turnsFrames = false;  // Some key has turnedFrames.
+    // makeIndex() makes the rest, once `fields` and `textures` are there.
+    void makeIndex();
     std::map<std::string, std::size_t, std::less<>> byName{};  // indices into `fields`
     // By model: ascending indices into `fields` and into `textures` of what its records have.
     struct Rows {

@@ -1,6 +1,5 @@
 #include "plan/effects.h"
 
-#include "base/lists.h"
 #include "plan/key.h"
 
 #include <fmt/format.h>
@@ -42,9 +41,12 @@ std::vector<Surface> surfacesOf(std::span<const materials::Material> materials,
             {primitive.material, primitive.hasTexCoords0, primitive.hasTexCoords1, std::move(seen)},
             &primitive);
     }
-    return base::mapped<Surface>(found, [&](const auto& entry) {
-        return Surface{&materials[static_cast<std::size_t>(entry.second->material)], entry.second};
-    });
+    std::vector<Surface> surfaces;
+    surfaces.reserve(found.size());
+    for (const auto& [key, primitive] : found) {
+        surfaces.push_back({&materials[static_cast<std::size_t>(primitive->material)], primitive});
+    }
+    return surfaces;
 }
 
 std::string nameOf(const materials::Material& material) {

@@ -318,6 +318,7 @@ compiler::MaterialLayout recordLayoutOf(const Package& package, const materials:
         field.models = {owner};
         layout.fields.push_back(std::move(field));
     }
+    layout.makeIndex();
     for (std::uint32_t i = 0; i < package.sceneCount(); ++i) {
         for (const package::PrimitiveEntry& entry : package.scene(i).primitives) {
             layout.turnsFrames = layout.turnsFrames ||

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures how long `glint compile --watch` takes after an edit, for docs/compile_times.md.
 
-    benchmarks/measure_watch.py [--models N] [--rounds N] [GLINT…]
+    benchmarks/compile/measure_watch.py [--models N] [--rounds N] [GLINT…]
 
 A list has N models with a material each: copies of examples/materials/models/blinn_phong, of which every second has a
 texture. Every program (default: the built one) watches a copy of its own, and gets the same edits in turn: of one
@@ -21,7 +21,7 @@ import sys
 import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 MODEL = ROOT / "examples/materials/models/blinn_phong"
 COMPILE = ["compile", "materials.json", "--materials", "packs", "--effects", "shadow", "--strategy", "visibility"]
 LINE = re.compile(r"(\d+) ms: read (\d+), plan (\d+), compile (\d+), write (\d+)")
