@@ -217,10 +217,9 @@ SymbolicState join(ProgramBuilder& builder, const std::vector<SymbolicState>& st
         }
         auto merged = std::make_shared<std::vector<NodeId>>();
         for (std::size_t k = 0; k < memory->size(); ++k) {
-            const auto values =
-                base::mapped<NodeId>(states, [&, memory = number](const SymbolicState& state) {
-                    return state.memories.at(memory)->at(k);
-                });
+            const auto values = base::mapped<NodeId>(states, [&, key = number](const SymbolicState& state) {
+                return state.memories.at(key)->at(k);
+            });
             merged->push_back(joinValues(builder, states, values));
         }
         joined.memories[number] = std::move(merged);
