@@ -30,8 +30,7 @@ materials::Material fullOf(const char* texture, const Content& content) {
 }
 
 // Returns what differs from the key of a material whose textures may hold anything.
-std::vector<std::string> lostBy(const char* texture, const Content& content,
-                                     Dropped* dropped = nullptr) {
+std::vector<std::string> lostBy(const char* texture, const Content& content, Dropped* dropped = nullptr) {
     const materials::FeatureMask whole = compiler::makeKey(fullMaterial(), fullPrimitive(), kTested, nullptr);
     const materials::FeatureMask key =
         compiler::makeKey(fullOf(texture, content), fullPrimitive(), kTested, dropped);

@@ -80,7 +80,7 @@ std::vector<std::uint32_t> unsignedElements(int componentType, const std::uint8_
     std::vector<std::uint32_t> elements(count);
     withComponentType(componentType, [&](auto zero) {
         for (std::size_t i = 0; i < count; ++i) {
-            // Of unsigned types alone. NOLINTNEXTLINE(bugprone-signed-char-misuse)
+            // The caller gives unsigned types alone. NOLINTNEXTLINE(bugprone-signed-char-misuse)
             elements[i] = static_cast<std::uint32_t>(load<decltype(zero)>(bytes + i * sizeof zero));
         }
     });
