@@ -11,7 +11,7 @@ layout(local_size_x = kFirstGroupSize) in;
 const uint kBlock = kFirstGroupSize * kFirstPixelsOfThread;
 
 // With more buckets than shared memory has room for, blocks add to memory at once.
-#define GLINT_FIRST_LOCAL (GLINT_CASE_COUNT < 1024)  // kMaxLocalBuckets
+#define GLINT_FIRST_LOCAL (GLINT_MOST_BUCKETS <= 1024)  // kMaxLocalBuckets
 
 #if GLINT_FIRST_LOCAL
 shared uint blockCounts[kBuckets];

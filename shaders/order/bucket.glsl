@@ -1,4 +1,4 @@
-#include "generated/case_count.glsl"
+#include "hit/bindings.glsl"
 #include "hit/record.glsl"
 
 // Returns the bucket of a ray's hit: 0 for a miss, 1 + shader ID otherwise. A hit with an ID that no case has goes to
@@ -7,6 +7,6 @@ uint bucketOfGeometry(uint geometry) {
     if (geometry == kMissGeometry) {
         return 0u;
     }
-    uint shaderId = hostShaderId(geometry);
-    return shaderId < GLINT_CASE_COUNT ? 1u + shaderId : 0u;
+    uint bucket = 1u + hostShaderId(geometry);
+    return bucket < GLINT_FRAME.bucketCount ? bucket : 0u;
 }

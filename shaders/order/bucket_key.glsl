@@ -1,12 +1,13 @@
 // Keys hold the bucket of each hit in as few bytes as possible, so that the ordering reads little memory.
-#include "generated/case_count.glsl"
+#include "generated/most_buckets.glsl"
 #include "hit/bindings.glsl"
 
-const uint kBuckets = GLINT_CASE_COUNT + 1u;
+// At least the number of buckets.
+const uint kBuckets = GLINT_MOST_BUCKETS;
 
-#if GLINT_CASE_COUNT < 256
+#if GLINT_MOST_BUCKETS <= 256
 const uint kKeyBytes = 1u;
-#elif GLINT_CASE_COUNT < 65536
+#elif GLINT_MOST_BUCKETS <= 65536
 const uint kKeyBytes = 2u;
 #else
 const uint kKeyBytes = 4u;

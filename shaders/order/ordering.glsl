@@ -6,7 +6,7 @@
 // Threads beyond the list take part with kNoGroup, so no thread may have returned before. Subgroups may have 1 to 128
 // threads. Conditions of loops are equal in all threads of a subgroup, and no subgroup operation stands in a branch
 // that divides one. Only basic, ballot and arithmetic operations are used, because not every device has shuffles.
-#include "generated/case_count.glsl"
+#include "generated/most_buckets.glsl"
 #include "hit/bindings.glsl"
 
 #define GLINT_COUNT_OF(bucket) GLINT_FRAME.GLINT_BUCKET_WORDS.data[bucket]
@@ -47,7 +47,7 @@ uint addHit(uint bucket) {
 // Loops over all buckets.
 uint addHit(uint bucket) {
     uint number = 0u;
-    for (uint next = 0u; next <= GLINT_CASE_COUNT; ++next) {
+    for (uint next = 0u; next < GLINT_FRAME.bucketCount; ++next) {
         bool added = bucket == next;
         uvec4 lanes = subgroupBallot(added);
         uint hits = subgroupBallotBitCount(lanes);
@@ -69,7 +69,7 @@ shared uint firstNumbers[kRayGroupSize];  // by leader; there are at most as man
 // The lanes whose hits go to this lane's bucket: those that agree in each bit of the bucket's number.
 uvec4 lanesOfBucket(uint bucket) {
     uvec4 lanes = subgroupBallot(bucket != kNoGroup);
-    for (uint bit = 1u; bit <= GLINT_CASE_COUNT; bit <<= 1u) {
+    for (uint bit = 1u; bit < GLINT_MOST_BUCKETS; bit <<= 1u) {
         bool isSet = (bucket & bit) != 0u;
         uvec4 set = subgroupBallot(isSet);
         lanes &= isSet ? set : ~set;
@@ -121,7 +121,7 @@ uint addHit(uint bucket) {
 #elif GLINT_ORDERING == 4  // local-histogram
 
 // Renderers refuse this ordering if there are more buckets.
-shared uint localCounts[min(GLINT_CASE_COUNT + 1u, kMaxLocalBuckets)];
+shared uint localCounts[min(GLINT_MOST_BUCKETS, kMaxLocalBuckets)];
 
 // Only the counts of buckets that the workgroup has are touched, so the work does not grow with the number of buckets.
 uint addHit(uint bucket) {

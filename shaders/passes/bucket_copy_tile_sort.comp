@@ -18,7 +18,7 @@
 // runs kTileThreads. Arrays have the length that the smallest workgroup needs, which is known without the
 // specialisation constant.
 const uint kLeastThreads = kLocalBuckets <= kSmallTileBuckets ? kSmallTileThreads : kTileThreads;
-#if GLINT_CASE_COUNT < 512  // kTileBuckets
+#if GLINT_MOST_BUCKETS <= 512  // kTileBuckets
 layout(local_size_x = kLeastThreads) in;
 const uint kThreads = kLeastThreads;
 #else
@@ -47,7 +47,7 @@ shared uint slotOffsets[kLocalBuckets];  // by bucket: the difference between a 
 uint[kKeyWords] loadKeys(KeyArray list, uint first) {
     uint words[kKeyWords];
     uint word = (first / kTileHitsOfThread + gl_LocalInvocationIndex) * kKeyWords;
-#if GLINT_CASE_COUNT < 256
+#if GLINT_MOST_BUCKETS <= 256
     uvec2 pair = KeyPairArray(list).data[word / 2u];
     words[0] = pair.x;
     words[1] = pair.y;
@@ -83,10 +83,11 @@ uint bucketOfThread(uint i) {
 uint[kBucketsOfThread] scanBuckets(uint workgroups) {
     CounterArray counts = GLINT_FRAME.bucketCounts;
     uint begins[kBucketsOfThread];
+    uint buckets = GLINT_FRAME.bucketCount;
     uint slots = 0u;
     [[unroll]] for (uint i = 0u; i < kBucketsOfThread; ++i) {
         uint bucket = bucketOfThread(i);
-        bool inside = bucket < kLocalBuckets;
+        bool inside = bucket < buckets;
         uint count = inside ? counts.data[bucket] : 0u;
         uint total;
         begins[i] = slots + scanWorkgroup(roomOf(count), total);

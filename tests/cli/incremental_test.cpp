@@ -152,6 +152,18 @@ TEST_F(Incremental, ACombinationCompilesItsModuleAndThoseOfAllCases) {
     EXPECT_EQ(compiled(compile()), 0);
 }
 
+TEST_F(Incremental, OneCaseMoreCompilesItsOwnModulesAlone) {
+    const Words options{"--strategy", "visibility"};
+    compile(options);
+    Lobes lobes = kFourLobes;
+    lobes.push_back({"clearcoat", "sheen"});
+    writeManyKeys(path("scene"), lobes);
+    EXPECT_EQ(compiled(compile(options)), 2);  // first hits and those of rays
+    const auto package = contentsOf(path("package"));
+    compile({"--strategy", "visibility", "--cache", "none"});
+    EXPECT_EQ(contentsOf(path("package")), package);
+}
+
 // The shaders of strategies that choose among cases are joined from the same parts.
 TEST_F(Incremental, StrategiesAndTracersShareTheParts) {
     const Outcome uber = compile({"--strategy", "uber", "-o", "first"});

@@ -63,11 +63,13 @@ void readModule(std::string_view text) {
 
 // The store handles all values alike, and writing takes longer than everything else here.
 void storeModule(std::string_view text) {
-    const std::string key = glint::compiler::Packer().add(kCompiler).add(kSource).take();
+    const glint::compiler::TextHash source = glint::compiler::hashOfText(kSource);
+    const std::string key =
+        glint::compiler::Packer().add(kCompiler).add(source.first).add(source.second).take();
     store().put("module", key, text);
     require(store().find("module", key) == text, "the store gives back what was put");
     const std::optional<glint::compiler::CachedModule> module =
-        glint::compiler::ModuleCache(store(), std::string(kCompiler)).find(kSource);
+        glint::compiler::ModuleCache(store(), std::string(kCompiler)).find(source);
     require(module.has_value() == glint::compiler::unpackModule(text).has_value(),
             "a stored module is as it was put");
 }

@@ -147,7 +147,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     require((usual & ~all) == 0, "keys have declared features");
     for (const glint::materials::Parameter& parameter : model->parameters) {
         for (int i = 0; parameter.aliasOf < 0 && i < parameter.numbers; ++i) {
-            material.values[static_cast<std::size_t>(parameter.first + i)] = parameter.hold(parameter.high);
+            material.values.of(parameter)[static_cast<std::size_t>(i)] = parameter.hold(parameter.high);
         }
     }
     for (std::size_t object = 0; object < model->objects.size(); ++object) {

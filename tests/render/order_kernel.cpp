@@ -64,8 +64,10 @@ Result<std::vector<compiler::CompiledModule>> compileOrdering(std::uint32_t case
     compiler::CompileSettings settings;
     settings.strategies = package::kStrategySortedUber;
     settings.hitRecord = hitRecord;
-    GLINT_TRY(const auto sources, makeSourceSet(scenes, plan, settings));
-    GLINT_TRY(auto modules, makeModuleSources(scenes, plan, sources, settings));
+    GLINT_TRY(auto sources, makeSourceSet(scenes, plan, settings));
+    GLINT_TRY(auto modules,
+              makeModuleSources(scenes, plan, std::make_shared<const compiler::SourceSet>(std::move(sources)),
+                                settings));
     std::erase_if(modules, [](const compiler::ModuleSource& module) {
         return std::ranges::find(kRoles, module.key.role) == std::end(kRoles);
     });

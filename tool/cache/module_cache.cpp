@@ -1,5 +1,6 @@
 #include "cache/module_cache.h"
 
+#include "base/files.h"
 #include "cache/store.h"
 
 #include <cstring>
@@ -15,6 +16,10 @@ constexpr std::string_view kKind = "module";
 static_assert(sizeof(SpirvStatistics) == sizeof(std::uint64_t) + 6 * sizeof(std::uint32_t));
 
 }  // namespace
+
+TextHash hashOfText(std::string_view text) {
+    return {base::hashBytes(base::asBytes(text)), base::hashBytes(base::asBytes(text), 1)};
+}
 
 std::string packModule(const CachedModule& module) {
     const SpirvStatistics& counts = module.statistics;
@@ -51,16 +56,16 @@ std::optional<CachedModule> unpackModule(std::string_view bytes) {
 ModuleCache::ModuleCache(CacheStore& store, std::string compiler)
     : store_(store), compiler_(std::move(compiler)) {}
 
-std::string ModuleCache::keyOf(std::string_view source) const {
-    return Packer().add(compiler_).add(source).take();
+std::string ModuleCache::keyOf(const TextHash& source) const {
+    return Packer().add(compiler_).add(source.first).add(source.second).take();
 }
 
-std::optional<CachedModule> ModuleCache::find(std::string_view source) const {
+std::optional<CachedModule> ModuleCache::find(const TextHash& source) const {
     const std::optional<std::string> found = store_.find(kKind, keyOf(source));
     return found ? unpackModule(*found) : std::nullopt;
 }
 
-void ModuleCache::put(std::string_view source, const CachedModule& module) const {
+void ModuleCache::put(const TextHash& source, const CachedModule& module) const {
     store_.put(kKind, keyOf(source), packModule(module));
 }
 

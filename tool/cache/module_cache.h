@@ -9,9 +9,14 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace glint::compiler {
+
+// Identifies a text.
+using TextHash = std::pair<std::uint64_t, std::uint64_t>;
+TextHash hashOfText(std::string_view text);
 
 struct CachedModule {
     std::vector<std::uint32_t> spirv;
@@ -33,12 +38,15 @@ public:
     // must outlive the cache.
     ModuleCache(CacheStore& store, std::string compiler);
 
-    // `source` must hold everything that is compiled, including the options.
-    std::optional<CachedModule> find(std::string_view source) const;
-    void put(std::string_view source, const CachedModule& module) const;
+    // `source` is a hash of everything that is compiled, including the options.
+    std::optional<CachedModule> find(const TextHash& source) const;
+    void put(const TextHash& source, const CachedModule& module) const;
+    CacheStore& store() const {
+        return store_;
+    }
 
 private:
-    std::string keyOf(std::string_view source) const;
+    std::string keyOf(const TextHash& source) const;
 
     CacheStore& store_;
     std::string compiler_;

@@ -11,6 +11,7 @@
 #include "emit/package/header.h"
 #include "emit/package/manifest.h"
 #include "gltf/import.h"
+#include "materials/declarations.h"
 #include "resolve/build.h"
 
 #include <glint/measure/target.h>
@@ -299,39 +300,51 @@ bool addOutputs(const compiler::CompiledPackage& package, const CompileArguments
     return addFiles(run.outputs, embedded);
 }
 
-// Returns whether the files are GLSL of the packs of a model.
+// Returns whether the files are GLSL of the packs of a model, and still there.
 bool areGlsl(std::span<const std::string> files, const materials::MaterialModel& model) {
     return std::ranges::all_of(files, [&](const std::string& path) {
         const auto found = std::ranges::find(model.files, path, &materials::PackFile::path);
-        return found != model.files.end() && !found->isDeclaration;
+        std::error_code error;
+        return found != model.files.end() && !found->isDeclaration && std::filesystem::exists(path, error);
     });
 }
 
-// Reads and decides. If the run before has `earlier`, and only GLSL of packs changed since, its scenes and
-// decisions hold: these follow from declarations.
+// Returns whether the files are of the scenes.
+bool areOfScenes(std::span<const std::string> files, std::span<const gltf::Scene> scenes) {
+    const std::vector<std::string> known = pathsOf(filesOf(scenes));
+    return std::ranges::all_of(
+        files, [&](const std::string& path) { return std::ranges::find(known, path) != known.end(); });
+}
+
+// Reads and decides. The run before may have `earlier`, of which holds what does not follow from the files
+// that have `changed` since: the model if these are of scenes, and if they are GLSL of packs also the scenes
+// and all decisions, which follow from declarations.
 Result<std::unique_ptr<Resolved>> readAndResolve(
     const Console& console, const CompileArguments& arguments, CompileCache& cache,
-    std::unique_ptr<Resolved> earlier, const std::function<void(const std::vector<Diagnostic>&)>& report) {
-    if (earlier == nullptr) {
-        GLINT_TRY_DO(checkOutputs(arguments));
-    }
+    std::unique_ptr<Resolved> earlier, std::span<const std::string> changed,
+    const std::function<void(const std::vector<Diagnostic>&)>& report) {
     console.progress("reading " + base::join(arguments.scenes));
-    GLINT_TRY(const auto import,
-              session::importOptions(arguments.settings, session::ImageReading::None, cache.store()));
-    if (earlier != nullptr && haveSameDeclarations(*earlier->model, *import.materialModel)) {
-        earlier->model = earlier->build.plan.model = import.materialModel;
+    if (earlier != nullptr && areGlsl(changed, *earlier->import.materialModel)) {
+        GLINT_TRY(const auto model, materials::withPresentGlsl(*earlier->import.materialModel, changed));
+        earlier->import.materialModel = earlier->build.plan.model = model;
         earlier->build.milliseconds = 0.0;
         earlier->build.settings.compile.progress = console.countTo("compiling");
         report(earlier->diagnostics);
         return earlier;
     }
     auto resolved = std::make_unique<Resolved>();
+    if (earlier != nullptr && areOfScenes(changed, earlier->scenes)) {
+        resolved->import = earlier->import;
+    } else {
+        GLINT_TRY_DO(checkOutputs(arguments));
+        GLINT_TRY(resolved->import,
+                  session::importOptions(arguments.settings, session::ImageReading::None, cache.store()));
+    }
     const auto keep = [&](const std::vector<Diagnostic>& diagnostics) {
         resolved->diagnostics.insert(resolved->diagnostics.end(), diagnostics.begin(), diagnostics.end());
         report(diagnostics);
     };
-    resolved->model = import.materialModel;
-    GLINT_TRY(resolved->scenes, readScenes(arguments.scenes, import));
+    GLINT_TRY(resolved->scenes, readScenes(arguments.scenes, resolved->import));
     keep(warningsOf(resolved->scenes));
     GLINT_TRY(const auto target, measure::targetOf(arguments.settings));
     compiler::Settings asked = arguments.settings;
@@ -368,10 +381,9 @@ Result<int> compileOnce(const Console& console, const CompileArguments& argument
         console.report(diagnostics);
     };
     std::unique_ptr<Resolved> earlier = watched != nullptr ? std::move(watched->resolved) : nullptr;
-    if (earlier != nullptr && !areGlsl(watched->changed, *earlier->model)) {
-        earlier.reset();
-    }
-    GLINT_TRY(auto own, readAndResolve(console, arguments, cache, std::move(earlier), report));
+    GLINT_TRY(auto own,
+              readAndResolve(console, arguments, cache, std::move(earlier),
+                             watched != nullptr ? watched->changed : std::vector<std::string>(), report));
     const Resolved& resolved = *own;
     if (watched != nullptr) {
         watched->resolved = std::move(own);
@@ -387,7 +399,7 @@ Result<int> compileOnce(const Console& console, const CompileArguments& argument
     for (const std::filesystem::path& file : others) {
         dependencies.push_back(file.string());
     }
-    for (const materials::PackFile& file : resolved.model->files) {
+    for (const materials::PackFile& file : resolved.import.materialModel->files) {
         run.inputs.push_back({file.path, file.bytes, file.hash, {}});
         dependencies.push_back(file.path);
     }

@@ -39,7 +39,8 @@ base::SharedArray<std::uint8_t> bytesOf(const base::SharedArray<std::uint32_t>& 
             {reinterpret_cast<const std::uint8_t*>(words.data()), words.size() * sizeof(std::uint32_t)}};
 }
 
-// Adds the modules' files. Modules with equal SPIR-V share one file.
+// Adds the modules' files. Modules with equal SPIR-V share one file. With `emitGlsl` their GLSL must have
+// been made.
 void addModuleFiles(CompiledPackage& package, const std::string& source, bool emitGlsl) {
     std::set<std::string_view> written;
     for (const CompiledModule& module : package.modules) {
@@ -51,38 +52,45 @@ void addModuleFiles(CompiledPackage& package, const std::string& source, bool em
         if (emitGlsl) {
             const std::string header = fmt::format("// Made by glint {} from {}. Do not edit.\n",
                                                    toolVersion(), commentText(source));
-            package.files.push_back({"glsl/" + module.name, toBytes(makeReadable(*module.glsl, header))});
+            package.files.push_back(
+                {"glsl/" + module.name, toBytes(makeReadable(module.glsl->made(), header))});
         }
     }
 }
 
 // The results of all steps before SPIR-V.
 struct Prepared {
-    SourceSet sources;
+    std::shared_ptr<const SourceSet> sources;
     std::vector<ModuleSource> modules;
 };
 
-Result<Prepared> makeGlsl(const Build& build, WarmModules* warm = nullptr) {
+// `makesAll`: also texts whose hash is known.
+Result<Prepared> makeGlsl(const Build& build, ModuleCache* cache, WarmModules& warm, bool makesAll) {
     const gltf::SceneList& scenes = *build.scenes;
     const CompileSettings& settings = build.settings.compile;
     if (build.excess) {
         return makeError("max-shaders", scenes.path(), *build.excess);
     }
-    GLINT_TRY(auto sources, makeSourceSet(scenes, build.plan, settings));
-    GLINT_TRY(auto modules, makeModuleSources(scenes, build.plan, sources, settings, warm));
-    return Prepared{std::move(sources), std::move(modules)};
+    GLINT_TRY(auto made, makeSourceSet(scenes, build.plan, settings));
+    const auto sources = std::make_shared<const SourceSet>(std::move(made));
+    GLINT_TRY(auto modules,
+              makeModuleSources(scenes, build.plan, sources, settings, {cache, &warm, makesAll}));
+    return Prepared{sources, std::move(modules)};
 }
 
 Result<CompiledPackage> compile(const Build& build, ModuleCache* cache, WarmModules* warm) {
     const base::Clock::time_point start = base::Clock::now();
     const gltf::SceneList& scenes = *build.scenes;
     const CompileSettings& settings = build.settings.compile;
-    GLINT_TRY(auto prepared, makeGlsl(build, warm));
+    WarmModules own;
+    WarmModules& known = warm != nullptr ? *warm : own;
+    const bool makesAll = settings.emitGlsl || settings.debugInfo || !settings.modules.empty();
+    GLINT_TRY(auto prepared, makeGlsl(build, cache, known, makesAll));
     const base::Clock::time_point planned = base::Clock::now();
     Result<std::vector<CompiledModule>> compiled =
         !settings.modules.empty()
             ? takeModules(std::move(prepared.modules), settings.debugInfo, settings.modules)
-            : compileModules(std::move(prepared.modules), settings.jobs, settings.debugInfo, cache, warm,
+            : compileModules(std::move(prepared.modules), settings.jobs, settings.debugInfo, cache, &known,
                              settings.progress);
     if (!compiled) {
         return explainGlslError(compiled.error(), *build.plan.model, settings.host);
@@ -100,7 +108,7 @@ Result<CompiledPackage> compile(const Build& build, ModuleCache* cache, WarmModu
         if (i == 0) {
             tables = makeTables(scenes, package.plan, package.modules, settings);
         } else {
-            header = makeHeader(scenes, package.plan, prepared.sources, settings.plan);
+            header = makeHeader(scenes, package.plan, *prepared.sources, settings.plan);
         }
         return true;
     });
@@ -147,7 +155,8 @@ Result<Value> guarded(std::span<const gltf::Scene> scenes, const Work& work) {
 
 Result<PackagePlan> planPackage(const Build& build) {
     return guarded<PackagePlan>(build.scenes->scenes(), [&]() -> Result<PackagePlan> {
-        GLINT_TRY(const auto prepared, makeGlsl(build));
+        WarmModules none;
+        GLINT_TRY(const auto prepared, makeGlsl(build, nullptr, none, true));
         return PackagePlan{build.plan, planModules(prepared.modules, build.settings.compile.debugInfo)};
     });
 }

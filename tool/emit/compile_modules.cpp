@@ -32,8 +32,9 @@ CompiledText textOf(CachedModule module, bool compiled) {
     return {std::make_shared<const HashedModule>(std::move(module)), compiled};
 }
 
-ShaderSource shaderOf(const ModuleSource& source) {
-    return {source.name, source.stage, source.glsl->unit.withPlaces(), source.functionsApart};
+Result<ShaderSource> shaderOf(const ModuleSource& source) {
+    GLINT_TRY(const auto unit, source.glsl->unit());
+    return ShaderSource{source.name, source.stage, unit->withPlaces(), source.functionsApart};
 }
 
 Result<CompiledText> takeText(const ModuleSource& source, const std::string& text,
@@ -59,7 +60,7 @@ CompiledModule makeCompiled(ModuleSource& source, const CompiledText& text, bool
     module.key = source.key;
     module.file = spirvFileName(source);
     module.name = std::move(source.name);
-    module.glsl = {source.glsl, &source.glsl->unit};
+    module.glsl = source.glsl;
     module.spirv = {text.module, text.module->module.spirv};
     module.statistics = text.module->module.statistics;
     module.hash = text.module->hash;
@@ -224,8 +225,7 @@ private:
         if (auto found = warm_ != nullptr ? warm_->findModule(text.hash) : nullptr) {
             return CompiledText{std::move(found), false};
         }
-        std::optional<CachedModule> module =
-            cache_ != nullptr ? cache_->find(makeModuleText(*text.source, options_.debugInfo)) : std::nullopt;
+        std::optional<CachedModule> module = cache_ != nullptr ? cache_->find(text.hash) : std::nullopt;
         if (!module) {
             return std::nullopt;
         }
@@ -244,7 +244,8 @@ private:
         if (std::optional<CompiledText> found = find(text)) {
             return std::move(*found);
         }
-        return keep(text, compileMeasured(shaderOf(*text.source), options_, text.source->link));
+        GLINT_TRY(const auto shader, shaderOf(*text.source));
+        return keep(text, compileMeasured(shader, options_, text.source->link));
     }
 
     Result<CompiledText> join(const DistinctTexts::Text& text) {
@@ -258,10 +259,15 @@ private:
         }
         // The joins that wait or run share the threads.
         const int idle = jobs_ / std::max(1, ++joins_);
-        Result<CompiledText> joined =
-            keep(text, joinMeasured(shaderOf(*text.source), options_, parts, std::max(1, idle)));
+        Result<CompiledText> joined = joinOf(text, parts, std::max(1, idle));
         --joins_;
         return joined;
+    }
+
+    Result<CompiledText> joinOf(const DistinctTexts::Text& text, std::span<const CachedModule* const> parts,
+                                int jobs) {
+        GLINT_TRY(const auto shader, shaderOf(*text.source));
+        return keep(text, joinMeasured(shader, options_, parts, jobs));
     }
 
     Result<CompiledText> keep(const DistinctTexts::Text& text, Result<CachedModule> module) {
@@ -269,7 +275,7 @@ private:
             return module.error();
         }
         if (cache_ != nullptr) {
-            cache_->put(makeModuleText(*text.source, options_.debugInfo), *module);
+            cache_->put(text.hash, *module);
         }
         CompiledText compiled = textOf(std::move(*module), true);
         if (warm_ != nullptr) {

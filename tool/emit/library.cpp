@@ -175,12 +175,13 @@ Result<PackageFile> makeLinkableFile(const std::string& library, const std::stri
     const auto [source, names] = linkableSource(library, host, plan);
     const std::string text = fmt::format("// glint linkable 1\n// names {}\n{}", debugInfo,
                                          debugInfo ? source.glsl : essentialText(source.glsl));
-    std::optional<CachedModule> module = cache != nullptr ? cache->find(text) : std::nullopt;
+    const TextHash hash = hashOfText(text);
+    std::optional<CachedModule> module = cache != nullptr ? cache->find(hash) : std::nullopt;
     if (!module) {
         GLINT_TRY(auto words, compileLinkable(source, names, {debugInfo}));
         module = CachedModule{std::move(words), {}};
         if (cache != nullptr) {
-            cache->put(text, *module);
+            cache->put(hash, *module);
         }
     }
     const std::span<const std::uint8_t> bytes = module->bytes();

@@ -329,21 +329,21 @@ bool MaterialCodeOfCases::isOf(const Plan& plan) const {
     return haveSameDeclarations(model_, *plan.model) && records_ == plan.records;
 }
 
-Result<const SourceSet*> MaterialCodeOfCases::find(const SourceSet& sources,
-                                                   const materials::FeatureMask& used) {
+Result<std::shared_ptr<const SourceSet>> MaterialCodeOfCases::find(const SourceSet& sources,
+                                                                   const materials::FeatureMask& used) {
     const materials::FeatureMask withCode = used & withCode_;
     if (const auto known = made_.find(withCode); known != made_.end()) {
-        return &known->second;
+        return known->second;
     }
-    SourceSet files;
-    GLINT_TRY_DO(addMaterialCode(sources, model_, used, files));
+    const auto files = std::make_shared<SourceSet>();
+    GLINT_TRY_DO(addMaterialCode(sources, model_, used, *files));
     if (!model_.models.empty()) {
         // Whatever the case, rays meet surfaces whose opacity is the code of another one.
         const materials::FeatureMask named = model_.withBases(used | ofMasks_);
-        files.add("generated/features.glsl", model_.featureDefines(named));
-        files.add("generated/material_record.glsl", recordDeclarations(layout_, named));
+        files->add("generated/features.glsl", model_.featureDefines(named));
+        files->add("generated/material_record.glsl", recordDeclarations(layout_, named));
     }
-    return &made_.emplace(withCode, std::move(files)).first->second;
+    return made_.emplace(withCode, files).first->second;
 }
 
 }  // namespace glint::compiler

@@ -8,6 +8,7 @@
 #include <glint/result.h>
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -44,17 +45,19 @@ public:
 
     // Returns whether those of another plan would have the same files.
     bool isOf(const Plan& plan) const;
-    // Returns the files for keys with features of `used` alone. They are valid as long as this. `sources` has
-    // the templates. Has the errors of renderTemplate().
-    Result<const SourceSet*> find(const SourceSet& sources, const materials::FeatureMask& used);
+    // Returns the files for keys with features of `used` alone. `sources` has the templates. Has the errors
+    // of renderTemplate().
+    Result<std::shared_ptr<const SourceSet>> find(const SourceSet& sources,
+                                                  const materials::FeatureMask& used);
 
 private:
     const materials::MaterialModel& model_;
     std::vector<RecordUse> records_;  // of the plan, on which the layout depends
     MaterialLayout layout_;
-    materials::FeatureMask ofMasks_;                    // maskCodeFeatures()
-    materials::FeatureMask withCode_ = 0;               // all features that have code
-    std::map<materials::FeatureMask, SourceSet> made_;  // by the features that have code
+    materials::FeatureMask ofMasks_;       // maskCodeFeatures()
+    materials::FeatureMask withCode_ = 0;  // all features that have code
+    // By the features that have code.
+    std::map<materials::FeatureMask, std::shared_ptr<const SourceSet>> made_;
 };
 
 }  // namespace glint::compiler

@@ -376,14 +376,13 @@ std::vector<std::uint8_t> makeMaterialRecord(const materials::Material& material
     const MaterialLayout::Rows rows = known != layout.byModel.end() ? known->second : MaterialLayout::Rows();
     for (const std::size_t place : rows.fields) {
         const RecordField& field = layout.fields[place];
-        const double* const values =
+        const std::span<const double> values =
             field.parameter < 0
-                ? nullptr
-                : &plain.values[static_cast<std::size_t>(
-                      layout.model->parameters[static_cast<std::size_t>(field.parameter)].first)];
+                ? std::span<const double>()
+                : plain.values.of(layout.model->parameters[static_cast<std::size_t>(field.parameter)]);
         for (std::uint32_t i = 0; i < field.numbers(); ++i) {
             const double number =
-                values != nullptr
+                !values.empty()
                     ? values[i]
                     : derivedValue(facts, layout.model->derived[static_cast<std::size_t>(field.derived)],
                                    static_cast<int>(i));

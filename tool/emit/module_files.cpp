@@ -172,15 +172,16 @@ std::string makeModuleText(const ModuleSource& source, bool debugInfo) {
     const std::string head = headOfText(source, debugInfo, [&](const ModuleSource& part) {
         return nameOfModuleText(makeModuleText(part, debugInfo));
     });
-    return head + (debugInfo ? source.glsl->unit.withPlaces() : source.glsl->essential);
+    const GlslUnit& unit = source.glsl->made();
+    return head + (debugInfo ? unit.withPlaces() : essentialText(unit.text()));
 }
 
 TextHash hashOfModuleText(const ModuleSource& source, bool debugInfo) {
     const std::string head = headOfText(source, debugInfo, [&](const ModuleSource& part) {
         return hexText(hashOfModuleText(part, debugInfo));
     });
-    return hashOfText(head +
-                      hexText(debugInfo ? hashOfText(source.glsl->unit.withPlaces()) : source.glsl->hash));
+    return hashOfText(
+        head + hexText(debugInfo ? hashOfText(source.glsl->made().withPlaces()) : source.glsl->hash()));
 }
 
 Result<ModuleText> readModuleText(std::string_view text, const std::string& name) {

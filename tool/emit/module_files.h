@@ -38,8 +38,10 @@ std::string moduleCompiler();
 // Returns the GLSL below comments that hold the other inputs: the stage, the functions that are kept apart or
 // linked, the names of the texts of its parts, and its own name if names are kept. Two modules have equal
 // texts exactly if they are compiled alike. Without debug information the GLSL is that of essentialText().
+// The GLSL of the module and its parts must have been made.
 std::string makeModuleText(const ModuleSource& source, bool debugInfo);
-// Returns a hash that differs between texts of makeModuleText(), which it need not make.
+// Returns a hash that differs between texts of makeModuleText(), which it need not make. With debug
+// information the GLSL must have been made.
 TextHash hashOfModuleText(const ModuleSource& source, bool debugInfo);
 
 struct ModuleText {

@@ -62,19 +62,20 @@ public:
             for (const bool apart : {false, true}) {
                 context.set("apart", apart);
                 GLINT_TRY(auto text, renderTemplate(sources_, kSwitchTemplate, context));
-                SourceSet& to = (apart ? head_ : whole_)[fallbackAlone ? 1 : 0];
-                to.add(std::string(kSwitchFile), std::move(text));
+                const auto to = std::make_shared<SourceSet>();
+                to->add(std::string(kSwitchFile), std::move(text));
                 if (apart && settings_.emissiveLights != EmissiveLights::On) {
                     // The emission of lights is the only code of materials that the switch would have, and an
                     // edit of that code would change the switch.
-                    to.add(std::string(kEmitterFile), "");
+                    to->add(std::string(kEmitterFile), "");
                 }
+                (apart ? head_ : whole_)[fallbackAlone ? 1 : 0] = to;
             }
         }
         return okStatus();
     }
     // Returns the switch with the code of its cases: all of them, or the fallback alone.
-    const SourceSet& wholeSwitch(bool fallbackAlone) const {
+    const std::shared_ptr<const SourceSet>& wholeSwitch(bool fallbackAlone) const {
         return whole_[fallbackAlone ? 1 : 0];
     }
     // Adds the parts of a module whose text is `text`. Has the errors of renderTemplate().
@@ -126,7 +127,7 @@ private:
             // each case; apart, it is equal in all parts, and the joined shader has it once.
             part->functionsApart.emplace_back("sampleEmitter");
         }
-        drafts_.add(part, part->name, std::move(text), *code);
+        drafts_.add(part, part->name, std::move(text), std::move(code));
         made = part;
         return made;
     }
@@ -139,8 +140,8 @@ private:
     ModuleDrafts& drafts_;
     MaterialCodeOfCases& codeOfCases_;
     materials::FeatureMask ofEmitters_;
-    SourceSet whole_[2];
-    SourceSet head_[2];                                                // switches whose cases have no code
+    std::shared_ptr<const SourceSet> whole_[2];
+    std::shared_ptr<const SourceSet> head_[2];                         // switches whose cases have no code
     std::map<std::string, std::shared_ptr<const ModuleSource>> made_;  // by the function's name
 };
 }  // namespace
@@ -278,17 +279,19 @@ materials::FeatureMask emitterMask(const Plan& plan, const CompileSettings& sett
 }  // namespace
 
 Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scenes, const Plan& plan,
-                                                    const SourceSet& sources, const CompileSettings& settings,
-                                                    WarmModules* warm) {
+                                                    const std::shared_ptr<const SourceSet>& sources,
+                                                    const CompileSettings& settings,
+                                                    const KnownModules& known) {
     kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
-    std::optional<MaterialCodeOfCases> ownCode;
-    MaterialCodeOfCases& codeOfCases = warm != nullptr ? warm->codeOfCases(plan) : ownCode.emplace(plan);
+    WarmModules own;
+    WarmModules& warm = known.warm != nullptr ? *known.warm : own;
+    MaterialCodeOfCases& codeOfCases = warm.codeOfCases(plan);
     const materials::FeatureMask ofEmitters = emitterMask(plan, settings);
-    const SourceSet none;
+    const auto none = std::make_shared<const SourceSet>();
     const Case fallback = fallbackCase(plan);
     const Case draft = draftCase(plan);
-    ModuleDrafts drafts(sources, warm);
-    SwitchParts parts(context, scenes, plan, sources, settings, drafts, codeOfCases, ofEmitters);
+    ModuleDrafts drafts(sources, warm, known.cache, known.makesAll);
+    SwitchParts parts(context, scenes, plan, *sources, settings, drafts, codeOfCases, ofEmitters);
     GLINT_TRY_DO(parts.makeSwitches());
     std::vector<std::shared_ptr<ModuleSource>> modules;
     for (const package::ModuleKey& key : package::requiredModules(shapeOf(scenes, plan, settings))) {
@@ -296,20 +299,21 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
         const bool ofCase = info.repeated == package::Repeated::ByCase;
         const bool ofSwitch = info.hasSwitch();
         const bool ofFallback = info.purpose == package::Purpose::Fallback;
-        const SourceSet* own = ofSwitch ? &parts.wholeSwitch(ofFallback) : &none;
+        std::shared_ptr<const SourceSet> ofModule = ofSwitch ? parts.wholeSwitch(ofFallback) : none;
         const bool ofDraft = info.purpose == package::Purpose::Draft;
         if (ofCase || ofDraft || (ofFallback && !ofSwitch)) {
             const Case& hitCase = ofCase ? plan.cases[key.index] : ofDraft ? draft : fallback;
             const Case shaderCase = info.shadesFirst() ? firstCase(plan, hitCase) : hitCase;
             addCase(context, scenes, *plan.model, shaderCase);
             context.set("skipsMisses", ofFallback);
-            GLINT_TRY(own, codeOfCases.find(sources, shaderCase.always | shaderCase.sometimes | ofEmitters));
+            GLINT_TRY(ofModule,
+                      codeOfCases.find(*sources, shaderCase.always | shaderCase.sometimes | ofEmitters));
         } else if (key.role == ModuleRole::EffectRays) {
             addEffect(context, *plan.model, plan.effects.effects, key.index);
         }
         const std::string_view source = sourceOf(info, key, *plan.model);
         GLINT_TRY(auto text,
-                  makeText(source, moduleDefines(info, key, settings.precision), sources, context));
+                  makeText(source, moduleDefines(info, key, settings.precision), *sources, context));
         const std::string_view caseName = ofCase ? std::string_view(plan.cases[key.index].name) : "";
         auto module = std::make_shared<ModuleSource>();
         module->key = key;
@@ -319,7 +323,7 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
         if (ofSwitch) {
             GLINT_TRY_DO(parts.addTo(*module, origin, text, ofFallback));
         }
-        drafts.add(module, origin, std::move(text), *own);
+        drafts.add(module, origin, std::move(text), std::move(ofModule));
         modules.push_back(std::move(module));
     }
     GLINT_TRY_DO(drafts.finish(settings.jobs));

@@ -14,20 +14,26 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <vector>
 
 namespace glint::compiler {
 
-// Returns the modules that the settings call for, in order of their keys. `warm` may be null. Has the errors
-// of renderTemplate() and flatten().
+// What is known of modules before they are made.
+struct KnownModules {
+    const ModuleCache* cache = nullptr;  // may be null
+    WarmModules* warm = nullptr;         // may be null
+    bool makesAll = true;                // also the GLSL of texts whose hash is known
+};
+
+// Returns the modules that the settings call for, in order of their keys. Has the errors of renderTemplate()
+// and flatten().
 Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scenes, const Plan& plan,
-                                                    const SourceSet& sources, const CompileSettings& settings,
-                                                    WarmModules* warm = nullptr);
+                                                    const std::shared_ptr<const SourceSet>& sources,
+                                                    const CompileSettings& settings,
+                                                    const KnownModules& known = {});
 
 // --- SPIR-V ---
-
-class ModuleCache;
-class WarmModules;
 
 // Compiles on `jobs` threads (0: one for each core). Equal texts are compiled once, those of parts too, and
 // texts that `cache` or `warm` has are not compiled; both may be null. Neither the result nor the reported

@@ -17,29 +17,57 @@
 
 namespace glint::compiler {
 
-void SourceSet::add(std::string name, std::string text) {
-    const std::uint64_t mark = base::hashBytes(text);
-    mark_ = base::hashBytes(fmt::format("{:x} {:x} {}", mark_, mark, name));
-    files_.insert_or_assign(std::move(name), File{std::move(text), mark});
+std::uint64_t sourceNumber(std::string_view file, std::string_view item) {
+    const std::uint64_t number = base::hashBytes(file);
+    return item.empty() ? number : base::hashBytes(base::asBytes(item), number);
 }
 
-std::vector<std::pair<std::string, std::uint64_t>> SourceSet::marks() const {
-    std::vector<std::pair<std::string, std::uint64_t>> marks;
-    for (const auto& [name, file] : files_) {
-        marks.emplace_back(name, file.mark);
+SourceSet::File& SourceSet::addFile(std::string name, std::string text) {
+    File& file = files_[std::move(name)];
+    file = {std::make_unique<const std::string>(std::move(text))};
+    return file;
+}
+
+void SourceSet::add(std::string name, std::string text) {
+    marks_[sourceNumber(name)] = base::hashBytes(text);
+    addFile(std::move(name), std::move(text));
+}
+
+void SourceSet::addItems(std::string name, std::string text) {
+    const std::uint64_t number = sourceNumber(name);
+    File& file = addFile(name, std::move(text));
+    Items& items = file.items.emplace();
+    std::string rest;
+    for (GlslItem& item : splitGlsl(*file.text)) {
+        if (item.kind == GlslItemKind::Blank || item.kind == GlslItemKind::Comment) {
+            continue;
+        }
+        const auto [known, isFirst] = items.try_emplace(item.name);
+        known->second.insert(known->second.end(), item.words.begin(), item.words.end());
+        rest += item.name.empty() ? item.text : item.name;
+        rest += '\n';
+        if (!item.name.empty()) {
+            // Several items may have one name.
+            std::uint64_t& mark = marks_[sourceNumber(name, item.name)];
+            mark = base::hashBytes(base::asBytes(item.text), isFirst ? number : mark);
+        }
     }
-    std::ranges::sort(marks);
-    return marks;
+    marks_[number] = base::hashBytes(rest);
 }
 
 std::optional<std::string_view> SourceSet::find(std::string_view name) const {
     const auto place = files_.find(name);
-    return place == files_.end() ? std::nullopt : std::optional<std::string_view>(place->second.text);
+    return place == files_.end() ? std::nullopt : std::optional<std::string_view>(*place->second.text);
 }
 
-std::optional<std::uint64_t> SourceSet::markOf(std::string_view name) const {
+const SourceSet::Items* SourceSet::itemsOf(std::string_view name) const {
     const auto place = files_.find(name);
-    return place == files_.end() ? std::nullopt : std::optional(place->second.mark);
+    return place == files_.end() || !place->second.items ? nullptr : &*place->second.items;
+}
+
+std::optional<std::uint64_t> SourceSet::markOf(std::uint64_t source) const {
+    const auto place = marks_.find(source);
+    return place == marks_.end() ? std::nullopt : std::optional(place->second);
 }
 
 SourceLookup SourceSet::lookup() const {
@@ -204,6 +232,13 @@ std::string sceneDefines(const gltf::SceneList& scenes, const Plan& plan, const 
     return text;
 }
 
+// Returns the number of buckets that shaders have room for: that of misses and one for each case, rounded up,
+// so that modules stay as they are when there is one case more.
+std::size_t mostBuckets(std::size_t cases) {
+    constexpr std::size_t kStep = 8;
+    return (1 + cases + kStep - 1) / kStep * kStep;
+}
+
 std::optional<std::string_view> findEmbedded(std::string_view name) {
     for (const base::BuiltinFile& file : builtinFiles()) {
         if (file.name == name) {
@@ -246,16 +281,16 @@ Result<SourceSet> makeSourceSet(const gltf::SceneList& scenes, const Plan& plan,
     }
     GLINT_TRY_DO(addHost(sources, settings.host));
     const materials::FeatureMask used = usedFeatures(plan);
-    sources.add("generated/features.glsl", plan.model->featureDefines(used));
-    sources.add("generated/material_record.glsl", recordDeclarations(materialLayoutOf(plan), used));
+    sources.addItems("generated/features.glsl", plan.model->featureDefines(used));
+    sources.addItems("generated/material_record.glsl", recordDeclarations(materialLayoutOf(plan), used));
     const bool surface = settings.answer == package::HitAnswer::Surface;
     sources.add("generated/answer.glsl",
                 fmt::format("#include \"hit/answer_{}.glsl\"\n", package::nameOf(settings.answer)));
     sources.add("generated/shade.glsl",
                 fmt::format("#include \"hit/{}.glsl\"\n", surface ? "shade_surface" : "shade"));
-    sources.add("generated/scene.glsl", sceneDefines(scenes, plan, settings));
-    // A file of its own, so that modules that do not count cases stay as they are when there is one more.
-    sources.add("generated/case_count.glsl", fmt::format("#define GLINT_CASE_COUNT {}\n", plan.cases.size()));
+    sources.addItems("generated/scene.glsl", sceneDefines(scenes, plan, settings));
+    sources.add("generated/most_buckets.glsl",
+                fmt::format("#define GLINT_MOST_BUCKETS {}\n", mostBuckets(plan.cases.size())));
     GLINT_TRY_DO(addMaterialCode(sources, *plan.model, used, sources));
     GLINT_TRY_DO(addMaskCode(sources, *plan.model, used, sources));
     sources.add("generated/attributes.glsl", vertexAttributeCode(*plan.model, used));

@@ -2,74 +2,196 @@
 
 #include "base/files.h"
 #include "base/parallel.h"
+#include "cache/action.h"
+#include "cache/store.h"
 #include "emit/glsl/passes.h"
 
 #include <algorithm>
-#include <iterator>
+#include <functional>
 #include <optional>
+#include <set>
+#include <unordered_map>
 #include <utility>
 
 namespace glint::compiler {
 
+ModuleGlsl::ModuleGlsl(GlslUnit unit)
+    : hash_(hashOfText(essentialText(unit.text()))), unit_(std::move(unit)) {}
+
+Result<const GlslUnit*> ModuleGlsl::unit() const {
+    const std::lock_guard lock(making_);
+    if (!unit_) {
+        GLINT_TRY(unit_, make_());
+    }
+    return &*unit_;
+}
+
+std::uint64_t IncludedFiles::stateOf(std::span<const std::uint64_t> sources) const {
+    std::vector<std::uint64_t> marks;
+    marks.reserve(sources.size());
+    for (const std::uint64_t source : sources) {
+        const std::optional<std::uint64_t> own = own_->markOf(source);
+        marks.push_back((own ? own : others_->markOf(source)).value_or(0));
+    }
+    return base::hashBytes(
+        {reinterpret_cast<const std::uint8_t*>(marks.data()), marks.size() * sizeof(std::uint64_t)});
+}
+
 namespace {
 
-std::pair<std::uint64_t, std::uint64_t> warmKeyOf(std::string_view name, std::string_view text) {
-    const TextHash hash = hashOfText(text);
-    return {hash.first, hash.second ^ (base::hashBytes(name) << 1U)};
+// The sources of a text: the files that it includes, and of files with items those that it uses.
+class UsedSources {
+public:
+    explicit UsedSources(const IncludedFiles& files) : files_(files) {}
+
+    void addFile(std::string_view name) {
+        const std::string& file = *names_.emplace(name).first;
+        sources_.push_back(sourceNumber(file));
+        if (const SourceSet::Items* const items = files_.itemsOf(file)) {
+            itemFiles_.insert(file);
+            for (const auto& [item, words] : *items) {
+                items_.emplace(item, Item{file, &words});
+            }
+        }
+    }
+    // Adds the items that are named in `text`, or only in its lines from files without items.
+    void addItemsOf(const GlslUnit& text, bool ofAllLines) {
+        addItem("");
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            if (ofAllLines || !itemFiles_.contains(text.file(i))) {
+                forEachPiece(text.line(i), [&](std::string_view piece) { addItem(piece); });
+            }
+        }
+    }
+    std::vector<std::uint64_t> take() && {
+        std::ranges::sort(sources_);
+        sources_.erase(std::unique(sources_.begin(), sources_.end()), sources_.end());
+        return std::move(sources_);
+    }
+
+private:
+    struct Item {
+        std::string_view file;
+        const std::vector<std::string_view>* words = nullptr;  // null once it was added
+    };
+
+    void addItem(std::string_view name) {
+        const auto [begin, end] = items_.equal_range(name);
+        for (auto item = begin; item != end; ++item) {
+            if (const auto* const words = std::exchange(item->second.words, nullptr)) {
+                sources_.push_back(sourceNumber(item->second.file, name));
+                std::ranges::for_each(*words, [this](std::string_view word) { addItem(word); });
+            }
+        }
+    }
+
+    const IncludedFiles& files_;
+    std::set<std::string, std::less<>> names_;
+    std::set<std::string_view> itemFiles_;
+    std::unordered_multimap<std::string_view, Item> items_;
+    std::vector<std::uint64_t> sources_;
+};
+
+}  // namespace
+
+Result<GlslUnit> ModuleTemplate::make(std::vector<std::uint64_t>* sources) const {
+    UsedSources used(files);
+    const SourceLookup lookup = [&](std::string_view name) {
+        if (sources != nullptr) {
+            used.addFile(name);
+        }
+        return files.find(name);
+    };
+    GLINT_TRY(const auto flattened, flatten(origin, text, lookup, FlattenSide::Glsl));
+    GlslUnit unit = dropUnused(cutDecided(flattened));
+    if (sources != nullptr) {
+        used.addItemsOf(flattened, false);
+        // Names that macros paste together stand in no line; such items stay in the text.
+        used.addItemsOf(unit, true);
+        *sources = std::move(used).take();
+    }
+    return unit;
+}
+
+namespace {
+
+constexpr std::string_view kTexts = "text";  // kind of entries of the cache
+constexpr std::size_t kMostTexts = 4;        // of one template there
+
+// Other versions of this program may make another text of the same sources.
+std::string storedKey(const TextHash& key) {
+    static const std::string kProgram = programIdentity();
+    return Packer().add(kProgram).add(key.first).add(key.second).take();
 }
 
 }  // namespace
 
-TextHash hashOfText(std::string_view text) {
-    return {base::hashBytes(base::asBytes(text)), base::hashBytes(base::asBytes(text), 1)};
+TextHash WarmModules::keyOf(const ModuleTemplate& made) {
+    const TextHash hash = hashOfText(made.text);
+    return {hash.first, base::hashBytes(base::asBytes(made.origin), hash.second)};
 }
 
-void WarmModules::takeSources(const SourceSet& sources) {
-    auto marks = sources.marks();
-    changed_.clear();
-    std::ranges::set_symmetric_difference(marks_, marks, std::back_inserter(changed_));
-    marks_ = std::move(marks);
-    ++sources_;
-}
-
-bool WarmModules::isOf(const Glsl& candidate, const IncludedFiles& files) const {
-    // Few files change between two runs, and modules include many.
-    if (candidate.sources + 1 == sources_ && candidate.own == files.markOfOwn() &&
-        std::ranges::none_of(changed_, [&](const auto& changed) {
-            const auto read =
-                std::ranges::lower_bound(candidate.read, changed.first, {}, &Read::value_type::first);
-            return read != candidate.read.end() && read->first == changed.first;
-        })) {
-        return true;
-    }
-    return std::ranges::all_of(candidate.read,
-                               [&](const auto& file) { return files.markOf(file.first) == file.second; });
-}
-
-std::shared_ptr<const PreparedGlsl> WarmModules::findGlsl(std::string_view name, std::string_view text,
-                                                          const IncludedFiles& files) {
-    const Key key = warmKeyOf(name, text);
-    const std::lock_guard lock(mutex_);
-    const auto known = glsl_.find(key);
-    if (known == glsl_.end()) {
-        return nullptr;
-    }
-    for (Glsl& candidate : known->second) {
-        if (isOf(candidate, files)) {
-            candidate.used = run_;
-            candidate.own = files.markOfOwn();
-            candidate.sources = sources_;
-            return candidate.glsl;
+std::string WarmModules::pack(const Texts& texts) {
+    Packer packer;
+    std::size_t left = std::min(texts.size(), kMostTexts);
+    packer.add(left);
+    for (auto place = texts.begin(); left > 0; ++place, --left) {
+        const Text& one = *place;
+        packer.add(one.state).add(one.text.first).add(one.text.second).add(one.sources.size());
+        for (const std::uint64_t source : one.sources) {
+            packer.add(source);
         }
     }
-    return nullptr;
+    return packer.take();
 }
 
-void WarmModules::putGlsl(std::string_view name, std::string_view text, Read read, const IncludedFiles& files,
-                          std::shared_ptr<const PreparedGlsl> glsl) {
+WarmModules::Texts WarmModules::unpack(std::string_view bytes) {
+    Unpacker unpacker(bytes);
+    const auto number = [&] { return unpacker.number().value_or(0); };
+    Texts texts(unpacker.count(4 * sizeof(std::uint64_t)).value_or(0));
+    for (Text& one : texts) {
+        one.state = number();
+        one.text.first = number();
+        one.text.second = number();
+        one.sources.resize(unpacker.count(sizeof(std::uint64_t)).value_or(0));
+        std::ranges::generate(one.sources, number);
+    }
+    return unpacker.atEnd() ? texts : Texts();
+}
+
+std::optional<TextHash> WarmModules::findText(const ModuleTemplate& made, const ModuleCache* cache) {
+    const TextHash key = keyOf(made);
+    std::unique_lock lock(mutex_);
+    auto known = texts_.find(key);
+    if (known == texts_.end()) {
+        lock.unlock();
+        Texts stored;
+        if (cache != nullptr) {
+            stored = unpack(cache->store().find(kTexts, storedKey(key)).value_or(""));
+        }
+        lock.lock();
+        known = texts_.emplace(key, std::move(stored)).first;
+    }
+    const auto found = std::ranges::find_if(known->second, [&](const Text& candidate) {
+        return made.files.stateOf(candidate.sources) == candidate.state;
+    });
+    if (found == known->second.end()) {
+        return std::nullopt;
+    }
+    found->used = run_;
+    return found->text;
+}
+
+void WarmModules::putText(const ModuleTemplate& made, std::vector<std::uint64_t> sources,
+                          const TextHash& text, const ModuleCache* cache) {
+    const TextHash key = keyOf(made);
+    const std::uint64_t state = made.files.stateOf(sources);
     const std::lock_guard lock(mutex_);
-    glsl_[warmKeyOf(name, text)].push_front(
-        {std::move(read), std::move(glsl), run_, files.markOfOwn(), sources_});
+    Texts& texts = texts_[key];
+    texts.push_front({std::move(sources), state, text, run_});
+    if (cache != nullptr) {
+        cache->store().put(kTexts, storedKey(key), pack(texts));
+    }
 }
 
 std::shared_ptr<const HashedModule> WarmModules::findModule(const TextHash& text) {
@@ -96,10 +218,10 @@ MaterialCodeOfCases& WarmModules::codeOfCases(const Plan& plan) {
 
 void WarmModules::endRun() {
     const auto isOld = [&](const auto& entry) { return entry.used + kRuns < run_; };
-    for (auto& [key, candidates] : glsl_) {
+    for (auto& [key, candidates] : texts_) {
         std::erase_if(candidates, isOld);
     }
-    std::erase_if(glsl_, [](const auto& entry) { return entry.second.empty(); });
+    std::erase_if(texts_, [](const auto& entry) { return entry.second.empty(); });
     std::erase_if(modules_, [&](const auto& entry) { return isOld(entry.second); });
     ++run_;
 }
@@ -139,40 +261,29 @@ std::shared_ptr<ModuleSource> makeHead(const ModuleSource& module, std::vector<s
 }
 
 void ModuleDrafts::add(std::shared_ptr<ModuleSource> module, std::string origin, std::string text,
-                       const SourceSet& own) {
-    drafts_.push_back({std::move(module), std::move(origin), std::move(text), &own});
+                       std::shared_ptr<const SourceSet> own) {
+    drafts_.push_back(
+        {std::move(module), std::make_shared<const ModuleTemplate>(ModuleTemplate{
+                                std::move(origin), std::move(text), {std::move(own), sources_}})});
 }
 
 Status ModuleDrafts::finish(const Draft& draft) const {
-    const IncludedFiles files(*draft.own, sources_);
-    ModuleSource& module = *draft.module;
-    module.glsl = warm_ == nullptr ? nullptr : warm_->findGlsl(draft.origin, draft.text, files);
-    if (module.glsl) {
+    const std::shared_ptr<const ModuleTemplate>& made = draft.made;
+    const std::optional<TextHash> known = warm_.findText(*made, cache_);
+    if (known && !all_) {
+        draft.module->glsl = std::make_shared<const ModuleGlsl>(*known, [made] { return made->make(); });
         return okStatus();
     }
-    WarmModules::Read read;
-    const SourceLookup lookup = [&](std::string_view name) {
-        if (warm_ != nullptr) {
-            read.emplace_back(name, files.markOf(name));
-        }
-        return files.find(name);
-    };
-    GLINT_TRY(const auto flattened, flatten(draft.origin, draft.text, lookup, FlattenSide::Glsl));
-    GlslUnit unit = dropUnused(cutDecided(flattened));
-    std::string essential = essentialText(unit.text());
-    module.glsl = std::make_shared<const PreparedGlsl>(std::move(unit), std::move(essential));
-    if (warm_ != nullptr) {
-        std::ranges::sort(read);
-        read.erase(std::unique(read.begin(), read.end()), read.end());
-        warm_->putGlsl(draft.origin, draft.text, std::move(read), files, module.glsl);
+    std::vector<std::uint64_t> sources;
+    GLINT_TRY(auto unit, made->make(known ? nullptr : &sources));
+    draft.module->glsl = std::make_shared<const ModuleGlsl>(std::move(unit));
+    if (!known) {
+        warm_.putText(*made, std::move(sources), draft.module->glsl->hash(), cache_);
     }
     return okStatus();
 }
 
 Status ModuleDrafts::finish(int jobs) {
-    if (warm_ != nullptr) {
-        warm_->takeSources(sources_);
-    }
     std::vector<Status> results(drafts_.size(), okStatus());
     base::runParallel(drafts_.size(), jobs, [&](std::size_t i) {
         results[i] = finish(drafts_[i]);

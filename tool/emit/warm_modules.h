@@ -16,6 +16,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,25 +27,36 @@ namespace glint::compiler {
 // The files that modules include: those of one set hide those of another.
 class IncludedFiles {
 public:
-    // Both must outlive this.
-    IncludedFiles(const SourceSet& own, const SourceSet& others) : own_(own), others_(others) {}
+    IncludedFiles(std::shared_ptr<const SourceSet> own, std::shared_ptr<const SourceSet> others)
+        : own_(std::move(own)), others_(std::move(others)) {}
 
     std::optional<std::string_view> find(std::string_view name) const {
-        const std::optional<std::string_view> found = own_.find(name);
-        return found ? found : others_.find(name);
+        return setOf(name).find(name);
     }
-    std::optional<std::uint64_t> markOf(std::string_view name) const {
-        const std::optional<std::uint64_t> found = own_.markOf(name);
-        return found ? found : others_.markOf(name);
+    const SourceSet::Items* itemsOf(std::string_view name) const {
+        return setOf(name).itemsOf(name);
     }
-    // Returns SourceSet::mark() of those that hide others.
-    std::uint64_t markOfOwn() const {
-        return own_.mark();
-    }
+    // Returns a number that differs between states of the sources, each by its sourceNumber().
+    std::uint64_t stateOf(std::span<const std::uint64_t> sources) const;
 
 private:
-    const SourceSet& own_;
-    const SourceSet& others_;
+    const SourceSet& setOf(std::string_view name) const {
+        return own_->find(name) ? *own_ : *others_;
+    }
+
+    std::shared_ptr<const SourceSet> own_;
+    std::shared_ptr<const SourceSet> others_;
+};
+
+// A text from which the GLSL of a module is made.
+struct ModuleTemplate {
+    std::string origin;  // names it in messages
+    std::string text;
+    IncludedFiles files;
+
+    // Flattens and prunes. `sources`, which may be null, gets the numbers of all sources that decide about
+    // the result, ascending. Has the errors of flatten().
+    Result<GlslUnit> make(std::vector<std::uint64_t>* sources = nullptr) const;
 };
 
 // A compiled module with the hash of its bytes.
@@ -56,24 +68,20 @@ struct HashedModule {
     std::uint64_t hash = 0;
 };
 
-// Keeps the GLSL and the SPIR-V of modules whose inputs stay the same from run to run. A module's GLSL is
-// found by the text that it starts with and the contents of every file that it included, by name; its SPIR-V
-// by the hash of the text that makeModuleText() makes. Files are compared by a 64-bit hash. What a run has
-// not used for kRuns runs is dropped. Thread-safe but for endRun().
+// Keeps what follows from inputs that stay the same from run to run: the hash of a module's GLSL, by the text
+// that it starts with and the state of every source that it is made of; and SPIR-V, by the hash of the text
+// that makeModuleText() makes. Sources are compared by a 64-bit hash. What a run has not used for kRuns runs
+// is dropped. Thread-safe but for endRun().
 class WarmModules {
 public:
     static constexpr std::uint64_t kRuns = 8;
 
-    // The files that a module asked for, by name, each with SourceSet::markOf() of it.
-    using Read = std::vector<std::pair<std::string, std::optional<std::uint64_t>>>;
-
-    // Takes the files that the modules of a run share. Call it before those are looked up.
-    void takeSources(const SourceSet& sources);
-    // Returns what was put for the same text, name and included files.
-    std::shared_ptr<const PreparedGlsl> findGlsl(std::string_view name, std::string_view text,
-                                                 const IncludedFiles& files);
-    void putGlsl(std::string_view name, std::string_view text, Read read, const IncludedFiles& files,
-                 std::shared_ptr<const PreparedGlsl> glsl);
+    // Returns the hash that was put for the same template and the same state of its sources, by this object
+    // or by another process with the same `cache`, which may be null.
+    std::optional<TextHash> findText(const ModuleTemplate& made, const ModuleCache* cache);
+    // `sources` are those of ModuleTemplate::make().
+    void putText(const ModuleTemplate& made, std::vector<std::uint64_t> sources, const TextHash& text,
+                 const ModuleCache* cache);
 
     // Returns null if there is none.
     std::shared_ptr<const HashedModule> findModule(const TextHash& text);
@@ -87,16 +95,18 @@ public:
     void endRun();
 
 private:
-    using Key = TextHash;
-    struct Glsl {
-        Read read;  // ascending
-        std::shared_ptr<const PreparedGlsl> glsl;
+    // What a template has made of some sources in one state.
+    struct Text {
+        std::vector<std::uint64_t> sources;
+        std::uint64_t state = 0;  // IncludedFiles::stateOf() them
+        TextHash text;
         std::uint64_t used = 0;  // run
-        // The files were these when it was used.
-        std::uint64_t own = 0;      // IncludedFiles::markOfOwn()
-        std::uint64_t sources = 0;  // number of takeSources()
     };
-    bool isOf(const Glsl& candidate, const IncludedFiles& files) const;
+    using Texts = std::list<Text>;  // the latest first
+    static TextHash keyOf(const ModuleTemplate& made);
+    static std::string pack(const Texts& texts);
+    static Texts unpack(std::string_view bytes);
+
     struct Module {
         std::shared_ptr<const HashedModule> module;
         std::uint64_t used = 0;
@@ -104,12 +114,8 @@ private:
 
     std::mutex mutex_;
     std::uint64_t run_ = 0;
-    std::uint64_t sources_ = 0;                                   // how often they were taken
-    std::vector<std::pair<std::string, std::uint64_t>> marks_;    // of the last ones
-    std::vector<std::pair<std::string, std::uint64_t>> changed_;  // marks before and after
-    // Several texts of included files for one text of a module, the latest first.
-    std::map<Key, std::list<Glsl>> glsl_;
-    std::map<Key, Module> modules_;
+    std::map<TextHash, Texts> texts_;
+    std::map<TextHash, Module> modules_;
     std::optional<MaterialCodeOfCases> codeOfCases_;
 };
 
@@ -129,29 +135,32 @@ std::shared_ptr<ModuleSource> makeHead(const ModuleSource& module, std::vector<s
 
 class ModuleDrafts {
 public:
-    // `sources` and `warm`, which may be null, must outlive this.
-    ModuleDrafts(const SourceSet& sources, WarmModules* warm) : sources_(sources), warm_(warm) {}
+    // `warm` and `cache`, which may be null, must outlive this. With `all`, every text is made, also one
+    // whose hash is known.
+    ModuleDrafts(std::shared_ptr<const SourceSet> sources, WarmModules& warm, const ModuleCache* cache,
+                 bool all)
+        : sources_(std::move(sources)), warm_(warm), cache_(cache), all_(all) {}
 
-    // Will make the GLSL of `module` from `text`, whose includes are found in `own` before `sources`. `own`
-    // must outlive this. `origin` names the text in messages.
+    // Will give `module` the GLSL of `text`, whose includes are found in `own` before the common sources.
+    // `origin` names the text in messages.
     void add(std::shared_ptr<ModuleSource> module, std::string origin, std::string text,
-             const SourceSet& own);
+             std::shared_ptr<const SourceSet> own);
 
-    // Makes the GLSL of all that was added, on at most `jobs` threads (0: one for each core). Has the errors
-    // of flatten(), of the first module that has one.
+    // Gives GLSL to all that was added, on at most `jobs` threads (0: one for each core). Has the errors of
+    // flatten(), of the first module that has one.
     Status finish(int jobs);
 
 private:
     struct Draft {
         std::shared_ptr<ModuleSource> module;
-        std::string origin;
-        std::string text;
-        const SourceSet* own = nullptr;
+        std::shared_ptr<const ModuleTemplate> made;
     };
     Status finish(const Draft& draft) const;
 
-    const SourceSet& sources_;
-    WarmModules* warm_;
+    std::shared_ptr<const SourceSet> sources_;
+    WarmModules& warm_;
+    const ModuleCache* cache_;
+    bool all_;
     std::vector<Draft> drafts_;
 };
 

@@ -182,9 +182,7 @@ Status addRunTimeValues(const Document& document, Scene& scene) {
         const materials::Material& rest = scene.materials[static_cast<std::size_t>(edited.material)];
         if (scene.animatedMaterials.empty() || scene.animatedMaterials.back().material != edited.material) {
             scene.animatedMaterials.push_back({edited.material, rest, rest, {}});
-            for (const double value : rest.values) {
-                scene.animatedMaterials.back().planned.ranges.push_back({value, value});
-            }
+            scene.animatedMaterials.back().planned.ranges = rangesOf(rest);
         }
         AnimatedMaterial& animated = scene.animatedMaterials.back();
         const materials::Parameter& parameter =

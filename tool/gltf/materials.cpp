@@ -205,19 +205,19 @@ std::string rangeHint(const materials::Parameter& parameter) {
 void readParameter(const ObjectSource& object, const materials::Parameter& parameter,
                    materials::Material& material) {
     const Json* const json = findBelow(object.json, parameter.place);
-    const auto target = material.values.begin() + parameter.first;
     if (json == nullptr) {
         // An object that replaces another one has defaults of its own.
         if (parameter.aliasOf >= 0) {
-            std::ranges::copy(parameter.fallback, target);
+            std::ranges::copy(parameter.fallback, material.values.of(parameter).begin());
         }
         return;
     }
+    const std::span<double> target = material.values.of(parameter);
     std::vector<double> numbers;
     readValue(parameter, *json, numbers);  // checkDocument() has checked it
     for (std::size_t i = 0; i < numbers.size(); ++i) {
         const double number = numbers[i];
-        target[static_cast<std::ptrdiff_t>(i)] = parameter.hold(number);
+        target[i] = parameter.hold(number);
         if (!parameter.isValid(number)) {
             object.document.warn(
                 "material-range",
@@ -273,7 +273,7 @@ void readParameters(Document& document, const Json& json, const Objects& objects
             if (material.reads(object)) {
                 const materials::Parameter& parameter =
                     model.parameters[static_cast<std::size_t>(setting.parameter)];
-                std::ranges::copy(setting.numbers, material.values.begin() + parameter.first);
+                std::ranges::copy(setting.numbers, material.values.of(parameter).begin());
             }
         }
     }

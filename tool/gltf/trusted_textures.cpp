@@ -139,7 +139,7 @@ std::optional<Constant> constantOf(const materials::Material& material,
 }
 
 void fold(materials::Material& material, int slot, const Constant& constant) {
-    std::vector<bool> isScaled(material.values.size());
+    std::vector<bool> isScaled(material.model().defaults.size());
     for (const materials::Parameter& parameter : material.model().parameters) {
         if (parameter.scaledBy != slot || !material.reads(parameter.object)) {
             continue;
@@ -149,8 +149,9 @@ void fold(materials::Material& material, int slot, const Constant& constant) {
             const int channel = parameter.scaledByChannels[static_cast<std::size_t>(i)];
             if (channel >= 0 && !isScaled[place]) {
                 // As a device multiplies them.
-                material.values[place] = static_cast<float>(material.values[place]) *
-                                         static_cast<float>(constant[static_cast<std::size_t>(channel)]);
+                double& number = material.values.of(parameter)[static_cast<std::size_t>(i)];
+                number = static_cast<float>(number) *
+                         static_cast<float>(constant[static_cast<std::size_t>(channel)]);
                 isScaled[place] = true;
             }
         }

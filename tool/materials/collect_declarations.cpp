@@ -344,8 +344,8 @@ void ModelBuilder::addParameter(const File& file, const Members& members) {
     }
     refuseWordOfGlsl(members, name);
     Parameter parameter = makeParameter(file, members, name);
-    parameter.first = model_.valueCount;
-    model_.valueCount += parameter.numbers;
+    parameter.first = static_cast<int>(model_.defaults.size());
+    model_.defaults.insert(model_.defaults.end(), parameter.fallback.begin(), parameter.fallback.end());
     if (model_.findParameter(name) >= 0) {
         failAt(members.at("name"), fmt::format("\"{}\" is declared twice", name));
     }

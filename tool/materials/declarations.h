@@ -43,4 +43,8 @@ Result<std::vector<std::filesystem::path>> packFiles(std::span<const std::string
 // texture without asking whether the key has it, or a value that records of its model lack.
 Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> folders);
 
+// Returns the same model with the present contents of some of its files of GLSL, which MaterialModel::files
+// has. It lives as long as the program. Errors: those of readFile(), and "materials-glsl".
+Result<const MaterialModel*> withPresentGlsl(const MaterialModel& model, std::span<const std::string> paths);
+
 }  // namespace glint::materials

@@ -45,25 +45,57 @@ TransformRows rowsOf(const TextureTransform& transform) {
              {-sine * scaleU, cosine * scaleV, transform.offset[1]}}};
 }
 
-Material::Material(const MaterialModel& model)
-    : values(static_cast<std::size_t>(model.valueCount)), model_(&model) {
-    for (const Parameter& parameter : model.parameters) {
-        if (parameter.aliasOf < 0) {
-            std::ranges::copy(parameter.fallback, values.begin() + parameter.first);
+double MaterialValues::operator[](std::size_t place) const {
+    const auto after = set_.upper_bound(place);
+    if (after != set_.begin()) {
+        const auto& [first, numbers] = *std::prev(after);
+        if (place - first < numbers.size()) {
+            return numbers[place - first];
         }
     }
+    return model_->defaults[place];
 }
 
+std::span<const double> MaterialValues::of(const Parameter& parameter) const {
+    const auto first = static_cast<std::size_t>(parameter.first);
+    const auto found = set_.find(first);
+    return found != set_.end()
+               ? std::span<const double>(found->second)
+               : std::span(model_->defaults).subspan(first, static_cast<std::size_t>(parameter.numbers));
+}
+
+std::span<double> MaterialValues::of(const Parameter& parameter) {
+    const auto [place, isNew] = set_.try_emplace(static_cast<std::size_t>(parameter.first));
+    if (isNew) {
+        const auto first = model_->defaults.begin() + parameter.first;
+        place->second.assign(first, first + parameter.numbers);
+    }
+    return place->second;
+}
+
+bool MaterialValues::operator==(const MaterialValues& other) const {
+    return std::ranges::all_of(model_->parameters, [&](const Parameter& parameter) {
+        return std::ranges::equal(of(parameter), other.of(parameter));
+    });
+}
+
+std::vector<ValueInterval> rangesOf(const Material& material) {
+    std::vector<ValueInterval> ranges;
+    for (std::size_t place = 0; place < material.model().defaults.size(); ++place) {
+        const double value = material.values[place];
+        ranges.push_back({value, value});
+    }
+    return ranges;
+}
+
+Material::Material(const MaterialModel& model) : values(model), model_(&model) {}
+
 ParameterValue Material::operator[](std::string_view parameter) {
-    const Parameter& row = parameterOf(*this, parameter);
-    return ParameterValue(std::span(values).subspan(static_cast<std::size_t>(row.first),
-                                                    static_cast<std::size_t>(row.numbers)));
+    return ParameterValue(values.of(parameterOf(*this, parameter)));
 }
 
 ConstParameterValue Material::operator[](std::string_view parameter) const {
-    const Parameter& row = parameterOf(*this, parameter);
-    return ConstParameterValue(std::span(values).subspan(static_cast<std::size_t>(row.first),
-                                                         static_cast<std::size_t>(row.numbers)));
+    return ConstParameterValue(values.of(parameterOf(*this, parameter)));
 }
 
 const TextureInfo& TextureSlots::operator[](std::size_t slot) const {

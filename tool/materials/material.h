@@ -172,7 +172,25 @@ private:
 using ParameterValue = BasicParameterValue<double>;
 using ConstParameterValue = BasicParameterValue<const double>;
 
-// Values are the declared defaults until something sets them. The model must outlive the material.
+// The numbers of a material: floats and whole numbers of 32 bits. A parameter that nothing has set has the
+// declared defaults and takes no memory. The model must outlive them.
+class MaterialValues {
+public:
+    explicit MaterialValues(const MaterialModel& model) : model_(&model) {}
+
+    // `place` counts from Parameter::first.
+    double operator[](std::size_t place) const;
+    std::span<const double> of(const Parameter& parameter) const;
+    // Returns numbers that may be set. They stay where they are until the values are copied.
+    std::span<double> of(const Parameter& parameter);
+    bool operator==(const MaterialValues& other) const;
+
+private:
+    const MaterialModel* model_;
+    std::map<std::size_t, std::vector<double>> set_;  // by Parameter::first
+};
+
+// The model must outlive the material.
 class Material {
 public:
     explicit Material(const MaterialModel& model = builtinMaterialModel());
@@ -180,7 +198,7 @@ public:
     std::string name;
     AlphaMode alphaMode = AlphaMode::Opaque;
     bool doubleSided = false;
-    std::vector<double> values;  // by Parameter::first; floats and whole numbers of 32 bits
+    MaterialValues values;
     TextureSlots textures;
     GivenObjects given;
     // The values that an animation gives each number, by its index in `values`; empty if none changes.
@@ -214,6 +232,9 @@ public:
 private:
     const MaterialModel* model_;
 };
+
+// Returns the numbers of a material as Material::ranges.
+std::vector<ValueInterval> rangesOf(const Material& material);
 
 // Returns the model of a pack whose base the material names, as an index into MaterialModel::models, or -1:
 // one of glTF's. The keys of a material may lack a base that they have a reason to leave out.

@@ -505,7 +505,7 @@ public:
     FeatureMask lobes = 0;                   // features that are lobes
     FeatureMask bases = 0;                   // base models; every hit needs one
     FeatureMask opacity = 0;                 // features with GLSL at the stage opacity
-    int valueCount = 0;                      // length of Material::values
+    std::vector<double> defaults;            // of the numbers of parameters, by Parameter::first
     std::vector<std::array<int, 2>> pairs;   // textures that same() compares
 
     // Each returns the index of that name, or -1.

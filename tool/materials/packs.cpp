@@ -267,12 +267,33 @@ public:
         parsed_ = std::move(parsed);
         return &models_.emplace_back(std::move(*model));
     }
+    // Keeps a copy of `before` that has other GLSL. Error "materials-glsl".
+    Result<const MaterialModel*> add(MaterialModel model, const MaterialModel& before) {
+        const std::lock_guard lock(mutex_);
+        GLINT_TRY_DO(checkSources(model, &before));
+        // The last model has the declarations parsed_.
+        return &before == &models_.back() ? &models_.emplace_back(std::move(model))
+                                          : &models_.emplace_front(std::move(model));
+    }
 
 private:
     std::mutex mutex_;
     std::deque<MaterialModel> models_;
     ParsedDeclarations parsed_;  // the declarations of the last model
 };
+
+KeptModels& keptModels() {
+    static KeptModels kept;
+    return kept;
+}
+
+// Reads a file of a pack. Has the errors of readFile().
+Result<std::string> readPackFile(const fs::path& file, PackFile& read) {
+    GLINT_TRY(const auto bytes, base::readFile(file, kMaxFileBytes));
+    std::string text(bytes.begin(), bytes.end());
+    read = {file.string(), text.size(), base::hashBytes(text), hasExtension(file, ".json")};
+    return text;
+}
 
 }  // namespace
 
@@ -299,19 +320,26 @@ Result<const MaterialModel*> loadMaterialModel(std::span<const std::string> fold
         declarations.push_back({file.name, file.text});
     }
     for (const fs::path& file : files) {
-        GLINT_TRY(const auto bytes, base::readFile(file, kMaxFileBytes));
-        std::string text(bytes.begin(), bytes.end());
-        const bool isDeclaration = hasExtension(file, ".json");
-        read.push_back({file.string(), text.size(), base::hashBytes(text), isDeclaration});
-        if (!isDeclaration) {
+        GLINT_TRY(auto text, readPackFile(file, read.emplace_back()));
+        if (!read.back().isDeclaration) {
             sources.push_back({file.generic_string(), std::move(text)});
         } else {
             declarations.push_back(
                 {names.emplace_back(file.generic_string()), texts.emplace_back(std::move(text)), true});
         }
     }
-    static KeptModels kept;
-    return kept.find(declarations, std::move(sources), std::move(read));
+    return keptModels().find(declarations, std::move(sources), std::move(read));
+}
+
+Result<const MaterialModel*> withPresentGlsl(const MaterialModel& model, std::span<const std::string> paths) {
+    MaterialModel present = model;
+    for (const std::string& path : paths) {
+        const auto read = std::ranges::find(present.files, path, &PackFile::path);
+        const auto source =
+            std::ranges::find(present.sources, fs::path(path).generic_string(), &ModelSource::name);
+        GLINT_TRY(source->text, readPackFile(path, *read));
+    }
+    return keptModels().add(std::move(present), model);
 }
 
 }  // namespace glint::materials

@@ -21,17 +21,12 @@ inline compiler::GlslUnit makeUnit(std::string_view text, std::string_view file,
     return unit;
 }
 
-inline std::shared_ptr<const compiler::PreparedGlsl> makePrepared(compiler::GlslUnit unit) {
-    std::string essential = compiler::essentialText(unit.text());
-    return std::make_shared<const compiler::PreparedGlsl>(std::move(unit), std::move(essential));
-}
-
 // `body` is the body of main(); it can use the buffer data.x. The text after #version begins in line 10.
 inline compiler::ModuleSource makeTinyModule(int shaderId, const std::string& body) {
     return {{package::roleNamed("ShadeCase"), static_cast<std::uint32_t>(shaderId), 0},
             compiler::ShaderStage::Compute,
             "shade_" + std::to_string(shaderId) + ".comp",
-            makePrepared(makeUnit(
+            std::make_shared<const compiler::ModuleGlsl>(makeUnit(
                 "#version 460\n"
                 "layout(local_size_x = 1) in;\nlayout(set = 0, binding = 0) buffer Data { uint x; } data;\n"
                 "void main() {\n" +

@@ -10,6 +10,7 @@
 #include "emit/module_files.h"
 #include "emit/package/compiled_package.h"
 #include "emit/warm_modules.h"
+#include "gltf/import_options.h"
 #include "gltf/scene.h"
 #include "resolve/build.h"
 
@@ -98,7 +99,7 @@ std::optional<CompileSummary> unpackSummary(std::string_view bytes, bool withJso
 
 // The scenes of a run, and all decisions about them.
 struct Resolved {
-    const materials::MaterialModel* model = nullptr;
+    gltf::ImportOptions import;
     std::vector<gltf::Scene> scenes;
     compiler::Build build;
     std::vector<Diagnostic> diagnostics;  // about them

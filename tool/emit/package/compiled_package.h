@@ -3,7 +3,6 @@
 
 #include "base/files.h"
 #include "base/shared_array.h"
-#include "emit/glsl/text.h"
 #include "plan/plan.h"
 #include "spirv/statistics.h"
 
@@ -24,13 +23,15 @@
 
 namespace glint::compiler {
 
+class ModuleGlsl;
+
 // One SPIR-V module of the package. Modules with equal bytes share `file`.
 struct CompiledModule {
     package::ModuleKey key;
     std::string name;  // "uber.comp", "shade_2_BaseTex.comp"; the GLSL file has the same name
     std::string file;  // name within the package: "uber.spv"
     base::SharedArray<std::uint32_t> spirv;
-    std::shared_ptr<const GlslUnit> glsl;
+    std::shared_ptr<const ModuleGlsl> glsl;
     SpirvStatistics statistics;
     std::uint64_t hash = 0;  // of the bytes of `spirv`
     bool compiled = true;    // in this run; false if it was cached or has the text of another module

@@ -177,8 +177,7 @@ std::string notAnimated(const materials::MaterialModel& model, int property) {
 
 bool isFixed(const materials::Material& material, int property) {
     const materials::Parameter* const parameter = parameterOf(material.model(), property);
-    return parameter != nullptr && parameter->also &&
-           material.values[static_cast<std::size_t>(parameter->first)] == *parameter->also;
+    return parameter != nullptr && parameter->also && material.values.of(*parameter)[0] == *parameter->also;
 }
 
 bool takesMaterialValue(const materials::MaterialModel& model, int property, double value) {
@@ -215,8 +214,7 @@ void setMaterialProperty(materials::Material& material, int property, std::span<
     const materials::Parameter* const parameter = parameterOf(material.model(), property);
     for (std::size_t i = 0; i < values.size(); ++i) {
         if (parameter != nullptr) {
-            material.values[static_cast<std::size_t>(parameter->first) + i] =
-                heldValue(*parameter, values[i]);
+            material.values.of(*parameter)[i] = heldValue(*parameter, values[i]);
         } else {
             firstOfTransform(material, property)[i] = static_cast<float>(std::clamp(values[i], -kMax, kMax));
         }
@@ -248,7 +246,7 @@ void settleCamera(Camera& camera) {
 
 double materialPropertyValue(const materials::Material& material, int property, std::size_t number) {
     if (const materials::Parameter* const parameter = parameterOf(material.model(), property)) {
-        return material.values[static_cast<std::size_t>(parameter->first) + number];
+        return material.values.of(*parameter)[number];
     }
     materials::Material copy = material;
     return firstOfTransform(copy, property)[number];
@@ -270,9 +268,7 @@ bool setPropertyRange(materials::Material& material, int property, std::size_t n
         return varies;
     }
     if (material.ranges.empty()) {
-        for (const double value : material.values) {
-            material.ranges.push_back({value, value});
-        }
+        material.ranges = rangesOf(material);
     }
     const bool turns = parameter->isAngle && varies;
     const materials::ValueInterval held{heldValue(*parameter, range.low), heldValue(*parameter, range.high)};
