@@ -314,6 +314,9 @@ struct SceneView {
     // True if GpuScene::editor() will edit the scene. The Package must outlive it. With `moves` poses and
     // edits come side by side.
     bool editable = false;
+    // True if the instances of an editable scene begin sealed, as by SceneEditor::seal(). The BLASes of
+    // single primitives are then built when an instance needs them.
+    bool sealed = false;
     // The number of textures and samplers that an editable scene may have at a time, those of the upload
     // included. The pipelines of its renderers are made for these numbers, so they can't grow. A texture
     // takes a descriptor in each version of the scene's descriptor set.

@@ -221,7 +221,7 @@ void writeEntries(SceneStore& store) {
     };
     store.instanceSlots.forEach([&](InstanceHandle handle, const StoredInstance& instance) {
         const StoredMesh& mesh = *store.meshes.find(instance.mesh);
-        bool changes = false;
+        bool changes = instance.form != nullptr;  // the package may ask for another
         forEachGeometry(
             mesh, instance,
             [&](const TriangleRange& range, const StoredPrimitive& /*primitive*/, std::uint32_t geometry) {

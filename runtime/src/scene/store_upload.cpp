@@ -23,10 +23,12 @@ SceneStore::SceneStore(GpuScene::State& owner, const Package& package, const Sce
       dataAccess(package.positionFetch()),
       buildsTree(package.lightSamples() > 0),
       topLevel(view.moves, leafOrder),
-      emittersDirty(package.emission() != nullptr) {
+      emittersDirty(package.emission() != nullptr),
+      building(owner.context) {
     if (leafOrder != nullptr) {
         capacity = orderedCapacity(capacity);
     }
+    sealedCapacity = capacity;
     if (editable) {
         // A BLAS holds one primitive, whose material may change.
         capacity.geometries = 1;
@@ -82,7 +84,6 @@ public:
             seal();
         }
         GLINT_TRY_DO(createSetLayout(scene_));
-        GLINT_TRY_DO(prepareCompaction(*store_.upload));
         GLINT_TRY_DO(recordChanges(store_, commands, store_.upload->frame));
         finish();
         return okStatus();
@@ -200,8 +201,12 @@ private:
         return okStatus();
     }
 
-    // Returns whether an instance has the mesh's own shape, or none has the mesh.
+    // Returns whether an instance has the mesh's own shape, or none has the mesh. The instances of a scene
+    // that begins sealed get other BLASes.
     bool isShared(std::uint32_t mesh, std::span<const PrimitiveView> own) const {
+        if (store_.editable) {
+            return !view_.sealed;
+        }
         const bool hasJoints =
             std::ranges::any_of(own, [](const auto& view) { return !view.joints.empty(); });
         const bool hasTargets =
@@ -217,7 +222,7 @@ private:
                 }
             }
         }
-        return !isUsed || store_.editable;
+        return !isUsed;
     }
 
     MeshContent contentOf(std::uint32_t first, std::uint32_t end) const {
@@ -288,6 +293,9 @@ private:
             instance.visible = view.visible;
             GLINT_TRY(const auto handle, placeInstance(store_, &package_, std::move(instance), view));
             store_.firstInstances.push_back(handle);
+            if (view_.sealed) {
+                sealInstance(store_, handle);
+            }
             store_.posedShape.instances.push_back({view.mesh, view.joints.size(), view.morphWeights.size()});
             store_.lastRows.push_back(view.objectToWorld);
             store_.lastVisible.push_back(view.visible);
