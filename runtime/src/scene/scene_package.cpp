@@ -273,6 +273,7 @@ void exchange(SceneStore& store, OtherPackage& other) {
     }
     if (other.edited) {
         exchangeTables(store, *other.edited);
+        store.decidedMaterials.clear();
         store.emittersDirty = store.emittersDirty || store.emission.has_value();
     } else {
         std::swap<RecordStore>(store.materials, *other.materials);

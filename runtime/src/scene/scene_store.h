@@ -99,6 +99,7 @@ struct SealedRun {
 // The BLASes of sealed instances of a mesh whose materials part it into the same runs.
 struct SealedForm {
     std::uint32_t number = 0;  // that no other form of the scene has
+    bool decides = false;      // its BLASes rely on StoredPrimitive::split
     std::vector<SealedRun> runs;
     std::uint32_t instances = 0;  // how many have the form
 };
@@ -129,6 +130,9 @@ struct StoredPrimitive {
     std::uint32_t entryIndex = kNoEntry;          // in PackageScene::primitives, if it was uploaded
     std::shared_ptr<const EmitterShape> shape{};  // of a light, or in a scene that is edited
     const DeviceMicromap* micromap = nullptr;     // of a sealed scene
+    // Decided alpha tests of a scene that is edited, with the material of the upload.
+    std::optional<OpacitySplit> split{};
+    MaterialHandle splitMaterial{};
     DeformSource source{};
 };
 
@@ -262,6 +266,8 @@ struct SceneStore : SceneRecords {
     std::set<std::uint32_t> sealing;   // instances, by index, that are to be sealed
     std::set<std::uint32_t> reformed;  // meshes, by index, whose instances may have or lack BLASes
     std::uint32_t lastForm = 0;        // SealedForm::number
+    // Materials, by index, whose alpha is still that by which tests were decided.
+    std::set<std::uint32_t> decidedMaterials;
     bool drawsDirty = false;
     bool lightsDirty = true;     // other lights
     bool lightsMoved = false;    // the same lights with other values
@@ -347,6 +353,8 @@ void countUse(Slots<StoredMaterial, MaterialHandle>& materials, MaterialHandle m
 // Error "scene-geometries".
 Diagnostic tooManyGeometries(const std::string& where);
 
+// Forgets the records after the last geometry.
+void shrinkGeometries(SceneStore& store);
 // Writes the geometry records of an instance, whose materials have been checked.
 void writeGeometries(SceneStore& store, InstanceHandle handle, const StoredInstance& instance);
 // The entry of a primitive of an instance: its key, its shader and its material.
@@ -375,6 +383,12 @@ void forEachPart(const StoredMesh& mesh, const StoredInstance& instance, const V
     }
 }
 
+// The geometry record of a part of an instance, in a scene that is edited, where a part has one.
+inline std::uint32_t geometryOf(const StoredMesh& mesh, const StoredInstance& instance, std::size_t part) {
+    return static_cast<std::uint32_t>(part < mesh.mainParts ? instance.firstGeometry + part
+                                                            : *instance.firstDecided + part - mesh.mainParts);
+}
+
 // Calls visit(range, primitive, geometry) for all geometry records of an instance.
 template <typename Visit>
 void forEachGeometry(const StoredMesh& mesh, const StoredInstance& instance, const Visit& visit) {
@@ -391,8 +405,9 @@ AccelerationStructure* structureAt(SceneStore& store, const PartPlace& place);
 // --- BLASes that instances share (store_blases.cpp) ---
 
 // The input of the build of successive parts. `shape` is that of an instance with one of its own, or null.
+// `decides`: without the triangles whose alpha tests were decided, in a scene that is edited.
 BlasInput inputOf(const SceneStore& store, const StoredMesh& mesh, std::span<const StoredPart> parts,
-                  const OwnShape* shape);
+                  const OwnShape* shape, bool decides = false);
 // Makes the structure of a BLAS, and gives the build its destination.
 Status makeStructure(SceneStore& store, BlasBuild& build, bool isCompacted, AccelerationStructure& made);
 // Takes a structure out of its place. One that waits to be built is not built.
@@ -401,7 +416,12 @@ AccelerationStructure takeStructure(SceneStore& store, AccelerationStructure& pl
 Status openMesh(SceneStore& store, MeshHandle handle, StoredMesh& mesh);
 // Lets the next recording seal an instance, if it can be.
 void sealInstance(SceneStore& store, InstanceHandle handle);
-// Unseals the instance if its parts are no longer seen alike where they share a BLAS.
+// Returns whether rays stop at a part of an instance, where the TLAS has to say so.
+bool isOpaque(const SceneStore& store, const StoredInstance& instance, std::size_t part);
+// Unseals instances that rely on the alpha of a material.
+void forgetDecisions(SceneStore& store, std::uint32_t material);
+// Unseals the instance if its parts are no longer seen alike where they share a BLAS, or alpha tests are open
+// again.
 void checkSeal(SceneStore& store, StoredInstance& instance);
 // Takes the instance's form away, if it has one.
 void leaveForm(SceneStore& store, StoredInstance& instance);
@@ -441,6 +461,8 @@ Diagnostic noRoomForSampler(const SceneStore& store);
 // Writes into a record of this layout which textures it has. They and their samplers must be there.
 void settleTextures(const SceneStore& store, const MaterialTable& layout,
                     std::span<const SceneEditor::TextureUse> uses, std::span<std::uint8_t> record);
+// The instances that show the material, by index.
+std::set<std::uint32_t> instancesWith(const SceneStore& store, const StoredMaterial& material);
 // The material of a primitive of an instance.
 MaterialHandle materialOf(const SceneStore& store, const StoredInstance& instance, std::size_t primitive);
 // Writes a material's record. Lights follow if its emission has changed.

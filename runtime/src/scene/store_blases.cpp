@@ -8,16 +8,28 @@
 #include <utility>
 
 namespace glint {
+namespace {
+
+// How many triangles of a range are in a BLAS that relies on decided alpha tests. Those that are opaque have
+// a range of their own, unless all of the others let every ray through.
+std::uint32_t undecided(const StoredPrimitive& primitive, const TriangleRange& range) {
+    if (!primitive.split || range.drawn == 0) {
+        return range.count;
+    }
+    return primitive.split->tested > 0 ? primitive.split->tested : primitive.split->opaque;
+}
+
+}  // namespace
 
 BlasInput inputOf(const SceneStore& store, const StoredMesh& mesh, std::span<const StoredPart> parts,
-                  const OwnShape* shape) {
+                  const OwnShape* shape, bool decides) {
     BlasInput input;
     input.dataAccess = store.dataAccess;
     input.updatable = (shape != nullptr && store.keeps()) || mesh.changes;
     const auto add = [&](const TriangleRange& range) {
         const StoredPrimitive& primitive = mesh.primitives[range.primitive];
-        BlasGeometry& geometry =
-            input.geometries.emplace_back(blasGeometry(primitive.device, range.first, range.count));
+        BlasGeometry& geometry = input.geometries.emplace_back(
+            blasGeometry(primitive.device, range.first, decides ? undecided(primitive, range) : range.count));
         if (shape != nullptr && shape->vertices[range.primitive].positions != 0) {
             geometry.positions = shape->vertices[range.primitive].positions;
         }
@@ -87,7 +99,7 @@ void closeMesh(SceneStore& store, StoredMesh& mesh) {
 }
 
 Status openParts(SceneStore& store, MeshHandle handle, StoredMesh& mesh) {
-    for (std::uint32_t i = 0; i < mesh.parts.size(); ++i) {
+    for (std::uint32_t i = 0; i < mesh.mainParts; ++i) {
         StoredPart& part = mesh.parts[i];
         BlasBuild build = describeBuild(store.scene.context,
                                         inputOf(store, mesh, std::span(mesh.parts).subspan(i, 1), nullptr));
@@ -119,13 +131,6 @@ Status openMesh(SceneStore& store, MeshHandle handle, StoredMesh& mesh) {
 
 namespace {
 
-// What the instances of the TLAS say of a BLAS, as flags of geometries.
-std::uint32_t lookOf(const SceneStore& store, std::uint32_t geometry) {
-    const std::uint32_t flags = store.geometries.read<gpu::GeometryRecord>(geometry).flags;
-    const bool opaque = (flags & (gpu::kGeometryAlphaTested | gpu::kGeometryPassesLight)) == 0;
-    return (flags & gpu::kGeometryDoubleSided) | (opaque ? 0 : gpu::kGeometryAlphaTested);
-}
-
 // Returns whether a BLAS may have several primitives. Strategies with a pipeline of their own find the shader
 // of a hit by the instance of the TLAS.
 bool mayJoin(const SceneStore& store) {
@@ -135,18 +140,64 @@ bool mayJoin(const SceneStore& store) {
            (store.cases->package().shape().strategies & package::pipelineStrategies()) == 0;
 }
 
+// Returns whether the instance has the materials with which alpha tests of its mesh were decided.
+bool isDecided(const SceneStore& store, const StoredInstance& instance) {
+    const std::vector<StoredPrimitive>& primitives = store.meshes.find(instance.mesh)->primitives;
+    bool decided = false;
+    for (std::size_t i = 0; i < primitives.size(); ++i) {
+        if (primitives[i].split) {
+            decided = true;
+            if (!store.decidedMaterials.contains(primitives[i].splitMaterial.index) ||
+                materialOf(store, instance, i) != primitives[i].splitMaterial) {
+                return false;
+            }
+        }
+    }
+    return decided;
+}
+
+// The properties of a part that the TLAS has for its BLAS.
+struct Look {
+    bool doubleSided = false;
+    bool opaque = false;
+
+    bool operator==(const Look&) const = default;
+};
+
+Look lookOf(const SceneStore& store, const StoredInstance& instance, std::size_t part, bool decides) {
+    const StoredMesh& mesh = *store.meshes.find(instance.mesh);
+    const bool isApart = part >= mesh.mainParts;
+    const std::uint32_t number = mesh.parts[part].ranges.front().primitive;
+    if (isApart) {
+        // The other triangles of the primitive have the same material, and a record before the instance is
+        // sealed.
+        part = 0;
+        while (mesh.parts[part].ranges.front().primitive != number) {
+            ++part;
+        }
+    }
+    const std::uint32_t flags =
+        store.geometries.read<gpu::GeometryRecord>(geometryOf(mesh, instance, part)).flags;
+    const std::optional<OpacitySplit>& split = mesh.primitives[number].split;
+    const bool isDecided = decides && split && (isApart || split->tested == 0);
+    return {(flags & gpu::kGeometryDoubleSided) != 0,
+            isDecided || (flags & (gpu::kGeometryAlphaTested | gpu::kGeometryPassesLight)) == 0};
+}
+
 // Successive parts of an instance that are seen alike, as the ends of runs of them.
-std::vector<std::uint32_t> runsOf(const SceneStore& store, const StoredInstance& instance) {
+std::vector<std::uint32_t> runsOf(const SceneStore& store, const StoredInstance& instance, bool decides) {
     const StoredMesh& mesh = *store.meshes.find(instance.mesh);
     const bool joinsAny = mayJoin(store);
+    const std::size_t parts = decides ? mesh.parts.size() : mesh.mainParts;
     std::vector<std::uint32_t> ends;
+    std::optional<Look> last;
     std::uint64_t triangles = 0;
-    for (std::uint32_t i = 0; i < mesh.parts.size(); ++i) {
-        // A part of a scene that is edited has one range.
-        const std::uint32_t geometry = instance.firstGeometry + i;
+    for (std::uint32_t i = 0; i < parts; ++i) {
         const std::uint64_t added = mesh.parts[i].ranges.front().count;
         const std::uint32_t first = ends.size() < 2 ? 0 : ends[ends.size() - 2];
-        const bool joins = i > 0 && joinsAny && lookOf(store, geometry - 1) == lookOf(store, geometry) &&
+        const Look look = lookOf(store, instance, i, decides);
+        // The records of decided triangles do not follow the others.
+        const bool joins = joinsAny && last == look && i != mesh.mainParts &&
                            i - first < store.sealedCapacity.geometries &&
                            triangles + added <= store.sealedCapacity.triangles;
         if (!joins) {
@@ -155,12 +206,19 @@ std::vector<std::uint32_t> runsOf(const SceneStore& store, const StoredInstance&
         }
         ends.back() = i + 1;
         triangles += added;
+        last = look;
     }
     return ends;
 }
 
-bool hasRuns(const SealedForm& form, std::span<const std::uint32_t> ends) {
-    return std::ranges::equal(form.runs, ends, {}, &SealedRun::end);
+bool isOfRuns(const SealedForm& form, std::span<const std::uint32_t> ends, bool decides) {
+    return form.decides == decides && std::ranges::equal(form.runs, ends, {}, &SealedRun::end);
+}
+
+// How many BLASes of the form have several primitives.
+std::uint32_t joinedIn(const SealedForm& form) {
+    return static_cast<std::uint32_t>(
+        std::ranges::count_if(form.runs, [](const SealedRun& run) { return run.end - run.first > 1; }));
 }
 
 // Brings the inputs of a mesh's builds to the device again. Those of an upload are still there.
@@ -195,7 +253,8 @@ Status fillForm(SceneStore& store, MeshHandle handle, StoredMesh& mesh, std::spa
         for (const StoredPart& part : parts) {
             run.box.extend(part.box);
         }
-        BlasBuild build = describeBuild(store.scene.context, inputOf(store, mesh, parts, nullptr));
+        BlasBuild build =
+            describeBuild(store.scene.context, inputOf(store, mesh, parts, nullptr, form.decides));
         GLINT_TRY_DO(makeStructure(store, build, true, run.blas));
         queueBuild(
             store, std::move(build),
@@ -204,18 +263,19 @@ Status fillForm(SceneStore& store, MeshHandle handle, StoredMesh& mesh, std::spa
     return okStatus();
 }
 
-Status makeForm(SceneStore& store, MeshHandle handle, std::span<const std::uint32_t> ends) {
+Status makeForm(SceneStore& store, MeshHandle handle, std::span<const std::uint32_t> ends, bool decides) {
     StoredMesh& mesh = *store.meshes.find(handle);
     GLINT_TRY_DO(uploadInputs(store, mesh));
     auto form = std::make_unique<SealedForm>();
     form->number = ++store.lastForm;
+    form->decides = decides;
     if (Status status = fillForm(store, handle, mesh, ends, *form); !status) {
         for (SealedRun& run : form->runs) {
             takeStructure(store, run.blas);
         }
         return status;
     }
-    store.scene.joinedBlases += static_cast<std::uint32_t>(ends.size());
+    store.scene.joinedBlases += joinedIn(*form);
     mesh.forms.push_back(std::move(form));
     return okStatus();
 }
@@ -226,25 +286,34 @@ void unplace(SceneStore& store, const StoredInstance& instance) {
                 [&](std::size_t /*part*/, std::uint32_t geometry) { store.topLevel.remove(geometry); });
 }
 
-Status takeForm(SceneStore& store, StoredInstance& instance) {
+Status takeForm(SceneStore& store, InstanceHandle handle) {
+    StoredInstance& instance = store.instanceSlots.at(handle.index);
     StoredMesh& mesh = *store.meshes.find(instance.mesh);
     if (instance.form != nullptr || instance.shape != nullptr || mesh.changes) {
         return okStatus();
     }
-    const std::vector<std::uint32_t> ends = runsOf(store, instance);
-    if (ends.size() == mesh.parts.size()) {
+    const bool decides =
+        isDecided(store, instance) && store.geometryRuns.end() <= kMostGeometries - mesh.decidedCount;
+    const std::vector<std::uint32_t> ends = runsOf(store, instance, decides);
+    if (ends.size() == mesh.mainParts && !decides) {
         return okStatus();
     }
     const auto find = [&] {
-        return std::ranges::find_if(mesh.forms, [&](const auto& form) { return hasRuns(*form, ends); });
+        return std::ranges::find_if(mesh.forms,
+                                    [&](const auto& form) { return isOfRuns(*form, ends, decides); });
     };
     if (find() == mesh.forms.end()) {
-        GLINT_TRY_DO(makeForm(store, instance.mesh, ends));
+        GLINT_TRY_DO(makeForm(store, instance.mesh, ends, decides));
     }
+    unplace(store, instance);
     instance.form = find()->get();
     ++instance.form->instances;
     store.reformed.insert(instance.mesh.index);
-    unplace(store, instance);
+    if (decides && mesh.decidedCount > 0) {
+        instance.firstDecided = store.geometryRuns.allocate(mesh.decidedCount);
+        store.scene.statistics.geometries += mesh.decidedCount;
+        writeGeometries(store, handle, instance);
+    }
     placeParts(store, instance);
     return okStatus();
 }
@@ -287,26 +356,39 @@ void retireForm(SceneStore& store, SealedForm& form) {
     for (SealedRun& run : form.runs) {
         store.retired.add(takeStructure(store, run.blas));
     }
-    store.scene.joinedBlases -= static_cast<std::uint32_t>(form.runs.size());
+    store.scene.joinedBlases -= joinedIn(form);
 }
 
 void leaveForm(SceneStore& store, StoredInstance& instance) {
-    if (instance.form != nullptr) {
-        --instance.form->instances;
-        instance.form = nullptr;
-        store.reformed.insert(instance.mesh.index);
+    if (instance.form == nullptr) {
+        return;
     }
+    --instance.form->instances;
+    instance.form = nullptr;
+    store.reformed.insert(instance.mesh.index);
+    if (instance.firstDecided) {
+        const std::uint32_t count = store.meshes.find(instance.mesh)->decidedCount;
+        store.geometryRuns.release(*instance.firstDecided, count);
+        store.scene.statistics.geometries -= count;
+        instance.firstDecided.reset();
+        shrinkGeometries(store);
+    }
+}
+
+bool isOpaque(const SceneStore& store, const StoredInstance& instance, std::size_t part) {
+    return lookOf(store, instance, part, instance.form != nullptr && instance.form->decides).opaque;
 }
 
 void checkSeal(SceneStore& store, StoredInstance& instance) {
     if (instance.form == nullptr) {
         return;
     }
-    bool fits = instance.shape == nullptr && mayJoin(store);
-    for (const SealedRun& run : instance.form->runs) {
+    const SealedForm& form = *instance.form;
+    bool fits = instance.shape == nullptr && (joinedIn(form) == 0 || mayJoin(store)) &&
+                (!form.decides || isDecided(store, instance));
+    for (const SealedRun& run : form.runs) {
         for (std::uint32_t i = run.first + 1; i < run.end && fits; ++i) {
-            const std::uint32_t geometry = instance.firstGeometry + i;
-            fits = lookOf(store, geometry - 1) == lookOf(store, geometry);
+            fits = lookOf(store, instance, i - 1, form.decides) == lookOf(store, instance, i, form.decides);
         }
     }
     if (!fits) {
@@ -315,9 +397,20 @@ void checkSeal(SceneStore& store, StoredInstance& instance) {
     }
 }
 
+void forgetDecisions(SceneStore& store, std::uint32_t material) {
+    if (store.decidedMaterials.erase(material) == 0) {
+        return;
+    }
+    for (const std::uint32_t index : instancesWith(store, store.materialSlots.at(material))) {
+        StoredInstance& instance = store.instanceSlots.at(index);
+        checkSeal(store, instance);
+        placeParts(store, instance);
+    }
+}
+
 Status settleBlases(SceneStore& store) {
     for (; !store.sealing.empty(); store.sealing.erase(store.sealing.begin())) {
-        GLINT_TRY_DO(takeForm(store, store.instanceSlots.at(*store.sealing.begin())));
+        GLINT_TRY_DO(takeForm(store, store.instanceSlots.handleAt(*store.sealing.begin())));
     }
     for (; !store.reformed.empty(); store.reformed.erase(store.reformed.begin())) {
         if (const std::uint32_t mesh = *store.reformed.begin(); store.meshes.has(mesh)) {

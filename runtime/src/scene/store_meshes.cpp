@@ -43,6 +43,7 @@ Status makePrimitive(SceneStore& store, const Package& package, const MeshConten
     GLINT_TRY(made.source, uploadDeformSource(scene.context, sources, *store.uploader, view));
     if (store.editable) {
         made.attributes = attributesOf(package, view);
+        made.split = content.splits.empty() ? std::nullopt : content.splits[index];
     }
     if (store.editable || (made.entry.geometryFlags & gpu::kGeometryEmitter) != 0) {
         made.shape =
@@ -61,7 +62,14 @@ std::vector<MeshPart> partsOf(const SceneStore& store, const StoredMesh& mesh, c
             primitive.split = content.splits.empty() ? std::nullopt : content.splits[i];
         }
     }
-    return partitionMesh(parted, store.capacity);
+    std::vector<MeshPart> parts = partitionMesh(parted, store.capacity);
+    // Sealed instances have these beside the others, whose triangles are then fewer.
+    for (std::uint32_t i = 0; i < mesh.primitives.size() && store.editable; ++i) {
+        if (const auto& split = mesh.primitives[i].split; split && split->tested > 0 && split->opaque > 0) {
+            parts.push_back({false, {{i, split->tested, split->opaque, 0, true}}});
+        }
+    }
+    return parts;
 }
 
 // The box around the triangles of a part that the BLAS has.
@@ -264,8 +272,8 @@ void unlink(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
     StoredMesh& mesh = *store.meshes.find(instance.mesh);
     forEachPart(mesh, instance,
                 [&](std::size_t /*part*/, std::uint32_t geometry) { store.topLevel.remove(geometry); });
-    countRecords(store, instance, false);
     leaveForm(store, instance);
+    countRecords(store, instance, false);
     store.sealing.erase(index);
     noteUse(store, instance);
     store.draws.set(index, {});
@@ -284,8 +292,7 @@ void unlink(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
 }
 
 void shrinkRecords(SceneStore& store) {
-    store.geometries.shrink(store.geometryRuns.end());
-    store.firstEmitters.shrink(store.geometryRuns.end());
+    shrinkGeometries(store);
     store.instances.shrink(store.instanceSlots.end());
 }
 
@@ -301,12 +308,13 @@ Status fillShape(SceneStore& store, const StoredMesh& mesh, OwnShape& shape) {
             GLINT_TRY(vertices, createDeformedVertices(scene.context, scene.pool, primitive.device));
         }
     }
-    for (std::size_t part = 0; part < mesh.parts.size(); ++part) {
+    const std::size_t parts = store.editable ? mesh.mainParts : mesh.parts.size();
+    for (std::size_t part = 0; part < parts; ++part) {
         BlasBuild& build = shape.builds.emplace_back(describeBuild(
             scene.context, inputOf(store, mesh, std::span(mesh.parts).subspan(part, 1), &shape)));
         GLINT_TRY_DO(makeStructure(store, build, !store.keeps(), shape.blases.emplace_back()));
     }
-    shape.histories.resize(mesh.parts.size());
+    shape.histories.resize(parts);
     return okStatus();
 }
 
@@ -387,20 +395,20 @@ gpu::GeometryRecord recordAt(const SceneStore& store, const StoredInstance& inst
     return record;
 }
 
-// A BLAS of a scene that is edited is opaque, and seen from both sides, if the material of its geometry says
-// so.
+// A BLAS of a scene that is edited is seen from both sides if the material of its geometry says so.
 VkAccelerationStructureInstanceKHR placedAt(const SceneStore& store, const StoredInstance& instance,
-                                            bool doubleSided, VkDeviceAddress blas, std::uint32_t geometry) {
+                                            std::size_t part, VkDeviceAddress blas, std::uint32_t geometry) {
     if (!store.editable) {
+        const bool doubleSided = store.meshes.find(instance.mesh)->parts[part].doubleSided;
         return makePlaced(doubleSided, geometry, instance.objectToWorld, blas);
     }
     const auto record = store.geometries.read<gpu::GeometryRecord>(geometry);
     VkAccelerationStructureInstanceKHR placed =
         makePlaced((record.flags & gpu::kGeometryDoubleSided) != 0, geometry, instance.objectToWorld, blas);
-    const bool opaque = (record.flags & (gpu::kGeometryAlphaTested | gpu::kGeometryPassesLight)) == 0;
     const std::uint32_t flags =
-        placed.flags | static_cast<std::uint32_t>(opaque ? VK_GEOMETRY_INSTANCE_FORCE_OPAQUE_BIT_KHR
-                                                         : VK_GEOMETRY_INSTANCE_FORCE_NO_OPAQUE_BIT_KHR);
+        placed.flags | static_cast<std::uint32_t>(isOpaque(store, instance, part)
+                                                      ? VK_GEOMETRY_INSTANCE_FORCE_OPAQUE_BIT_KHR
+                                                      : VK_GEOMETRY_INSTANCE_FORCE_NO_OPAQUE_BIT_KHR);
     placed.flags = flags & 0xFFU;
     // The shader binding table has a record for each shader ID.
     placed.instanceShaderBindingTableRecordOffset = record.shaderId & 0xFFFFFFU;
@@ -423,6 +431,11 @@ package::PrimitiveEntry entryOf(const SceneStore& store, const StoredInstance& i
     entry.key = shading.features;
     entry.geometryFlags = shading.geometryFlags;
     return entry;
+}
+
+void shrinkGeometries(SceneStore& store) {
+    store.geometries.shrink(store.geometryRuns.end());
+    store.firstEmitters.shrink(store.geometryRuns.end());
 }
 
 void writeGeometries(SceneStore& store, InstanceHandle handle, const StoredInstance& instance) {
@@ -450,25 +463,25 @@ void writeGeometries(SceneStore& store, InstanceHandle handle, const StoredInsta
 void placeParts(SceneStore& store, const StoredInstance& instance) {
     const StoredMesh& mesh = *store.meshes.find(instance.mesh);
     const bool isPlaced = instance.isShown();
-    const OwnShape* const shape = instance.shape.get();
-    const InstanceView pose = poseOf(store, instance);
-    const auto place = [&](std::uint32_t geometry, bool doubleSided, VkDeviceAddress blas, const Box& box) {
+    const auto place = [&](std::size_t part, std::uint32_t geometry, VkDeviceAddress blas, const Box& box) {
         if (isPlaced) {
-            store.topLevel.set(placedAt(store, instance, doubleSided, blas, geometry), box);
+            store.topLevel.set(placedAt(store, instance, part, blas, geometry), box);
         } else {
             store.topLevel.remove(geometry);
         }
     };
     if (instance.form != nullptr) {
         for (const SealedRun& run : instance.form->runs) {
-            place(instance.firstGeometry + run.first, false, run.blas.address,
+            place(run.first, geometryOf(mesh, instance, run.first), run.blas.address,
                   transformed(run.box, instance.objectToWorld));
         }
         return;
     }
+    const OwnShape* const shape = instance.shape.get();
+    const InstanceView pose = poseOf(store, instance);
     forEachPart(mesh, instance, [&](std::size_t i, std::uint32_t geometry) {
         const StoredPart& part = mesh.parts[i];
-        place(geometry, part.doubleSided, shape != nullptr ? shape->blases[i].address : part.blas.address,
+        place(i, geometry, shape != nullptr ? shape->blases[i].address : part.blas.address,
               shape != nullptr ? part.bounds->at(pose) : transformed(part.box, instance.objectToWorld));
     });
 }
