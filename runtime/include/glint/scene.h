@@ -225,9 +225,9 @@ public:
     // other instance has them. Sealed instances can be edited like others. They stay sealed when they are
     // moved, shown or hidden, and when their materials change in other ways. Another mesh, a pose, and
     // materials that differ in opacity or sides unseal the instance alone; record() then builds the BLASes
-    // that it lacks. An instance that can't gain from it stays as it is: with a pose, with MeshUse::Changing,
-    // without primitives that are alike, and in packages with a strategy that has a ray tracing pipeline of
-    // its own. On a device whose triangles are sorted (TraversalOrder) none gains.
+    // that it lacks. An instance that gains nothing stays as it is. Nothing is merged if triangles are sorted
+    // (TraversalOrder) or a strategy of the package has a ray tracing pipeline of its own. Alpha tests are
+    // decided only for instances of an upload with SceneView::sealed.
     Status seal(std::span<const InstanceHandle> instances);
 
     // Lights keep their order when one is removed. In packages with a light hierarchy, record() builds it

@@ -99,7 +99,8 @@ void closeMesh(SceneStore& store, StoredMesh& mesh) {
 }
 
 Status openParts(SceneStore& store, MeshHandle handle, StoredMesh& mesh) {
-    for (std::uint32_t i = 0; i < mesh.mainParts; ++i) {
+    const std::size_t parts = store.editable ? mesh.mainParts : mesh.parts.size();
+    for (std::uint32_t i = 0; i < parts; ++i) {
         StoredPart& part = mesh.parts[i];
         BlasBuild build = describeBuild(store.scene.context,
                                         inputOf(store, mesh, std::span(mesh.parts).subspan(i, 1), nullptr));
