@@ -257,6 +257,7 @@ EditedScene::EditedScene(EditedSceneOptions options)
     view.primitives = primitives;
     view.instances = views;
     view.editable = true;
+    view.traversalOrder = options_.traversalOrder;
     view.vertices = SceneView::VertexForm::Quantized;  // meshes get a buffer for their builds alone, too
     gpuScene_ = uploadScene(package(), view);
     for (std::uint32_t kind = 0; kind < kKinds; ++kind) {
@@ -396,6 +397,7 @@ LinearImage EditedScene::fresh() const {
     view.images = images;
     view.lights = lightViews;
     view.materials = values;
+    view.traversalOrder = options_.traversalOrder;
     view.vertices = SceneView::VertexForm::Quantized;
     const auto uploaded = uploadScene(package(), view);
     const auto renderer = uploaded ? makeRenderer(package(), *uploaded, options_.renderer) : nullptr;

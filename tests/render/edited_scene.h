@@ -103,6 +103,7 @@ struct EditedSceneOptions {
     RendererOptions renderer;
     bool trustsTextures = false;
     bool lamps = false;  // makeLamps(), and paths of two bounces with emissive lights
+    SceneView::TraversalOrder traversalOrder = SceneView::TraversalOrder::Auto;
     std::uint32_t width = 32;
     std::uint32_t height = 18;
 };

@@ -24,7 +24,7 @@ namespace {
 constexpr std::uint32_t kWidth = 32;
 constexpr std::uint32_t kHeight = 18;
 
-// A mirror, a strip that follows joints, a strip with morph targets, and two squares.
+// A mirror, a strip that follows joints, a strip with morph targets, and two squares of two primitives.
 gltf::Scene playingScene() {
     gltf::Scene scene = skinnedScene(0.3);
     const gltf::Scene morphed = morphedScene({0.5, 0.2});
@@ -35,6 +35,8 @@ gltf::Scene playingScene() {
     addInstance(scene, mesh, placed(-1, -0.8, -3, 0.1));
     scene.nodes.back().weights = {0.5, 0.2};
     const int square = addMesh(scene, makeQuad(1, {-0.3F, -0.3F, 0}, {0.6F, 0, 0}, {0, 0.6F, 0}));
+    scene.meshes[static_cast<std::size_t>(square)].primitives.push_back(
+        makeQuad(0, {-0.1F, -0.1F, 0.1F}, {0.2F, 0, 0.1F}, {0, 0.2F, 0}));
     addInstance(scene, square, placed(1, 0, -3));
     addInstance(scene, square, placed(1, 0.7, -2.8, 0.4));
     return scene;
@@ -53,6 +55,7 @@ public:
         }
         data_ = session::makeSceneView(scene_);
         data_.moves = true;
+        data_.traversalOrder = SceneView::TraversalOrder::Input;  // else no BLAS has several primitives
         SceneView view = data_.view();
         view.editable = true;
         gpuScene_ = uploadScene(package(), view);
@@ -105,7 +108,7 @@ public:
         const std::size_t chosen = number(instances_.size());
         // No two instances lie in each other: the order of triangles would decide which is seen.
         const float place = 100.0F * static_cast<float>(random()) / static_cast<float>(std::mt19937::max());
-        switch (number(5)) {
+        switch (number(6)) {
             case 0:
                 add(number(data_.instances.size()), place);
                 break;
@@ -117,6 +120,9 @@ public:
                 break;
             case 3:
                 move(instances_[chosen], place);
+                break;
+            case 4:
+                seal();
                 break;
             default:
                 change(instances_[chosen], number(data_.instances.size()));
@@ -176,8 +182,13 @@ public:
         const auto renderer = makeRenderer(package(), *fresh, options());
         EXPECT_EQ(image.pixels, drawn(*renderer, frame_).pixels) << what;
     }
-    // Removes what was added.
+    // Removes what was added, and unseals the squares.
     void clear() {
+        for (const std::size_t square : {std::size_t{3}, std::size_t{4}}) {
+            const Instance& instance = instances_[square];
+            EXPECT_TRUE(
+                editor().setInstanceMesh(instance.handle, editor().mesh(data_.instances[square].mesh)));
+        }
         for (std::size_t i = instances_.size(); i-- > 0;) {
             if (!instances_[i].uploaded) {
                 remove(i);
@@ -254,6 +265,13 @@ private:
             instance.view.objectToWorld = rowsAt(place);
             EXPECT_TRUE(editor().moveInstance(instance.handle, instance.view.objectToWorld));
         }
+    }
+    void seal() {
+        std::vector<InstanceHandle> handles;
+        for (const Instance& instance : instances_) {
+            handles.push_back(instance.handle);
+        }
+        EXPECT_TRUE(editor().seal(handles));
     }
     // Gives an added instance another pose, or takes its pose away.
     void change(Instance& instance, std::size_t like) {

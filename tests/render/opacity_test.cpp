@@ -1,11 +1,15 @@
 // Alpha tests that were decided at upload: pictures do not show it, whether meshes are deformed or not, rays
 // test less, and what may change is not decided.
+#include "context/commands.h"
 #include "render/harness.h"
 #include "render/scene_builder.h"
+#include "scene/scene_store.h"
 
+#include <glint/session/material_source.h>
 #include <glint/session/scene_view.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -298,6 +302,76 @@ TEST(Opacity, NothingIsDecidedAboutWhatMayChange) {
               0U);
     // An unmoved material of a scene that moves stays decided.
     EXPECT_GT(provedOf([](session::SceneViewData& data) { data.moves = true; }), 0U);
+}
+
+void recordEdits(GpuScene& scene, std::uint64_t frame) {
+    const Status status = runOnce(sharedContext().state(), [&](VkCommandBuffer commands) {
+        return scene.editor()->record(commands, frame);
+    });
+    EXPECT_TRUE(status) << (status ? "" : toString(status.error()));
+    scene.complete(frame);
+}
+
+std::size_t decidedInstances(const LoadedScene& loaded) {
+    std::size_t count = 0;
+    loaded.gpuScene().state().store->instanceSlots.forEach(
+        [&](InstanceHandle, const StoredInstance& instance) {
+            count += instance.form != nullptr && instance.form->decides ? 1 : 0;
+        });
+    return count;
+}
+
+// A scene that is edited and begins sealed has the same decisions, until an edit changes what they rely on.
+TEST(Opacity, SealedInstancesAreDecidedUntilTheirAlphaChanges) {
+    const gltf::Scene scene = foliage();
+    const compiler::CompileSettings settings = settingsOf(package::kStrategyUber);
+    const LoadedScene open(scene, settings, [](session::SceneViewData& data) { data.editable = true; });
+    const LoadedScene sealed(scene, settings,
+                             [](session::SceneViewData& data) { data.editable = data.sealed = true; });
+    RenderSetup setup = defaultSetup(scene, 64, 36);
+    setup.countsLight = true;
+    const auto compare = [&](const std::string& what) {
+        std::array<Renderer::Counters, 2> counters;
+        const LinearImage expected = open.render(package::kStrategyUber, setup, &counters[0]);
+        EXPECT_EQ(sealed.render(package::kStrategyUber, setup, &counters[1]).pixels, expected.pixels) << what;
+        return std::array{counters[1].alphaTests, counters[0].alphaTests};
+    };
+    EXPECT_EQ(decidedInstances(sealed), 3U);
+    const auto [few, many] = compare("as uploaded");
+    EXPECT_LT(few, many);
+    std::uint64_t frame = 1;
+    const auto editBoth = [&](const auto& edit) {
+        ++frame;
+        for (const LoadedScene* const one : {&open, &sealed}) {
+            edit(*one->gpuScene().editor());
+            recordEdits(one->gpuScene(), frame);
+        }
+    };
+    editBoth([&](SceneEditor& editor) {
+        EXPECT_TRUE(editor.setInstanceMaterial(editor.instance(1), 0, editor.material(3)));
+        EXPECT_TRUE(editor.showInstance(editor.instance(0), false));
+    });
+    compare("one has another material, another is hidden");
+    EXPECT_EQ(decidedInstances(sealed), 2U) << "the others stay sealed";
+    materials::Material leaf = scene.materials[0];
+    const compiler::MaterialLayout layout = session::recordLayoutOf(sealed.package(), leaf.model());
+    leaf["baseColorFactor"] = {0.5F, 0.9F, 0.5F, 1.0F};
+    editBoth([&](SceneEditor& editor) {
+        EXPECT_TRUE(editor.showInstance(editor.instance(0), true));
+        EXPECT_TRUE(editor.setMaterialValues(editor.material(0), compiler::makeMaterialRecord(leaf, layout)));
+    });
+    compare("another colour");
+    EXPECT_EQ(decidedInstances(sealed), 2U) << "which alpha tests do not read";
+    leaf["alphaCutoff"] = 0.9F;
+    editBoth([&](SceneEditor& editor) {
+        EXPECT_TRUE(editor.setMaterialValues(editor.material(0), compiler::makeMaterialRecord(leaf, layout)));
+    });
+    compare("another cutoff");
+    EXPECT_EQ(decidedInstances(sealed), 0U);
+    EXPECT_EQ(sealed.gpuScene().statistics().geometries, open.gpuScene().statistics().geometries);
+    editBoth([&](SceneEditor& editor) { EXPECT_TRUE(editor.seal(std::array{editor.instance(0)})); });
+    compare("sealed without decisions");
+    EXPECT_EQ(decidedInstances(sealed), 0U);
 }
 
 // A cutoff of 0 makes all leaves opaque, one above 1 none.

@@ -340,6 +340,7 @@ SceneView SceneViewData::view() const {
                    moves,      materials, traversalOrder, vertices, opacity};
     view.origin = origin;
     view.editable = editable;
+    view.sealed = sealed;
     view.textureRoom = textureRoom;
     return view;
 }

@@ -185,8 +185,8 @@ public:
     Status setMaterialValues(MaterialHandle material, std::span<const std::uint8_t> record);
     Status removeMaterial(MaterialHandle material);
 
-    // Adds a mesh of at least one primitive with a triangle. Its BLASes are built by the commands of record()
-    // and are not compacted. Errors: "scene-attribute", "scene-index".
+    // Adds a mesh of at least one primitive with a triangle. Its BLASes are built by the commands of
+    // record(). Errors: "scene-attribute", "scene-index".
     Result<AddedMesh> addMesh(std::span<const EditedPrimitive> primitives, MeshUse use = MeshUse::Fixed);
     // Gives a primitive of a mesh with MeshUse::Changing other vertices, for all instances, as a program that
     // simulates cloth does. record() copies them and refits the BLASes, or builds them anew by the rules of
@@ -219,6 +219,17 @@ public:
                                        MaterialHandle material);
     Status removeInstance(InstanceHandle instance);
 
+    // Seals instances whose meshes and materials will stay as they are, for faster rays: the next record()
+    // builds BLASes for the successive primitives of a mesh whose materials are alike in opacity and sides.
+    // The TLAS has one instance for each of these BLASes, and the BLASes of single primitives are freed if no
+    // other instance has them. Sealed instances can be edited like others. They stay sealed when they are
+    // moved, shown or hidden, and when their materials change in other ways. Another mesh, a pose, and
+    // materials that differ in opacity or sides unseal the instance alone; record() then builds the BLASes
+    // that it lacks. An instance that gains nothing stays as it is. Nothing is merged if triangles are sorted
+    // (TraversalOrder) or a strategy of the package has a ray tracing pipeline of its own. Alpha tests are
+    // decided only for instances of an upload with SceneView::sealed.
+    Status seal(std::span<const InstanceHandle> instances);
+
     // Lights keep their order when one is removed. In packages with a light hierarchy, record() builds it
     // anew if a light or an emissive triangle that is one has changed. Error "scene-light".
     Result<LightHandle> addLight(const LightView& light);
@@ -230,8 +241,9 @@ public:
     // follow in the same command buffer; its accumulation should start anew. The commands must be submitted
     // before other commands that use the scene, to the Context's queue or ordered after its work. `frame` is
     // the number of the frame that the commands belong to, by the caller's count; it may not be below that of
-    // the last call. Memory that is no longer needed is freed by complete(). On an error nothing is recorded,
-    // and the edits wait for the next call. Errors: "scene-edit-frame", "tlas-limit".
+    // the last call. BLASes that a completed frame has built are replaced by their compacted copies. Memory
+    // that is no longer needed is freed by complete(). On an error nothing is recorded, and the edits wait
+    // for the next call. Errors: "scene-edit-frame", "tlas-limit".
     Status record(VkCommandBuffer commands, std::uint64_t frame);
     // Says that the device has completed all commands of frames up to `frame`, and frees the resources that
     // they alone used. Command buffers of these frames may not be submitted again.
@@ -368,8 +380,9 @@ public:
     // Records the replacement of the BLASes by their compacted copies, and a build of the TLAS, if the upload
     // is complete and this was not done before; otherwise it records nothing. Returns whether it has.
     // Pictures stay the same. The requirements of `commands` and `frame` are those of record(), and
-    // complete() frees the larger structures. In a scene that is edited it also records the edits that wait,
-    // as SceneEditor::record() does. Errors: those of memory and Vulkan's calls; another call tries again.
+    // complete() frees the larger structures. In a scene that is edited it also records the edits that wait.
+    // SceneEditor::record() and update() do the same by themselves. Errors: those of memory and Vulkan's
+    // calls; another call tries again.
     Result<bool> recordCompaction(VkCommandBuffer commands, std::uint64_t frame);
     ~GpuScene();
     GpuScene(const GpuScene&) = delete;
@@ -379,9 +392,9 @@ public:
         std::uint64_t triangles = 0;  // triangles of all instances
         std::uint32_t geometries = 0;
         std::uint32_t instances = 0;
-        std::uint32_t blasCount = 0;
-        std::uint64_t blasBytes = 0;  // of the present ones: compacted after recordCompaction()
-        std::uint64_t blasUncompactedBytes = 0;
+        std::uint32_t blasCount = 0;             // of the present ones, as the next
+        std::uint64_t blasBytes = 0;             // compacted after recordCompaction()
+        std::uint64_t blasUncompactedBytes = 0;  // of the upload
         // The number of 16-bit images that are stored with 8 bits, because this device can't filter or blit
         // R16G16B16A16_UNORM.
         std::uint32_t narrowedTextures = 0;

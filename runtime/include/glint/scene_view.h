@@ -308,12 +308,15 @@ struct SceneView {
     // the full one. docs/memory.md states the errors.
     VertexForm vertices = VertexForm::Compact;
     // Proved triangles are tested by no ray: opaque ones are in opaque geometry, transparent ones in none
-    // (docs/alpha.md). Rays test all triangles of scenes that can be edited, because their materials may
-    // change at any time.
+    // (docs/alpha.md). In scenes that can be edited, rays test all triangles of instances that are not
+    // sealed, because materials may change at any time.
     OpacityUse opacity = OpacityUse::Proved;
     // True if GpuScene::editor() will edit the scene. The Package must outlive it. With `moves` poses and
     // edits come side by side.
     bool editable = false;
+    // True if the instances of an editable scene begin sealed, as by SceneEditor::seal(), with the alpha
+    // tests that `opacity` decides. BLASes of single primitives are built when an instance needs them.
+    bool sealed = false;
     // The number of textures and samplers that an editable scene may have at a time, those of the upload
     // included. The pipelines of its renderers are made for these numbers, so they can't grow. A texture
     // takes a descriptor in each version of the scene's descriptor set.

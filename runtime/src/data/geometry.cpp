@@ -84,18 +84,17 @@ std::vector<AttributeUpload> attributesOf(const PrimitiveView& view, const Compa
             {bytesOf(content.declared), &GpuPrimitive::attributes}};
 }
 
-// Uploads the positions that acceleration structures are built from.
-Status uploadBuildInput(Context::State& context, Uploader& uploader, const PrimitiveView& view,
-                        MemoryPool& pool, GpuPrimitive& primitive) {
-    GLINT_TRY(auto buffer, createBuffer(context, pool, bytesOf(view.positions).size(),
+}  // namespace
+
+Status uploadBuildInput(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                        std::span<const std::array<float, 3>> positions, GpuPrimitive& primitive) {
+    GLINT_TRY(auto buffer, createBuffer(context, pool, positions.size_bytes(),
                                         VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR |
                                             VK_BUFFER_USAGE_TRANSFER_DST_BIT));
     primitive.buildPositions = buffer.address;
     primitive.buildInput = std::move(buffer);
-    return uploader.copyToBuffer(bytesOf(view.positions), primitive.buildInput, 0);
+    return uploader.copyToBuffer(bytesOf(positions), primitive.buildInput, 0);
 }
-
-}  // namespace
 
 VkDeviceAddress indicesFrom(const GpuPrimitive& primitive, std::uint32_t triangle) {
     const bool isShort = (primitive.forms & gpu::kGeometryShortIndices) != 0;
@@ -156,7 +155,7 @@ Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, 
     primitive.buffer = std::move(buffer);
     primitive.buildPositions = primitive.positions;
     if (!content.positionWords.empty()) {
-        GLINT_TRY_DO(uploadBuildInput(context, uploader, view, *how.builds, primitive));
+        GLINT_TRY_DO(uploadBuildInput(context, *how.builds, uploader, view.positions, primitive));
     }
     return primitive;
 }

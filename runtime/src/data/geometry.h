@@ -10,6 +10,7 @@
 #include <glint/package.h>
 #include <glint/scene_view.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -76,6 +77,11 @@ struct PrimitiveContent {
 Result<GpuPrimitive> uploadPrimitive(Context::State& context, MemoryPool& pool, Uploader& uploader,
                                      const PrimitiveView& view, const PrimitiveContent& content,
                                      const PrimitiveUpload& how);
+
+// Uploads the positions that acceleration structures are built from, for a primitive whose shaders read
+// others.
+Status uploadBuildInput(Context::State& context, MemoryPool& pool, Uploader& uploader,
+                        std::span<const std::array<float, 3>> positions, GpuPrimitive& primitive);
 
 // Gives a record of a geometry what a package says of its primitive.
 void takeEntry(const package::PrimitiveEntry& entry, gpu::GeometryRecord& record);

@@ -54,11 +54,14 @@ struct DrawnScene {
     // The shader IDs of the shader binding table. Its number changes when they do without another package.
     std::vector<std::uint32_t> shaderIds;
     std::uint32_t shaderIdsVersion = 0;
+    // How many BLASes have several primitives whose shaders the table does not have beside each other.
+    std::uint32_t joinedBlases = 0;
     // Renderers and RaySteps of the scene, which add and remove themselves, also when the scene is gone. They
     // replace its packages together.
     struct Users {
         std::mutex mutex;
         std::vector<PackageUser*> all;
+        bool readTables = false;  // some may read the shader binding table
     };
     std::shared_ptr<Users> users = std::make_shared<Users>();
 };

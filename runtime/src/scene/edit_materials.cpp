@@ -135,7 +135,14 @@ std::vector<AttributeMask> attributesWith(const SceneStore& store, MaterialHandl
     return found;
 }
 
-// The instances that show the material, by index.
+const SceneEditor::MaterialKey* keyFor(std::span<const SceneEditor::MaterialKey> keys,
+                                       AttributeMask attributes) {
+    const auto found = std::ranges::find(keys, attributes, &SceneEditor::MaterialKey::attributes);
+    return found == keys.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
 std::set<std::uint32_t> instancesWith(const SceneStore& store, const StoredMaterial& material) {
     std::set<std::uint32_t> found;
     for (const auto& [index, uses] : material.instances) {
@@ -147,14 +154,6 @@ std::set<std::uint32_t> instancesWith(const SceneStore& store, const StoredMater
     }
     return found;
 }
-
-const SceneEditor::MaterialKey* keyFor(std::span<const SceneEditor::MaterialKey> keys,
-                                       AttributeMask attributes) {
-    const auto found = std::ranges::find(keys, attributes, &SceneEditor::MaterialKey::attributes);
-    return found == keys.end() ? nullptr : &*found;
-}
-
-}  // namespace
 
 Result<Shading> shadingBy(const CaseTable& cases, std::span<const SceneEditor::MaterialKey> keys,
                           AttributeMask attributes, const std::string& where) {
@@ -307,6 +306,7 @@ Status SceneEditor::replaceTexture(TextureHandle texture, const ImageView& image
     replaceEmission(*store_, *entry);
     // Records have the sizes of their textures.
     for (const auto& [material, uses] : entry->materials) {
+        forgetDecisions(*store_, material);
         const std::span<const std::uint8_t> old = store_->materials.at(material);
         std::vector<std::uint8_t> record(old.begin(), old.end());
         settleTextures(*store_, store_->scene.materialLayout, store_->materialSlots.at(material).textures,
@@ -369,6 +369,7 @@ Result<SceneEditor::Report> SceneEditor::setMaterial(MaterialHandle material,
     entry->isOwn = true;
     writeMaterial(*store_, material.index, record);
     if (changes) {
+        store_->decidedMaterials.erase(material.index);
         for (const std::uint32_t index : instancesWith(*store_, *entry)) {
             writeGeometries(*store_, store_->instanceSlots.handleAt(index), store_->instanceSlots.at(index));
         }
@@ -406,6 +407,7 @@ Status SceneEditor::removeMaterial(MaterialHandle material) try {
                          "give them other materials first, or remove them");
     }
     const StoredMaterial gone = store_->materialSlots.take(material);
+    store_->decidedMaterials.erase(material.index);
     countUses(*store_, material.index, gone.textures, false);
     store_->materials.shrink(store_->materialSlots.end());
     return okStatus();

@@ -46,7 +46,6 @@ Result<std::unique_ptr<GpuScene::State>> makeScene(Context& context, const Packa
     if (scene.editable) {
         state->editor = std::make_unique<SceneEditor>(*state->store);
     }
-    state->compaction = std::move(upload.compaction);
     return state;
 }
 
@@ -81,7 +80,7 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
             GLINT_TRY(auto state, makeScene(context, package, scene, commands, 0, kMostStaged));
             return std::unique_ptr<GpuScene>(new GpuScene(std::move(state)));
         });
-    if (!uploaded || !(*uploaded)->state_->compaction) {
+    if (!uploaded || (*uploaded)->state_->store->compactions.empty()) {
         return uploaded;
     }
     const Status compacted = runOnce(context.state(), [&](VkCommandBuffer commands) -> Status {
@@ -119,7 +118,7 @@ VkDescriptorSetLayout GpuScene::descriptorSetLayout() const {
 }
 
 void GpuScene::complete(std::uint64_t frame) {
-    state_->store->retired.complete(frame);
+    completeFrames(*state_->store, frame);
     if (state_->stream) {
         state_->stream->complete(frame);
     }
@@ -127,7 +126,6 @@ void GpuScene::complete(std::uint64_t frame) {
         readBuildTimes(*state_);
         state_->upload.reset();
     }
-    completeCompaction(*state_, frame);
 }
 
 bool GpuScene::isUploaded() const {
@@ -161,6 +159,11 @@ void addStore(std::vector<MemoryItem>& items, const SceneStore& store) {
         }
         for (const StoredPart& part : mesh.parts) {
             addTo(items, "bottom levels", part.blas.buffer);
+        }
+        for (const std::unique_ptr<SealedForm>& form : mesh.forms) {
+            for (const SealedRun& run : form->runs) {
+                addTo(items, "bottom levels", run.blas.buffer);
+            }
         }
     });
     store.instanceSlots.forEach([&](InstanceHandle /*handle*/, const StoredInstance& instance) {
@@ -216,18 +219,12 @@ std::vector<MemoryItem> GpuScene::memory() const {
             addTo(items, "upload on its way", buffer);
         }
     }
-    if (state_->compaction != nullptr) {
-        for (const AccelerationStructure& blas : state_->compaction->replaced) {
-            addTo(items, "bottom levels before compaction", blas.buffer);
-        }
-    }
     return items;
 }
 
 std::uint64_t GpuScene::allocatedBytes() const {
-    std::uint64_t bytes = state_->pool.bytes();
+    std::uint64_t bytes = state_->pool.bytes() + state_->store->building.bytes();
     bytes += state_->upload != nullptr ? state_->upload->pool.bytes() : 0;
-    bytes += state_->compaction != nullptr ? state_->compaction->pool.bytes() : 0;
     return bytes;
 }
 

@@ -94,7 +94,6 @@ struct GpuScene::State final : DrawnScene {
     bool hasLightTree() const override;
 
     MemoryPool pool;
-    std::unique_ptr<Compaction> compaction;             // null if there is nothing more to compact
     std::unique_ptr<SceneUpload> upload;                // null when the device has completed it
     ScenePackage package;                               // the package that draws the scene
     std::array<double, 3> origin{};                     // SceneView::origin, or that of the last MotionView

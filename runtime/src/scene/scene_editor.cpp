@@ -295,6 +295,19 @@ Status SceneEditor::removeInstance(InstanceHandle instance) try {
 }
 GLINT_CATCH
 
+Status SceneEditor::seal(std::span<const InstanceHandle> instances) try {
+    for (const InstanceHandle instance : instances) {
+        if (store_->instanceSlots.find(instance) == nullptr) {
+            return unknownHandle("instance");
+        }
+    }
+    for (const InstanceHandle instance : instances) {
+        sealInstance(*store_, instance);
+    }
+    return okStatus();
+}
+GLINT_CATCH
+
 // --- Handles of the upload, lights, recordings ---
 
 namespace {
@@ -361,7 +374,7 @@ Status SceneEditor::record(VkCommandBuffer commands, std::uint64_t frame) try {
 GLINT_CATCH
 
 void SceneEditor::complete(std::uint64_t frame) {
-    store_->retired.complete(frame);
+    completeFrames(*store_, frame);
 }
 
 void SceneEditor::trim() {

@@ -221,7 +221,7 @@ void writeEntries(SceneStore& store) {
     };
     store.instanceSlots.forEach([&](InstanceHandle handle, const StoredInstance& instance) {
         const StoredMesh& mesh = *store.meshes.find(instance.mesh);
-        bool changes = false;
+        bool changes = instance.form != nullptr;  // the package may ask for another
         forEachGeometry(
             mesh, instance,
             [&](const TriangleRange& range, const StoredPrimitive& /*primitive*/, std::uint32_t geometry) {
@@ -273,6 +273,7 @@ void exchange(SceneStore& store, OtherPackage& other) {
     }
     if (other.edited) {
         exchangeTables(store, *other.edited);
+        store.decidedMaterials.clear();
         store.emittersDirty = store.emittersDirty || store.emission.has_value();
     } else {
         std::swap<RecordStore>(store.materials, *other.materials);

@@ -5,7 +5,8 @@
 // A scene that is not edited is sealed: a BLAS has all primitives of a mesh that are seen alike, alpha tests
 // are decided where they can be, and records of materials are the package's. The meshes of other scenes have
 // a BLAS for each primitive, and the TLAS holds the properties that follow from materials, so that a change
-// of materials builds no BLAS.
+// of materials builds no BLAS. Instances that SceneEditor::seal() has sealed share BLASes of several
+// primitives, until an edit makes these differ in such a property.
 #pragma once
 
 #include "context/commands.h"
@@ -32,6 +33,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -76,14 +78,46 @@ struct StoredMaterial {
     Users instances{};  // that have it in the place of their mesh's own
 };
 
-// A part and its BLAS, which instances that keep their shape share.
+// A part and its BLAS, which instances share that keep their shape and are not sealed.
 struct StoredPart : MeshPart {
-    AccelerationStructure blas{};  // without a handle if all instances of a sealed mesh change their shape
+    AccelerationStructure blas{};      // without a handle unless StoredMesh::isOpen
     std::optional<BlasBuild> build{};  // of a mesh whose vertices edits change
     BlasHistory history{};
     bool isBuilt = false;  // the same
     Box box = Box::nothing();
     std::optional<MotionBounds> bounds{};  // of a mesh that may change its shape
+};
+
+// Successive parts of a mesh in one BLAS. All of them are seen alike.
+struct SealedRun {
+    std::uint32_t first = 0;  // of StoredMesh::parts
+    std::uint32_t end = 0;
+    AccelerationStructure blas{};
+    Box box = Box::nothing();
+};
+
+// The BLASes of sealed instances of a mesh whose materials part it into the same runs.
+struct SealedForm {
+    std::uint32_t number = 0;  // that no other form of the scene has
+    bool decides = false;      // its BLASes rely on StoredPrimitive::split
+    std::vector<SealedRun> runs;
+    std::uint32_t instances = 0;  // how many have the form
+};
+
+// The place of a BLAS: a part of a mesh, a run of one of its forms, or a part of an instance with its own
+// shape.
+struct PartPlace {
+    MeshHandle mesh;
+    InstanceHandle instance{};
+    std::uint32_t form = 0;  // SealedForm::number; 0: none
+    std::uint32_t part = 0;  // or run
+};
+
+// BLASes that one recording builds, whose compacted sizes it asks for.
+struct Compaction {
+    UniqueQueryPool sizes;
+    std::vector<std::pair<PartPlace, VkAccelerationStructureKHR>> parts;
+    std::uint64_t frame = 0;  // of the recording
 };
 
 struct StoredPrimitive {
@@ -96,6 +130,9 @@ struct StoredPrimitive {
     std::uint32_t entryIndex = kNoEntry;          // in PackageScene::primitives, if it was uploaded
     std::shared_ptr<const EmitterShape> shape{};  // of a light, or in a scene that is edited
     const DeviceMicromap* micromap = nullptr;     // of a sealed scene
+    // Decided alpha tests of a scene that is edited, with the material of the upload.
+    std::optional<OpacitySplit> split{};
+    MaterialHandle splitMaterial{};
     DeformSource source{};
 };
 
@@ -110,6 +147,8 @@ struct StoredMesh {
     std::shared_ptr<const MotionBounds> bounds{};  // if the mesh may change its shape
     std::vector<std::uint32_t> instances{};        // their indices, in no order
     bool changes = false;                          // edits may give it other vertices
+    bool isOpen = false;                           // its parts have BLASes
+    std::vector<std::unique_ptr<SealedForm>> forms{};
 
     bool mayDeform() const {
         return jointCount > 0 || weightCount > 0;
@@ -147,10 +186,16 @@ struct StoredInstance {
     std::optional<std::uint32_t> firstDecided{};
     std::uint32_t placeInMesh = 0;  // in StoredMesh::instances
     std::unique_ptr<OwnShape> shape{};
+    SealedForm* form = nullptr;  // of the mesh; null unless the instance is sealed
 
     bool isShown() const {
         return visible && isInvertible(objectToWorld);
     }
+};
+
+struct QueuedBuild {
+    BlasBuild build;
+    PartPlace place;
 };
 
 struct SceneStore : SceneRecords {
@@ -161,6 +206,7 @@ struct SceneStore : SceneRecords {
     bool moves = false;     // GpuScene::update() gives poses
     bool editable = false;  // the scene has an editor; otherwise it is sealed
     BlasCapacity capacity;
+    BlasCapacity sealedCapacity;    // of a BLAS of a sealed instance
     LeafOrder leafOrder = nullptr;  // null: structures get their input as it is
     SceneView::VertexForm vertices = SceneView::VertexForm::Compact;
     bool dataAccess = false;                         // BLASes let shaders read positions
@@ -215,7 +261,13 @@ struct SceneStore : SceneRecords {
     // The work of the next recording.
     std::unique_ptr<Uploader> ownUploader;  // null in the upload, which has one of its own
     Uploader* uploader = nullptr;
-    std::vector<BlasBuild> builds;  // of BLASes that instances share, with their destinations
+    // Builds of BLASes that instances share, by their destinations.
+    std::map<VkAccelerationStructureKHR, QueuedBuild> builds;
+    std::set<std::uint32_t> sealing;   // instances, by index, that are to be sealed
+    std::set<std::uint32_t> reformed;  // meshes, by index, whose instances may have or lack BLASes
+    std::uint32_t lastForm = 0;        // SealedForm::number
+    // Materials, by index, whose alpha is still that by which tests were decided.
+    std::set<std::uint32_t> decidedMaterials;
     bool drawsDirty = false;
     bool lightsDirty = true;     // other lights
     bool lightsMoved = false;    // the same lights with other values
@@ -230,6 +282,10 @@ struct SceneStore : SceneRecords {
     std::uint32_t firstTlasCapacity = 0;
     Retired retired;
     std::uint64_t lastFrame = 0;
+    std::optional<std::uint64_t> completed;  // the last frame that the device is known to have completed
+    MemoryPool building;                     // of BLASes until they are compacted
+    std::deque<Compaction> compactions;      // by ascending frame
+    bool compacts = false;                   // the next recording makes compacted copies
     // Null after the upload, in which BLASes are built together.
     SceneUpload* upload = nullptr;
 
@@ -297,6 +353,8 @@ void countUse(Slots<StoredMaterial, MaterialHandle>& materials, MaterialHandle m
 // Error "scene-geometries".
 Diagnostic tooManyGeometries(const std::string& where);
 
+// Forgets the records after the last geometry.
+void shrinkGeometries(SceneStore& store);
 // Writes the geometry records of an instance, whose materials have been checked.
 void writeGeometries(SceneStore& store, InstanceHandle handle, const StoredInstance& instance);
 // The entry of a primitive of an instance: its key, its shader and its material.
@@ -325,6 +383,12 @@ void forEachPart(const StoredMesh& mesh, const StoredInstance& instance, const V
     }
 }
 
+// The geometry record of a part of an instance, in a scene that is edited, where a part has one.
+inline std::uint32_t geometryOf(const StoredMesh& mesh, const StoredInstance& instance, std::size_t part) {
+    return static_cast<std::uint32_t>(part < mesh.mainParts ? instance.firstGeometry + part
+                                                            : *instance.firstDecided + part - mesh.mainParts);
+}
+
 // Calls visit(range, primitive, geometry) for all geometry records of an instance.
 template <typename Visit>
 void forEachGeometry(const StoredMesh& mesh, const StoredInstance& instance, const Visit& visit) {
@@ -335,8 +399,45 @@ void forEachGeometry(const StoredMesh& mesh, const StoredInstance& instance, con
     });
 }
 
-// The structure of a part: of a mesh, or of an instance with its own shape. Null if edits have removed it.
+// The structure at a place, or null if edits have removed it.
 AccelerationStructure* structureAt(SceneStore& store, const PartPlace& place);
+
+// --- BLASes that instances share (store_blases.cpp) ---
+
+// The input of the build of successive parts. `shape` is that of an instance with one of its own, or null.
+// `decides`: without the triangles whose alpha tests were decided, in a scene that is edited.
+BlasInput inputOf(const SceneStore& store, const StoredMesh& mesh, std::span<const StoredPart> parts,
+                  const OwnShape* shape, bool decides = false);
+// Makes the structure of a BLAS, and gives the build its destination.
+Status makeStructure(SceneStore& store, BlasBuild& build, bool isCompacted, AccelerationStructure& made);
+// Takes a structure out of its place. One that waits to be built is not built.
+AccelerationStructure takeStructure(SceneStore& store, AccelerationStructure& place);
+// Makes the BLASes of a mesh's parts. With an error the mesh has none.
+Status openMesh(SceneStore& store, MeshHandle handle, StoredMesh& mesh);
+// Lets the next recording seal an instance, if it can be.
+void sealInstance(SceneStore& store, InstanceHandle handle);
+// Returns whether rays stop at a part of an instance, where the TLAS has to say so.
+bool isOpaque(const SceneStore& store, const StoredInstance& instance, std::size_t part);
+// Unseals instances that rely on the alpha of a material.
+void forgetDecisions(SceneStore& store, std::uint32_t material);
+// Unseals the instance if its parts are no longer seen alike where they share a BLAS, or alpha tests are open
+// again.
+void checkSeal(SceneStore& store, StoredInstance& instance);
+// Takes the instance's form away, if it has one.
+void leaveForm(SceneStore& store, StoredInstance& instance);
+// Retires the BLASes of a form that no instance has.
+void retireForm(SceneStore& store, SealedForm& form);
+// Gives instances that are to be sealed their forms, makes the BLASes that others lack, and retires those
+// that no instance has. Errors: those of memory; another call goes on from there.
+Status settleBlases(SceneStore& store);
+
+// --- Compaction (compaction.cpp) ---
+
+// Notes that the device has completed the frame.
+void completeFrames(SceneStore& store, std::uint64_t frame);
+// Queues compacted copies of the BLASes whose builds the device has completed, in the place of the larger
+// ones. Errors: those of memory and Vulkan's calls; another call tries again.
+Status compactBuilt(SceneStore& store);
 
 // --- Materials of scenes that are edited (edit_materials.cpp) ---
 
@@ -360,6 +461,8 @@ Diagnostic noRoomForSampler(const SceneStore& store);
 // Writes into a record of this layout which textures it has. They and their samplers must be there.
 void settleTextures(const SceneStore& store, const MaterialTable& layout,
                     std::span<const SceneEditor::TextureUse> uses, std::span<std::uint8_t> record);
+// The instances that show the material, by index.
+std::set<std::uint32_t> instancesWith(const SceneStore& store, const StoredMaterial& material);
 // The material of a primitive of an instance.
 MaterialHandle materialOf(const SceneStore& store, const StoredInstance& instance, std::size_t primitive);
 // Writes a material's record. Lights follow if its emission has changed.

@@ -1,7 +1,6 @@
-// The parts of an upload that scenes do not have later: sizes of compacted BLASes, and opacity micromaps.
+// The part of an upload that scenes do not have later: opacity micromaps.
 #include "scene/scene_upload.h"
 
-#include "context/commands.h"
 #include "context/vulkan_table.h"
 #include "data/acceleration.h"
 
@@ -10,48 +9,6 @@
 #include <utility>
 
 namespace glint {
-namespace {
-
-constexpr MemoryDependency kBuildToQuery{VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
-                                         VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR,
-                                         VK_PIPELINE_STAGE_2_ACCELERATION_STRUCTURE_BUILD_BIT_KHR,
-                                         VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR};
-
-}  // namespace
-
-Compaction& compactionOf(SceneUpload& upload) {
-    if (upload.compaction == nullptr) {
-        upload.compaction = std::make_unique<Compaction>(upload.context);
-    }
-    return *upload.compaction;
-}
-
-Status prepareCompaction(SceneUpload& upload) {
-    if (upload.compaction == nullptr) {
-        return okStatus();
-    }
-    const VkQueryPoolCreateInfo info{
-        .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
-        .queryType = VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR,
-        .queryCount = static_cast<std::uint32_t>(upload.compaction->parts.size())};
-    Context::State& context = upload.context;
-    GLINT_TRY(upload.compaction->sizes,
-              createHandle<UniqueQueryPool>(context, context.vk.CreateQueryPool, "vkCreateQueryPool", info));
-    context.vk.ResetQueryPool(context.handles.device, upload.compaction->sizes.get(), 0, info.queryCount);
-    return okStatus();
-}
-
-void recordCompactedSizes(const SceneUpload& upload, VkCommandBuffer commands,
-                          std::span<const VkAccelerationStructureKHR> structures) {
-    if (structures.empty()) {
-        return;
-    }
-    recordDependency(upload.context, commands, kBuildToQuery);
-    upload.context.vk.CmdWriteAccelerationStructuresPropertiesKHR(
-        commands, static_cast<std::uint32_t>(structures.size()), structures.data(),
-        VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR, upload.compaction->sizes.get(), 0);
-}
-
 namespace {
 
 // VkMicromapBuildInfoEXT requires this alignment (VUID-vkCmdBuildMicromapsEXT-pInfos-07515).

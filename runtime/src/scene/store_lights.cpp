@@ -1,6 +1,7 @@
 // SceneStore: lights, and emissive triangles as lights.
 #include "data/instance_math.h"
 #include "data/materials.h"
+#include "data/opacity_split.h"
 #include "package/package.h"
 #include "scene/scene_store.h"
 
@@ -214,6 +215,17 @@ void forgetEmitters(SceneStore& store) {
     store.lightsDirty = true;
 }
 
+namespace {
+
+// The part of a material's record that alpha tests read, whatever its key is.
+std::vector<std::uint8_t> alphaOf(const SceneStore& store, std::span<const std::uint8_t> record) {
+    package::PrimitiveEntry any{};
+    any.key.inputs = ~0U;
+    return alphaInputs(*store.cases->package().opacity(), tableWith(store.scene.materialLayout, record), any);
+}
+
+}  // namespace
+
 void writeMaterial(SceneStore& store, std::uint32_t material, std::span<const std::uint8_t> record) {
     if (store.emissiveMaterials.contains(material)) {
         const std::span<const std::uint8_t> old = store.materials.at(material);
@@ -234,7 +246,12 @@ void writeMaterial(SceneStore& store, std::uint32_t material, std::span<const st
             store.emittersMoved = true;
         }
     }
+    const bool forgets = store.decidedMaterials.contains(material) &&
+                         alphaOf(store, store.materials.at(material)) != alphaOf(store, record);
     store.materials.writeBytes(material, record);
+    if (forgets) {
+        forgetDecisions(store, material);
+    }
 }
 
 void settleLights(SceneStore& store) {

@@ -13,52 +13,6 @@ namespace {
 constexpr std::uint32_t kRowsOfJoint = 3;
 constexpr std::uint32_t kWeightsOfRow = 4;
 
-BlasInput inputOf(const SceneStore& store, const StoredMesh& mesh, const MeshPart& part,
-                  const OwnShape* shape) {
-    BlasInput input;
-    input.dataAccess = store.dataAccess;
-    input.updatable = (shape != nullptr && store.keeps()) || mesh.changes;
-    for (const TriangleRange& range : part.ranges) {
-        const StoredPrimitive& primitive = mesh.primitives[range.primitive];
-        BlasGeometry& geometry =
-            input.geometries.emplace_back(blasGeometry(primitive.device, range.first, range.count));
-        if (shape != nullptr && shape->vertices[range.primitive].positions != 0) {
-            geometry.positions = shape->vertices[range.primitive].positions;
-        }
-        if (store.editable) {
-            // The TLAS says whether the material is opaque. Light may pass any material of another package.
-            geometry.once = true;
-            continue;
-        }
-        const std::uint32_t flags = primitive.entry.geometryFlags;
-        geometry.opaque =
-            range.opaque || (flags & (gpu::kGeometryAlphaTested | gpu::kGeometryPassesLight)) == 0;
-        geometry.once = (flags & gpu::kGeometryPassesLight) != 0;
-        geometry.micromap = geometry.opaque ? nullptr : primitive.micromap;
-    }
-    return input;
-}
-
-// Makes the structure of a BLAS. Structures of an upload that will be compacted are in memory of their own.
-Status makeStructure(SceneStore& store, BlasBuild& build, const PartPlace& place, bool isCompacted,
-                     AccelerationStructure& made) {
-    GpuScene::State& scene = store.scene;
-    SceneUpload* const upload = isCompacted ? store.upload : nullptr;
-    MemoryPool& pool = upload != nullptr ? compactionOf(*upload).pool : scene.pool;
-    GLINT_TRY(made, createStructure(scene.context, pool, build.structureBytes,
-                                    VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR));
-    build.info.dstAccelerationStructure = made.handle.get();
-    if (upload != nullptr) {
-        upload->compaction->parts.push_back(place);
-    }
-    if (store.upload != nullptr) {
-        ++scene.statistics.blasCount;
-        scene.statistics.blasBytes += build.structureBytes;
-        scene.statistics.blasUncompactedBytes += build.structureBytes;
-    }
-    return okStatus();
-}
-
 // The indices of a primitive, in the order of its triangles on the device.
 std::span<const std::uint32_t> indicesOf(const MeshContent& content, std::size_t index) {
     const bool isOrdered = !content.ordered.empty() && !content.ordered[index].empty();
@@ -89,6 +43,7 @@ Status makePrimitive(SceneStore& store, const Package& package, const MeshConten
     GLINT_TRY(made.source, uploadDeformSource(scene.context, sources, *store.uploader, view));
     if (store.editable) {
         made.attributes = attributesOf(package, view);
+        made.split = content.splits.empty() ? std::nullopt : content.splits[index];
     }
     if (store.editable || (made.entry.geometryFlags & gpu::kGeometryEmitter) != 0) {
         made.shape =
@@ -107,7 +62,14 @@ std::vector<MeshPart> partsOf(const SceneStore& store, const StoredMesh& mesh, c
             primitive.split = content.splits.empty() ? std::nullopt : content.splits[i];
         }
     }
-    return partitionMesh(parted, store.capacity);
+    std::vector<MeshPart> parts = partitionMesh(parted, store.capacity);
+    // Sealed instances have these beside the others, whose triangles are then fewer.
+    for (std::uint32_t i = 0; i < mesh.primitives.size() && store.editable; ++i) {
+        if (const auto& split = mesh.primitives[i].split; split && split->tested > 0 && split->opaque > 0) {
+            parts.push_back({false, {{i, split->tested, split->opaque, 0, true}}});
+        }
+    }
+    return parts;
 }
 
 // The box around the triangles of a part that the BLAS has.
@@ -122,7 +84,6 @@ Box boxOfPart(const MeshPart& part, const MeshContent& content) {
 }
 
 Status makeParts(SceneStore& store, const MeshContent& content, StoredMesh& mesh) {
-    std::uint32_t number = 0;
     for (MeshPart& part : partsOf(store, mesh, content)) {
         StoredPart& made = mesh.parts.emplace_back();
         static_cast<MeshPart&>(made) = std::move(part);
@@ -135,19 +96,8 @@ Status makeParts(SceneStore& store, const MeshContent& content, StoredMesh& mesh
             const std::uint32_t first = made.ranges.front().primitive;
             made.bounds.emplace(content.primitives.subspan(first, made.ranges.back().primitive - first + 1));
         }
-        if (content.isShared) {
-            BlasBuild build = describeBuild(store.scene.context, inputOf(store, mesh, made, nullptr));
-            GLINT_TRY_DO(makeStructure(store, build, {store.meshes.next(), {}, number}, true, made.blas));
-            if (mesh.changes) {
-                made.build = std::move(build);
-                store.reshapedMeshes.insert(store.meshes.next().index);
-            } else {
-                store.builds.push_back(std::move(build));
-            }
-        }
-        ++number;
     }
-    return okStatus();
+    return content.isShared ? openMesh(store, store.meshes.next(), mesh) : okStatus();
 }
 
 Status fillMesh(SceneStore& store, const Package& package, const MeshContent& content, StoredMesh& mesh) {
@@ -166,7 +116,7 @@ Status fillMesh(SceneStore& store, const Package& package, const MeshContent& co
 
 void retire(SceneStore& store, OwnShape& shape) {
     for (AccelerationStructure& blas : shape.blases) {
-        store.retired.add(std::move(blas));
+        store.retired.add(takeStructure(store, blas));
     }
     for (DeformedVertices& vertices : shape.vertices) {
         store.retired.add(std::move(vertices.buffer));
@@ -178,12 +128,9 @@ void retire(SceneStore& store, OwnShape& shape) {
 Result<MeshHandle> addMesh(SceneStore& store, const Package& package, const MeshContent& content) {
     StoredMesh mesh;
     const std::size_t copies = store.uploader->waiting();
-    const std::size_t builds = store.builds.size();
     if (Status status = fillMesh(store, package, content, mesh); !status) {
         if (store.upload == nullptr) {
             store.uploader->forgetAfter(copies);
-            store.builds.resize(builds);
-            store.reshapedMeshes.erase(store.meshes.next().index);
         }
         return status.error();
     }
@@ -241,15 +188,11 @@ Status changeVertices(SceneStore& store, MeshHandle handle, std::size_t primitiv
 void retireMesh(SceneStore& store, MeshHandle handle) {
     store.reshapedMeshes.erase(handle.index);
     StoredMesh mesh = store.meshes.take(handle);
-    // A mesh that comes and goes between two recordings is never built.
-    std::set<VkAccelerationStructureKHR> gone;
-    for (const StoredPart& part : mesh.parts) {
-        gone.insert(part.blas.handle.get());
-    }
-    std::erase_if(store.builds,
-                  [&](const BlasBuild& build) { return gone.contains(build.info.dstAccelerationStructure); });
     for (StoredPart& part : mesh.parts) {
-        store.retired.add(std::move(part.blas));
+        store.retired.add(takeStructure(store, part.blas));
+    }
+    for (const std::unique_ptr<SealedForm>& form : mesh.forms) {
+        retireForm(store, *form);
     }
     for (StoredPrimitive& primitive : mesh.primitives) {
         store.retired.add(std::move(primitive.device.buffer));
@@ -287,6 +230,14 @@ void countRecords(SceneStore& store, const StoredInstance& instance, bool adds) 
                     });
 }
 
+// Notes that the mesh has one instance more or less, which may decide about its BLASes.
+void noteUse(SceneStore& store, const StoredInstance& instance) {
+    const StoredMesh& mesh = *store.meshes.find(instance.mesh);
+    if (store.editable && (!mesh.isOpen || !mesh.forms.empty())) {
+        store.reformed.insert(instance.mesh.index);
+    }
+}
+
 // Links the instance to its mesh and its materials, and gives it geometry records.
 void link(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
     StoredMesh& mesh = *store.meshes.find(instance.mesh);
@@ -299,6 +250,7 @@ void link(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
         countUse(store.materialSlots, material, &StoredMaterial::instances, index, true);
     }
     countRecords(store, instance, true);
+    noteUse(store, instance);
 }
 
 void releaseShape(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
@@ -320,7 +272,10 @@ void unlink(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
     StoredMesh& mesh = *store.meshes.find(instance.mesh);
     forEachPart(mesh, instance,
                 [&](std::size_t /*part*/, std::uint32_t geometry) { store.topLevel.remove(geometry); });
+    leaveForm(store, instance);
     countRecords(store, instance, false);
+    store.sealing.erase(index);
+    noteUse(store, instance);
     store.draws.set(index, {});
     store.drawsDirty = true;
     store.geometryRuns.release(instance.firstGeometry, instance.geometryCount);
@@ -337,8 +292,7 @@ void unlink(SceneStore& store, std::uint32_t index, StoredInstance& instance) {
 }
 
 void shrinkRecords(SceneStore& store) {
-    store.geometries.shrink(store.geometryRuns.end());
-    store.firstEmitters.shrink(store.geometryRuns.end());
+    shrinkGeometries(store);
     store.instances.shrink(store.instanceSlots.end());
 }
 
@@ -346,7 +300,7 @@ std::uint32_t rowsOfWeights(std::uint32_t weights) {
     return (weights + kWeightsOfRow - 1) / kWeightsOfRow;
 }
 
-Status fillShape(SceneStore& store, InstanceHandle handle, const StoredMesh& mesh, OwnShape& shape) {
+Status fillShape(SceneStore& store, const StoredMesh& mesh, OwnShape& shape) {
     GpuScene::State& scene = store.scene;
     for (const StoredPrimitive& primitive : mesh.primitives) {
         DeformedVertices& vertices = shape.vertices.emplace_back();
@@ -354,19 +308,19 @@ Status fillShape(SceneStore& store, InstanceHandle handle, const StoredMesh& mes
             GLINT_TRY(vertices, createDeformedVertices(scene.context, scene.pool, primitive.device));
         }
     }
-    for (std::uint32_t part = 0; part < mesh.parts.size(); ++part) {
-        BlasBuild& build = shape.builds.emplace_back(
-            describeBuild(scene.context, inputOf(store, mesh, mesh.parts[part], &shape)));
-        GLINT_TRY_DO(
-            makeStructure(store, build, {{}, handle, part}, !store.keeps(), shape.blases.emplace_back()));
+    const std::size_t parts = store.editable ? mesh.mainParts : mesh.parts.size();
+    for (std::size_t part = 0; part < parts; ++part) {
+        BlasBuild& build = shape.builds.emplace_back(describeBuild(
+            scene.context, inputOf(store, mesh, std::span(mesh.parts).subspan(part, 1), &shape)));
+        GLINT_TRY_DO(makeStructure(store, build, !store.keeps(), shape.blases.emplace_back()));
     }
-    shape.histories.resize(mesh.parts.size());
+    shape.histories.resize(parts);
     return okStatus();
 }
 
 // Makes the vertices and BLASes of an instance that `pose` gives a shape of its own.
-Result<std::unique_ptr<OwnShape>> makeShape(SceneStore& store, const Package* package, InstanceHandle handle,
-                                            const StoredMesh& mesh, const InstanceView& pose) {
+Result<std::unique_ptr<OwnShape>> makeShape(SceneStore& store, const Package* package, const StoredMesh& mesh,
+                                            const InstanceView& pose) {
     if (!store.deformPass) {
         GLINT_TRY(auto pass, DeformPass::create(store.scene.context, *package));
         store.deformPass.emplace(std::move(pass));
@@ -374,7 +328,12 @@ Result<std::unique_ptr<OwnShape>> makeShape(SceneStore& store, const Package* pa
     auto shape = std::make_unique<OwnShape>();
     shape->joints = static_cast<std::uint32_t>(pose.joints.size());
     shape->weights = static_cast<std::uint32_t>(pose.morphWeights.size());
-    GLINT_TRY_DO(fillShape(store, handle, mesh, *shape));
+    if (Status status = fillShape(store, mesh, *shape); !status) {
+        for (AccelerationStructure& blas : shape->blases) {
+            takeStructure(store, blas);
+        }
+        return status.error();
+    }
     const auto run = [](RunAllocator& runs, std::uint32_t count) {
         const std::uint32_t first = runs.allocate(count);
         return IndexRange{first, first + count};
@@ -436,20 +395,20 @@ gpu::GeometryRecord recordAt(const SceneStore& store, const StoredInstance& inst
     return record;
 }
 
-// A BLAS of a scene that is edited is opaque, and seen from both sides, if the material of its geometry says
-// so.
+// A BLAS of a scene that is edited is seen from both sides if the material of its geometry says so.
 VkAccelerationStructureInstanceKHR placedAt(const SceneStore& store, const StoredInstance& instance,
-                                            bool doubleSided, VkDeviceAddress blas, std::uint32_t geometry) {
+                                            std::size_t part, VkDeviceAddress blas, std::uint32_t geometry) {
     if (!store.editable) {
+        const bool doubleSided = store.meshes.find(instance.mesh)->parts[part].doubleSided;
         return makePlaced(doubleSided, geometry, instance.objectToWorld, blas);
     }
     const auto record = store.geometries.read<gpu::GeometryRecord>(geometry);
     VkAccelerationStructureInstanceKHR placed =
         makePlaced((record.flags & gpu::kGeometryDoubleSided) != 0, geometry, instance.objectToWorld, blas);
-    const bool opaque = (record.flags & (gpu::kGeometryAlphaTested | gpu::kGeometryPassesLight)) == 0;
     const std::uint32_t flags =
-        placed.flags | static_cast<std::uint32_t>(opaque ? VK_GEOMETRY_INSTANCE_FORCE_OPAQUE_BIT_KHR
-                                                         : VK_GEOMETRY_INSTANCE_FORCE_NO_OPAQUE_BIT_KHR);
+        placed.flags | static_cast<std::uint32_t>(isOpaque(store, instance, part)
+                                                      ? VK_GEOMETRY_INSTANCE_FORCE_OPAQUE_BIT_KHR
+                                                      : VK_GEOMETRY_INSTANCE_FORCE_NO_OPAQUE_BIT_KHR);
     placed.flags = flags & 0xFFU;
     // The shader binding table has a record for each shader ID.
     placed.instanceShaderBindingTableRecordOffset = record.shaderId & 0xFFFFFFU;
@@ -457,14 +416,6 @@ VkAccelerationStructureInstanceKHR placedAt(const SceneStore& store, const Store
 }
 
 }  // namespace
-
-AccelerationStructure* structureAt(SceneStore& store, const PartPlace& place) {
-    if (StoredMesh* const mesh = store.meshes.find(place.mesh); mesh != nullptr) {
-        return &mesh->parts[place.part].blas;
-    }
-    StoredInstance* const instance = store.instanceSlots.find(place.instance);
-    return instance == nullptr || instance->shape == nullptr ? nullptr : &instance->shape->blases[place.part];
-}
 
 package::PrimitiveEntry entryOf(const SceneStore& store, const StoredInstance& instance,
                                 std::size_t primitive) {
@@ -480,6 +431,11 @@ package::PrimitiveEntry entryOf(const SceneStore& store, const StoredInstance& i
     entry.key = shading.features;
     entry.geometryFlags = shading.geometryFlags;
     return entry;
+}
+
+void shrinkGeometries(SceneStore& store) {
+    store.geometries.shrink(store.geometryRuns.end());
+    store.firstEmitters.shrink(store.geometryRuns.end());
 }
 
 void writeGeometries(SceneStore& store, InstanceHandle handle, const StoredInstance& instance) {
@@ -499,6 +455,7 @@ void writeGeometries(SceneStore& store, InstanceHandle handle, const StoredInsta
         placeDraws(store, handle, instance);
     }
     noteEmitters(store, handle, instance);
+    checkSeal(store, store.instanceSlots.at(handle.index));
     placeParts(store, instance);
     ++store.shapeVersion;
 }
@@ -506,18 +463,26 @@ void writeGeometries(SceneStore& store, InstanceHandle handle, const StoredInsta
 void placeParts(SceneStore& store, const StoredInstance& instance) {
     const StoredMesh& mesh = *store.meshes.find(instance.mesh);
     const bool isPlaced = instance.isShown();
+    const auto place = [&](std::size_t part, std::uint32_t geometry, VkDeviceAddress blas, const Box& box) {
+        if (isPlaced) {
+            store.topLevel.set(placedAt(store, instance, part, blas, geometry), box);
+        } else {
+            store.topLevel.remove(geometry);
+        }
+    };
+    if (instance.form != nullptr) {
+        for (const SealedRun& run : instance.form->runs) {
+            place(run.first, geometryOf(mesh, instance, run.first), run.blas.address,
+                  transformed(run.box, instance.objectToWorld));
+        }
+        return;
+    }
     const OwnShape* const shape = instance.shape.get();
     const InstanceView pose = poseOf(store, instance);
     forEachPart(mesh, instance, [&](std::size_t i, std::uint32_t geometry) {
         const StoredPart& part = mesh.parts[i];
-        if (isPlaced) {
-            const VkDeviceAddress blas = shape != nullptr ? shape->blases[i].address : part.blas.address;
-            store.topLevel.set(
-                placedAt(store, instance, part.doubleSided, blas, geometry),
-                shape != nullptr ? part.bounds->at(pose) : transformed(part.box, instance.objectToWorld));
-        } else {
-            store.topLevel.remove(geometry);
-        }
+        place(i, geometry, shape != nullptr ? shape->blases[i].address : part.blas.address,
+              shape != nullptr ? part.bounds->at(pose) : transformed(part.box, instance.objectToWorld));
     });
 }
 
@@ -558,7 +523,7 @@ Result<InstanceHandle> placeInstance(SceneStore& store, const Package* package, 
     std::unique_ptr<OwnShape> shape;
     const StoredMesh& mesh = *store.meshes.find(instance.mesh);
     if (mesh.deformsIn(pose)) {
-        GLINT_TRY(shape, makeShape(store, package, store.instanceSlots.next(), mesh, pose));
+        GLINT_TRY(shape, makeShape(store, package, mesh, pose));
     }
     const InstanceHandle handle = store.instanceSlots.add(std::move(instance));
     StoredInstance& placed = store.instanceSlots.at(handle.index);
@@ -637,7 +602,7 @@ Status poseInstance(SceneStore& store, const Package* package, InstanceHandle ha
     std::unique_ptr<OwnShape> made;
     const StoredMesh& mesh = *store.meshes.find(instance.mesh);
     if (mesh.deformsIn(pose)) {
-        GLINT_TRY(made, makeShape(store, package, handle, mesh, pose));
+        GLINT_TRY(made, makeShape(store, package, mesh, pose));
     }
     if (made == nullptr && shape == nullptr) {
         return okStatus();

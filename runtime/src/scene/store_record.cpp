@@ -23,6 +23,9 @@ constexpr MemoryDependency kDeformToBuild{VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT
                                           VK_ACCESS_2_SHADER_WRITE_BIT, kBuildStage,
                                           VK_ACCESS_2_SHADER_READ_BIT};
 
+constexpr MemoryDependency kBuildToQuery{kBuildStage, VK_ACCESS_2_ACCELERATION_STRUCTURE_WRITE_BIT_KHR,
+                                         kBuildStage, VK_ACCESS_2_ACCELERATION_STRUCTURE_READ_BIT_KHR};
+
 constexpr std::size_t kArrays = 10;
 constexpr std::size_t kPoseArray = 7;
 
@@ -39,6 +42,7 @@ struct Prepared {
     std::uint32_t tlasCapacity = 0;
     std::optional<DescriptorSet> set;
     TlasBuild build;
+    UniqueQueryPool sizes;  // of compacted BLASes
 };
 
 class Recorder {
@@ -53,17 +57,19 @@ public:
           update_(context_, prepared_.brief) {}
 
     Status record(std::uint64_t frame, RetiredLot* leftovers) {
+        GLINT_TRY_DO(compactBuilt(store_));
+        GLINT_TRY_DO(settleBlases(store_));
         settleLights(store_);
         decide();
         for (const auto& step : {&Recorder::prepareArrays, &Recorder::prepareTlas, &Recorder::prepareStaging,
-                                 &Recorder::prepareSet}) {
+                                 &Recorder::prepareSet, &Recorder::prepareSizes}) {
             GLINT_TRY_DO((this->*step)());
         }
         if (store_.drawsDirty) {
             scene_.batches = store_.draws.batches();
         }
         recordAll();
-        finish();
+        finish(frame);
         if (leftovers != nullptr) {
             *leftovers = store_.retired.take();
         } else {
@@ -116,6 +122,11 @@ private:
                 const BuildAction action = actionOf(shape, shape.histories[i], surface);
                 shapes_.push_back({index, i, action, surface});
                 works_.push_back({&shape.builds[i], action == BuildAction::Refit});
+                if (!store_.keeps()) {
+                    compacted_.emplace_back(
+                        PartPlace{{}, store_.instanceSlots.handleAt(index), 0, static_cast<std::uint32_t>(i)},
+                        shape.blases[i].handle.get());
+                }
             }
         }
         for (const std::uint32_t index : store_.reshapedMeshes) {
@@ -127,8 +138,9 @@ private:
                 works_.push_back({&*part.build, action == BuildAction::Refit});
             }
         }
-        for (const BlasBuild& build : store_.builds) {
-            works_.push_back({&build});
+        for (const auto& [structure, queued] : store_.builds) {
+            works_.push_back({&queued.build});
+            compacted_.emplace_back(queued.place, structure);
         }
         tlasAction_ = store_.topLevel.next(!works_.empty(), rule_);
         if (store_.trims && tlasAction_ == BuildAction::Keep) {
@@ -212,6 +224,20 @@ private:
         return okStatus();
     }
 
+    // Makes room for the sizes of compacted BLASes.
+    Status prepareSizes() {
+        if (compacted_.empty()) {
+            return okStatus();
+        }
+        const VkQueryPoolCreateInfo info{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                         .queryType = VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR,
+                                         .queryCount = static_cast<std::uint32_t>(compacted_.size())};
+        GLINT_TRY(prepared_.sizes, createHandle<UniqueQueryPool>(context_, context_.vk.CreateQueryPool,
+                                                                 "vkCreateQueryPool", info));
+        context_.vk.ResetQueryPool(context_.handles.device, prepared_.sizes.get(), 0, info.queryCount);
+        return okStatus();
+    }
+
     bool hasWork() const {
         return update_.hasWork() || tlasAction_ != BuildAction::Keep || !works_.empty() ||
                store_.uploader->waiting() > 0;
@@ -247,9 +273,7 @@ private:
         recordStretch(isTimed, kBlasStretch, "bottom levels", [&] {
             recordBuilds(context_, commands_, works_, {prepared_.scratch.address, scratchBytes_});
         });
-        if (store_.upload != nullptr) {
-            recordCompactedSizes(*store_.upload, commands_, structures());
-        }
+        recordSizes();
         recordDependency(context_, commands_, kBuildsInOrder);
         recordStretch(isTimed, kTlasStretch, "top level", [&] { recordTlas(); });
         recordDependency(context_, commands_, kAllToAll);
@@ -274,15 +298,18 @@ private:
         }
     }
 
-    // The structures that an upload builds, in the order of its compaction.
-    std::vector<VkAccelerationStructureKHR> structures() {
-        std::vector<VkAccelerationStructureKHR> handles;
-        if (store_.upload->compaction != nullptr) {
-            for (const PartPlace& place : store_.upload->compaction->parts) {
-                handles.push_back(structureAt(store_, place)->handle.get());
-            }
+    void recordSizes() {
+        if (compacted_.empty()) {
+            return;
         }
-        return handles;
+        std::vector<VkAccelerationStructureKHR> structures;
+        for (const auto& [place, structure] : compacted_) {
+            structures.push_back(structure);
+        }
+        recordDependency(context_, commands_, kBuildToQuery);
+        context_.vk.CmdWriteAccelerationStructuresPropertiesKHR(
+            commands_, static_cast<std::uint32_t>(structures.size()), structures.data(),
+            VK_QUERY_TYPE_ACCELERATION_STRUCTURE_COMPACTED_SIZE_KHR, prepared_.sizes.get(), 0);
     }
 
     void recordTlas() {
@@ -306,7 +333,10 @@ private:
     }
 
     // Takes over everything that was prepared, and notes that nothing is pending.
-    void finish() {
+    void finish(std::uint64_t frame) {
+        if (!compacted_.empty()) {
+            store_.compactions.push_back({std::move(prepared_.sizes), std::move(compacted_), frame});
+        }
         if (prepared_.set) {
             store_.retired.add(std::move(scene_.descriptorPool));
             scene_.descriptorPool = std::move(prepared_.set->pool);
@@ -329,7 +359,7 @@ private:
         store_.builds.clear();
         for (bool* const flag :
              {&store_.drawsDirty, &store_.lightsDirty, &store_.lightsMoved, &store_.emittersDirty,
-              &store_.emittersMoved, &store_.setDirty, &store_.trims}) {
+              &store_.emittersMoved, &store_.setDirty, &store_.trims, &store_.compacts}) {
             *flag = false;
         }
     }
@@ -381,6 +411,7 @@ private:
     std::vector<ShapePart> shapes_;
     std::vector<ChangedPart> parts_;
     std::vector<BlasWork> works_;
+    decltype(Compaction::parts) compacted_;  // BLASes whose compacted sizes are asked for
     BuildAction tlasAction_ = BuildAction::Keep;
     VkDeviceSize scratchBytes_ = 0;
     VkDeviceSize tlasScratchBytes_ = 0;

@@ -23,10 +23,12 @@ SceneStore::SceneStore(GpuScene::State& owner, const Package& package, const Sce
       dataAccess(package.positionFetch()),
       buildsTree(package.lightSamples() > 0),
       topLevel(view.moves, leafOrder),
-      emittersDirty(package.emission() != nullptr) {
+      emittersDirty(package.emission() != nullptr),
+      building(owner.context) {
     if (leafOrder != nullptr) {
         capacity = orderedCapacity(capacity);
     }
+    sealedCapacity = capacity;
     if (editable) {
         // A BLAS holds one primitive, whose material may change.
         capacity.geometries = 1;
@@ -82,7 +84,6 @@ public:
             seal();
         }
         GLINT_TRY_DO(createSetLayout(scene_));
-        GLINT_TRY_DO(prepareCompaction(*store_.upload));
         GLINT_TRY_DO(recordChanges(store_, commands, store_.upload->frame));
         finish();
         return okStatus();
@@ -157,13 +158,14 @@ private:
         return okStatus();
     }
 
-    // Decides alpha tests of a sealed scene, and the order of triangles.
+    // Decides alpha tests of what is sealed, and the order of triangles.
     Status settleTriangles() {
-        if (!store_.editable) {
+        if (!store_.editable || view_.sealed) {
             const Clock::time_point begin = Clock::now();
             // The indices of micromaps are in the order of the triangles, which an order of leaves would
             // change.
-            const std::uint32_t level = store_.leafOrder == nullptr ? micromapLevel(scene_.context) : 0;
+            const bool hasMicromaps = store_.leafOrder == nullptr && !store_.editable;
+            const std::uint32_t level = hasMicromaps ? micromapLevel(scene_.context) : 0;
             decided_ =
                 decideTriangles(package_, known_, view_, records_, blasCapacity(scene_.context), level);
             scene_.statistics.opacityMs = millisecondsSince(begin);
@@ -200,8 +202,12 @@ private:
         return okStatus();
     }
 
-    // Returns whether an instance has the mesh's own shape, or none has the mesh.
+    // Returns whether an instance has the mesh's own shape, or none has the mesh. The instances of a scene
+    // that begins sealed get other BLASes.
     bool isShared(std::uint32_t mesh, std::span<const PrimitiveView> own) const {
+        if (store_.editable) {
+            return !view_.sealed;
+        }
         const bool hasJoints =
             std::ranges::any_of(own, [](const auto& view) { return !view.joints.empty(); });
         const bool hasTargets =
@@ -217,7 +223,7 @@ private:
                 }
             }
         }
-        return !isUsed || store_.editable;
+        return !isUsed;
     }
 
     MeshContent contentOf(std::uint32_t first, std::uint32_t end) const {
@@ -229,12 +235,15 @@ private:
             content.ordered = std::span(ordered_).subspan(first, count);
         }
         content.isShared = isShared(content.primitives.front().mesh, content.primitives);
-        for (std::uint32_t i = first; i < end && !store_.editable; ++i) {
-            const PrimitiveView& view = view_.primitives[i];
-            content.entries.push_back(known_.findPrimitive(view.mesh, view.primitive));
+        for (std::uint32_t i = first; i < end; ++i) {
             const auto split = decided_.splits.find(i);
             content.splits.push_back(split == decided_.splits.end() ? std::nullopt
                                                                     : std::optional(split->second));
+            if (store_.editable) {
+                continue;
+            }
+            const PrimitiveView& view = view_.primitives[i];
+            content.entries.push_back(known_.findPrimitive(view.mesh, view.primitive));
             const auto micromap = scene_.micromaps.find(i);
             content.micromaps.push_back(micromap == scene_.micromaps.end() ? nullptr : &micromap->second);
         }
@@ -247,6 +256,10 @@ private:
         StoredMaterial& material = *store_.materialSlots.find(primitive.material);
         ++material.meshes[mesh.index];
         addKey(material, entry, primitive.attributes);
+        if (primitive.split) {
+            primitive.splitMaterial = primitive.material;
+            store_.decidedMaterials.insert(primitive.material.index);
+        }
     }
 
     Status addMeshes() {
@@ -288,6 +301,9 @@ private:
             instance.visible = view.visible;
             GLINT_TRY(const auto handle, placeInstance(store_, &package_, std::move(instance), view));
             store_.firstInstances.push_back(handle);
+            if (view_.sealed) {
+                sealInstance(store_, handle);
+            }
             store_.posedShape.instances.push_back({view.mesh, view.joints.size(), view.morphWeights.size()});
             store_.lastRows.push_back(view.objectToWorld);
             store_.lastVisible.push_back(view.visible);
@@ -299,8 +315,12 @@ private:
         return store_.geometryRuns.end() > kMostGeometries ? Status(tooManyGeometries("")) : okStatus();
     }
 
-    // Places the parts of decided triangles, after all others.
+    // Places the parts of decided triangles, after all others. Those of a scene that is edited come with
+    // seals.
     void addDecided() {
+        if (store_.editable) {
+            return;
+        }
         for (const InstanceHandle handle : store_.firstInstances) {
             StoredInstance& instance = store_.instanceSlots.at(handle.index);
             const std::uint32_t count = store_.meshes.find(instance.mesh)->decidedCount;

@@ -67,17 +67,6 @@ void TopLevel::remove(std::uint32_t geometry) {
     restructured_ = true;
 }
 
-void TopLevel::moveBlases(const std::unordered_map<VkDeviceAddress, VkDeviceAddress>& moved) {
-    for (std::uint32_t i = 0; i < records_.count(); ++i) {
-        auto instance = records_.read<Instance>(i);
-        if (const auto found = moved.find(instance.accelerationStructureReference); found != moved.end()) {
-            instance.accelerationStructureReference = found->second;
-            records_.write(i, instance);
-        }
-    }
-    restructured_ = true;
-}
-
 BuildAction TopLevel::next(bool blasChanged, MotionView::Builds builds) const {
     if (!restructured_ && !changed_ && !blasChanged) {
         return BuildAction::Keep;

@@ -28,8 +28,6 @@ public:
     void set(const VkAccelerationStructureInstanceKHR& instance, const Box& box);
     // Removes an instance, if it is there.
     void remove(std::uint32_t geometry);
-    // Replaces the addresses of BLASes that were copied elsewhere.
-    void moveBlases(const std::unordered_map<VkDeviceAddress, VkDeviceAddress>& moved);
 
     // Decides what the next recording does. `blasChanged` says whether a BLAS of some instance was built or
     // refitted. An update keeps the tree of the last build. So the TLAS is built anew if instances came or

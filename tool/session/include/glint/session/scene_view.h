@@ -42,6 +42,7 @@ struct SceneViewData {
     std::uint32_t packageScene = 0;    // as in SceneView
     bool moves = false;                // as in SceneView
     bool editable = false;             // as in SceneView
+    bool sealed = false;               // the same
     std::uint32_t textureRoom = 1024;  // as in SceneView
     SceneView::TraversalOrder traversalOrder = SceneView::TraversalOrder::Auto;
     SceneView::OpacityUse opacity = SceneView::OpacityUse::Proved;
