@@ -91,7 +91,8 @@ vec3 skyBehind(Surface surface, Features features, float eta) {
     return hostSkyAround(toWorld(surface, direction), surface.roughness);
 }
 
-vec3 ambientTransmission(Surface surface, Features features) {
+// `below` is the share that passes the microfacets.
+vec3 ambientTransmission(Surface surface, Features features, GLINT_RELAXED float below) {
     Base b = surface.bsdf.base;
     bool spreads = dispersesLight(features);
     vec3 behind = vec3(0.0);
@@ -101,7 +102,7 @@ vec3 ambientTransmission(Surface surface, Features features) {
     }
     // Without compensation, the loss of single scattering is subtracted too.
     GLINT_RELAXED float dropped = GLINT_ENERGY_COMPENSATION != 0 ? 0.0 : b.viewLoss;
-    return b.transmitted * behind * max(diffusePassed(b) - dropped, 0.0);
+    return b.transmitted * behind * max(below - dropped, 0.0);
 }
 
 vec3 ambientLight(Surface surface, Features features, vec3 view, SkyShares sky) {
@@ -115,7 +116,7 @@ vec3 ambientLight(Surface surface, Features features, vec3 view, SkyShares sky) 
                  ambientReflection(surface, features, view, sky.mirrored);
     vec3 back = vec3(0.0);
     if (passesFacets(features) && sky.transmitted > 0.0) {
-        back += ambientTransmission(surface, features) * sky.transmitted;
+        back += ambientTransmission(surface, features, below) * sky.transmitted;
     }
     if (scattersBehind(features)) {
         back += surface.bsdf.diffuseTransmitted * (below * sky.behind) * hostSkyIrradianceOverPi(-surface.normal);

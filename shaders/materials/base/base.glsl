@@ -162,6 +162,10 @@ Facet facetBetween(Base b, Features features, vec3 view, vec3 l) {
 // Without it, light enters by the Fresnel of the half vector: glTF 2.0, appendix B.3.5. l.z > 0; light from behind is
 // mirrored. There the half vector has no meaning, and the Fresnel of the view counts.
 GLINT_RELAXED float diffuseShare(Base b, Features features, vec3 view, vec3 l, bool behind) {
+    GLINT_RELAXED float fresnel =
+        GLINT_ENERGY_COMPENSATION != 0 ? 0.0
+                                       : largest(behind ? fresnelSchlick(b.f0, b.f90, view.z)
+                                                        : facetBetween(b, features, view, l).dielectricFresnel);
     if (seenFromWithin(b, features)) {
         if (keepsBlocked(features, b.eta.y)) {
             return 0.0;  // The facets take all: volumeBsdf() removes the diffuse lobes from within.
@@ -173,8 +177,7 @@ GLINT_RELAXED float diffuseShare(Base b, Features features, vec3 view, vec3 l, b
         return interfacePassed(b.f0, b.f90, view2, b.eta.y) * interfacePassed(b.f0, b.f90, light2, b.eta.y);
     }
     if (GLINT_ENERGY_COMPENSATION == 0) {
-        return 1.0 - largest(behind ? fresnelSchlick(b.f0, b.f90, view.z)
-                                    : facetBetween(b, features, view, l).dielectricFresnel);
+        return 1.0 - fresnel;
     }
     vec2 light = lobeAlbedo(b, features, l);
     float in1 = smallest(specularPassed(b, b.viewLoss, b.viewBias));
@@ -322,16 +325,17 @@ vec3 baseChances(Base b, Features features, GLINT_RELAXED vec3 diffuse, GLINT_RE
     vec3 single = singleScatterAlbedo(b, features);
     vec3 all = specularAlbedo(b, features);
     float below = diffusePassed(b);
-    vec3 chances = vec3(luminance(single), luminance(diffuse) * below + luminance(all - single), 0.0);
+    float facets = luminance(single);
+    float passed = 0.0;
     if (passesFacets(features)) {
         float later = scattersPassage(features) ? smallest(passedAgain(b)) * b.viewLoss : 0.0;
-        chances.x += luminance(b.transmitted) * max(below - later, 0.0);
-        chances.z = luminance(b.transmitted) * later;
+        facets += luminance(b.transmitted) * max(below - later, 0.0);
+        passed = luminance(b.transmitted) * later;
     }
     if (passesDiffusely(features)) {
-        chances.z += luminance(behind) * below;
+        passed += luminance(behind) * below;
     }
-    return chances;
+    return vec3(facets, luminance(diffuse) * below + luminance(all - single), passed);
 }
 
 // The probabilities that a facet reflects (x) and that it lets light through (y), from the squared cosine under which

@@ -452,8 +452,8 @@ TEST(Declarations, MacrosOfPacksMeetNoneOfGlints) {
     }
 }
 
-// Code outside of the folders of declarations asks for roles, and shaders ask materials/base/queries.glsl what
-// a base does. Excepted are code that reads glTF, and code that is about materials of glTF.
+// Code outside of the folders of declarations asks for roles, and shaders ask materials/base/queries.glsl
+// what a base does. Excepted are code that reads glTF, and code that is about materials of glTF.
 TEST(Declarations, NoOtherCodeNamesWhatTheyDeclare) {
     constexpr std::string_view kExcepted[] = {"shaders/materials/", "tool/gltf/document/", "tool/synthetic/",
                                               "tool/measure/features/combinations.cpp"};
