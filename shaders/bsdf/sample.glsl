@@ -33,14 +33,14 @@ LobeChances lobeChances(Bsdf b, Features features) {
     // A surface that is black, or so dark that the quotient would overflow, has one lobe.
     bool isBlack = total < 1e-30;
     float scale = isBlack ? 0.0 : 1.0 / total;
+    chances.diffuse = ofBase.y * (base * scale);
+    chances.passed = ofBase.z * (base * scale);
     if (samplesBase(features)) {
         chances.own = !isBlack ? ofBase.x * base * scale : 1.0;
-        chances.diffuse = ofBase.y * (base * scale);
     } else {
         chances.own = 0.0;
-        chances.diffuse = !isBlack ? ofBase.y * (base * scale) : 1.0;
+        chances.diffuse = !isBlack ? chances.diffuse : 1.0;
     }
-    chances.passed = ofBase.z * (base * scale);
     scaleChances(chances.layers, scale);
     return chances;
 }

@@ -9,7 +9,6 @@
 #include "bsdf/transmission.glsl"
 #include "materials/clearcoat/clearcoat.glsl"
 #include "materials/dispersion/dispersion.glsl"
-#include "bsdf/attenuation.glsl"
 #include "bsdf/bsdf.glsl"
 #include "bsdf/sample.glsl"
 #include "numerics/probe_vectors.glsl"

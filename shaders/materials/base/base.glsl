@@ -23,8 +23,7 @@ struct Base {
     GLINT_RELAXED vec3 transmitted;  // tint and share of light that passes the microfacets
     vec3 eta;                        // n_t / n_i for red, green, blue; read if the key has a volume
 #if GLINT_SHARED_LIGHTS
-    float mirrored;                  // share of the microfacets' first reflection that counts; 1 unless rays bring the
-                                     // rest
+    float mirrored;                  // share of their first reflection that counts; 1 unless rays bring the rest
 #endif
     // basePrepare() sets the following members, which depend on the view:
     float viewLoss;  // 1 - E: the share that white microfacets lose by single scattering
@@ -162,10 +161,10 @@ Facet facetBetween(Base b, Features features, vec3 view, vec3 l) {
 // Without it, light enters by the Fresnel of the half vector: glTF 2.0, appendix B.3.5. l.z > 0; light from behind is
 // mirrored. There the half vector has no meaning, and the Fresnel of the view counts.
 GLINT_RELAXED float diffuseShare(Base b, Features features, vec3 view, vec3 l, bool behind) {
-    GLINT_RELAXED float fresnel =
-        GLINT_ENERGY_COMPENSATION != 0 ? 0.0
-                                       : largest(behind ? fresnelSchlick(b.f0, b.f90, view.z)
-                                                        : facetBetween(b, features, view, l).dielectricFresnel);
+    GLINT_RELAXED vec3 fresnel = vec3(0.0);
+    if (GLINT_ENERGY_COMPENSATION == 0) {
+        fresnel = behind ? fresnelSchlick(b.f0, b.f90, view.z) : facetBetween(b, features, view, l).dielectricFresnel;
+    }
     if (seenFromWithin(b, features)) {
         if (keepsBlocked(features, b.eta.y)) {
             return 0.0;  // The facets take all: volumeBsdf() removes the diffuse lobes from within.
@@ -177,7 +176,7 @@ GLINT_RELAXED float diffuseShare(Base b, Features features, vec3 view, vec3 l, b
         return interfacePassed(b.f0, b.f90, view2, b.eta.y) * interfacePassed(b.f0, b.f90, light2, b.eta.y);
     }
     if (GLINT_ENERGY_COMPENSATION == 0) {
-        return 1.0 - fresnel;
+        return 1.0 - largest(fresnel);
     }
     vec2 light = lobeAlbedo(b, features, l);
     float in1 = smallest(specularPassed(b, b.viewLoss, b.viewBias));

@@ -1,6 +1,5 @@
 // KHR_materials_volume: the index on the far side, and the absorption of the volume.
 #include "hit/surface_values.glsl"
-#include "bsdf/attenuation.glsl"
 #include "materials/volume/nesting.glsl"
 
 void volumeBsdf(Hit hit, Features features, inout SurfaceValues values, inout Surface surface) {
