@@ -168,7 +168,7 @@ std::vector<OutputRange> claimedRanges() {
     ranges[3] = {"values.metallic", -kAny, kAny};
     ranges[4] = {"values.roughness", -kAny, kAny};
     ranges[5] = {"values.occlusion", -kAny, kAny};
-    vector(6, "surface.bsdf.f0", -kAny, kAny);
+    vector(6, "surface.bsdf.base.f0", -kAny, kAny);
     vector(9, "surface.bsdf.diffuse", -kAny, kAny);
     vector(12, "Shares().reflected", -kShareSlack, 1.0 + kShareSlack);
     ranges[15] = {"Shares().passed", -kShareSlack, 1.0 + kShareSlack};

@@ -136,25 +136,33 @@ bool isOwnOfKey(Features features, uint model, uint always, uint sometimes, uint
     ((GLINT_IS_MODEL(model) && (bits) == 0u) ||                                                                 \
      (GLINT_MAY_BE_MODEL(model) && ownOfKey(features, model, word, bits)))
 
-// Whether the word of the key's model has all of these bits. This and what asks it below are macros, so that what a
-// module decides is known before functions are inlined.
-#define GLINT_MODEL_HAS(features, bits)                                                                         \
-    ((GLINT_KNOWS_MODEL && (GLINT_MODULE_MODEL & (bits)) == (bits)) ||                                          \
-     (!GLINT_KNOWS_MODEL && (modelOfKey(features) & (bits)) == (bits)))
+// The word of the key's model, and whether it has all of these bits. These and what asks them below are macros, so that
+// what a module decides is known before functions are inlined.
+#define GLINT_MODEL_WORD(features) (GLINT_KNOWS_MODEL ? GLINT_MODULE_MODEL : modelOfKey(features))
+#define GLINT_MODEL_HAS(features, bits) (GLINT_USES_MODELS != 0 && (GLINT_MODEL_WORD(features) & (bits)) == (bits))
 
 // Whether light changes what the surface shows.
 #define isLit(features) (!hasLobe(features, GLINT_UNLIT_LOBES) && !GLINT_MODEL_HAS(features, kModelUnlit))
 
 // Whether the key has a model that a pack declares.
-#define isOfPack(features)                                                                                      \
-    ((GLINT_KNOWS_MODEL && (GLINT_MODULE_MODEL & kModelNumber) != 0u) ||                                        \
-     (!GLINT_KNOWS_MODEL && (modelOfKey(features) & kModelNumber) != 0u))
+#define isOfPack(features) ((GLINT_MODEL_WORD(features) & kModelNumber) != 0u)
 
-// Whether a model of a pack stands in place of glTF's base (bsdf/model.glsl).
+// Whether a model of a pack stands in place of Glint's own base (bsdf/model.glsl).
 #define hasModel(features) GLINT_MODEL_HAS(features, kModelOwnCode)
 
 // Whether such a model samples directions itself.
 #define samplesModel(features) GLINT_MODEL_HAS(features, kModelSampled)
+
+// Whether the base samples directions itself, as Glint's own does.
+#define samplesBase(features) (!hasModel(features) || samplesModel(features))
+
+// Whether the base sends light to the far side.
+#define transmits(features)                                                                                     \
+    (hasLobe(features, GLINT_BOTH_SIDES_LOBES) || GLINT_MODEL_HAS(features, kModelBothSides))
+
+// Whether any base scatters light there: Bsdf::diffuseTransmitted.
+#define scattersBehind(features)                                                                                \
+    (passesDiffusely(features) || GLINT_MODEL_HAS(features, kModelOwnCode | kModelBothSides))
 
 // The features of any key of the scene, with all lobes: for primary surfaces.
 #define GLINT_PRIMARY_FEATURES(geometry) Features(GLINT_ALL, GLINT_KEY(geometry))
@@ -162,4 +170,4 @@ bool isOwnOfKey(Features features, uint model, uint always, uint sometimes, uint
 // Returns the features of a hit of a ray, with the lobes that hits keep: for code before the switch.
 #define GLINT_HIT_FEATURES(geometry) Features(GLINT_HIT_ALL, GLINT_KEY(geometry))
 
-#include "bsdf/queries.glsl"
+#include "materials/base/queries.glsl"

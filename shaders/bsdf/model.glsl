@@ -1,4 +1,4 @@
-// The interface of a model: the base of the materials that name its extension, in place of glTF's. A declaration with
+// The interface of a model: the base of materials that name its extension, in place of Glint's own. A declaration with
 // "model" has a struct of its own name, here Toon, and these functions, which take the prepared view and directions in
 // the frame of the surface:
 //

@@ -6,6 +6,12 @@
 // the microfacets are.
 const float kMinIndexStep = 1e-4;
 
+// The share of light that passes a length of absorbing medium (Beer and Lambert): KHR_materials_volume. absorption is
+// per metre.
+vec3 volumeTransmittance(vec3 absorption, float distance) {
+    return exp(-absorption * distance);
+}
+
 // Red, green and blue have indices of their own (KHR_materials_dispersion). Values of each are computed in a loop, so
 // that shaders that decide about dispersion at run time have its code once.
 float channelOf(vec3 v, int channel) {

@@ -27,11 +27,11 @@ vec3 skyAroundLobe(Surface surface) {
     float total = 0.0;
     for (int i = 0; i < kLobeTaps; ++i) {
         vec2 u = vec2(float(bitfieldReverse(uint(i))) * 2.3283064e-10, float(i) / float(kLobeTaps));
-        vec3 h = sampleVisibleNormal(b.view, b.alpha, u + vec2(0.5 / float(kLobeTaps)));
+        vec3 h = sampleVisibleNormal(b.view, b.base.alpha, u + vec2(0.5 / float(kLobeTaps)));
         vec3 l = reflect(-b.view, h);
         // G₂ / G₁. Light from below is masked.
-        float weight = max(l.z, 0.0) * ggxVisibility(l, b.view, b.alpha);
-        sum += weight * hostSkyAround(toWorld(surface, l), tapRoughness(mirroredPdf(b.view, h, b.alpha)));
+        float weight = max(l.z, 0.0) * ggxVisibility(l, b.view, b.base.alpha);
+        sum += weight * hostSkyAround(toWorld(surface, l), tapRoughness(mirroredPdf(b.view, h, b.base.alpha)));
         total += weight;
     }
     return sum / max(total, 1e-12);
@@ -66,9 +66,8 @@ SkyShares sampledShares(Surface surface, Features features, SkyShares shares, Sk
 
 // The light that the microfacets reflect of the sky. `mirrored` is the share of the first bounce that the sky brings.
 vec3 ambientReflection(Surface surface, Features features, vec3 view, GLINT_RELAXED float mirrored) {
-    GLINT_RELAXED vec3 all = specularAlbedo(surface.bsdf, features, surface.bsdf.viewLoss, surface.bsdf.viewBias);
-    GLINT_RELAXED vec3 first = singleScatterAlbedo(surface.bsdf, features, surface.bsdf.viewLoss,
-                                                   surface.bsdf.viewBias);
+    GLINT_RELAXED vec3 all = specularAlbedo(surface.bsdf.base, features);
+    GLINT_RELAXED vec3 first = singleScatterAlbedo(surface.bsdf.base, features);
 #if GLINT_SKY_LIGHT
     // Samples of the sky bring the light that bounces between microfacets.
     all = first;
@@ -92,31 +91,32 @@ vec3 skyBehind(Surface surface, Features features, float eta) {
     return hostSkyAround(toWorld(surface, direction), surface.roughness);
 }
 
-vec3 ambientTransmission(Surface surface, Features features) {
-    Bsdf bsdf = surface.bsdf;
+// `below` is the share that passes the microfacets.
+vec3 ambientTransmission(Surface surface, Features features, GLINT_RELAXED float below) {
+    Base b = surface.bsdf.base;
     bool spreads = dispersesLight(features);
     vec3 behind = vec3(0.0);
     for (int channel = spreads ? 0 : 1; channel < (spreads ? 3 : 2); ++channel) {
-        vec3 sky = skyBehind(surface, features, channelOf(bsdf.eta, channel));
+        vec3 sky = skyBehind(surface, features, channelOf(b.eta, channel));
         behind = spreads ? withChannel(behind, channel, channelOf(sky, channel)) : sky;
     }
     // Without compensation, the loss of single scattering is subtracted too.
-    GLINT_RELAXED float dropped = GLINT_ENERGY_COMPENSATION != 0 ? 0.0 : bsdf.viewLoss;
-    return bsdf.transmitted * behind * max(diffusePassed(surface) - dropped, 0.0);
+    GLINT_RELAXED float dropped = GLINT_ENERGY_COMPENSATION != 0 ? 0.0 : b.viewLoss;
+    return b.transmitted * behind * max(below - dropped, 0.0);
 }
 
 vec3 ambientLight(Surface surface, Features features, vec3 view, SkyShares sky) {
 #if GLINT_SKY_LIGHT
     sky = ambientShares(surface, features, sky);
 #endif
-    GLINT_RELAXED float below = diffusePassed(surface);
+    GLINT_RELAXED float below = diffusePassed(surface.bsdf.base);
     // The occlusion texture describes the outside, and so do the rays of ambient occlusion.
     GLINT_RELAXED float open = surface.occlusion * sky.open;
     vec3 front = surface.bsdf.diffuse * (below * sky.diffuse) * hostSkyIrradianceOverPi(surface.normal) +
                  ambientReflection(surface, features, view, sky.mirrored);
     vec3 back = vec3(0.0);
     if (passesFacets(features) && sky.transmitted > 0.0) {
-        back += ambientTransmission(surface, features) * sky.transmitted;
+        back += ambientTransmission(surface, features, below) * sky.transmitted;
     }
     if (scattersBehind(features)) {
         back += surface.bsdf.diffuseTransmitted * (below * sky.behind) * hostSkyIrradianceOverPi(-surface.normal);

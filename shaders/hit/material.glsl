@@ -1,5 +1,6 @@
 // Makes a Surface of a hit and its material, by the stages of the material's features.
 #include "generated/material_stages.glsl"
+#include "materials/base/values.glsl"
 
 // Returns the material's values of the surface at coordinates that are already changed.
 SurfaceValues valuesAt(Hit hit, Features features) {
@@ -14,27 +15,19 @@ SurfaceValues surfaceValues(Hit hit, Features features) {
     return valuesAt(hit, features);
 }
 
-// Returns the base's BSDF: glTF 2.0, appendix B.3.5; of a model, what it has unless it says more. The layers are not
-// set.
-Bsdf makeBase(SurfaceValues values, Features features) {
-    Bsdf bsdf;
-    bool both = hasBothBases(features);
-    bsdf.diffuse = values.color.rgb * values.dielectric;
-    bsdf.metalF0 = values.color.rgb;
-    bsdf.metallic = values.metallic;
-    bsdf.f0 = both ? values.f0 : mix(values.f0, values.color.rgb, values.metallic);
-    bsdf.f90 = both ? values.f90 : mix(values.f90, 1.0, values.metallic);
-    bsdf.alpha = vec2(max(values.roughness * values.roughness, kMinAlpha));
-    bsdf.transmitted = vec3(0.0);
-    bsdf.diffuseTransmitted = vec3(0.0);
-    bsdf.eta = vec3(1.0);
+// Returns the BSDF of Glint's own base, or what that of a model has unless it says more. The layers are not set.
+Bsdf makeBsdf(SurfaceValues values, Features features) {
     if (hasModel(features)) {
-        bsdf.diffuse = values.color.rgb;
-        bsdf.f0 = bsdf.metalF0 = vec3(0.0);
-        bsdf.f90 = bsdf.metallic = 0.0;
+        values.f0 = vec3(0.0);
+        values.f90 = values.metallic = 0.0;
+        values.dielectric = 1.0;
     }
+    Bsdf bsdf;
+    bsdf.diffuse = values.color.rgb * values.dielectric;
+    bsdf.diffuseTransmitted = vec3(0.0);
+    bsdf.base = makeBase(values, features);
 #if GLINT_SHARED_LIGHTS
-    bsdf.mirrored = 1.0;
+    bsdf.counted = 1.0;
     bsdf.layers.counted = wholeLayerShares();
 #endif
     return bsdf;
@@ -51,7 +44,7 @@ Surface surfaceWith(Hit hit, Features features, SurfaceValues values) {
     surface.unabsorbed = vec3(1.0);
 #endif
     buildBasis(surface.normal, surface.tangent, surface.bitangent);
-    surface.bsdf = makeBase(values, features);
+    surface.bsdf = makeBsdf(values, features);
     runBsdfStage(hit, features, values, surface);
     prepareBsdf(surface.bsdf, features, toSurface(surface, hit.view));
     surface.emission = runEmissionStage(hit, features) *

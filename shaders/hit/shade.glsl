@@ -28,19 +28,19 @@ bool sendsRay() {
 // Leaves the lobes on which samples of the light bring its light. `sky` is the share that no ray of an effect brings.
 void keepSampledLobes(Hit hit, Features features, uint emitter, SkyShares sky, inout Surface surface) {
     // An effect that follows the transmitted light finds shared lights itself.
-    surface.bsdf.transmitted *= sky.transmitted;
+    surface.bsdf.base.transmitted *= sky.transmitted;
 #if GLINT_SKY_LIGHT
     if (emitter == kSkyEmitter) {
         if (!sendsRay()) {
             keepShares(features, sampledShares(surface, features, wholeSky(), wholeSky()), surface);
         }
 #if GLINT_SHADOW_GLASS
-        surface.bsdf.transmitted = vec3(0.0);
+        surface.bsdf.base.transmitted = vec3(0.0);
 #endif
     }
 #endif
 #if GLINT_EMISSIVE_LIGHTS && GLINT_SHADOW_GLASS
-    surface.bsdf.transmitted = vec3(0.0);
+    surface.bsdf.base.transmitted = vec3(0.0);
 #endif
 }
 
@@ -65,7 +65,7 @@ vec3 irradianceOfShared(Hit hit, Features features, DrawnLight light, SkyShares 
 #if GLINT_PATHS
     if (pathGoesOn()) {
         Surface whole = lit;
-        whole.bsdf.transmitted *= sky.transmitted;
+        whole.bsdf.base.transmitted *= sky.transmitted;
         density += bsdfPdf(whole.bsdf, features, toSurface(lit, light.direction));
     }
 #endif
@@ -107,7 +107,7 @@ vec3 countedEmission(Hit hit, Surface surface) {
 vec3 irradianceOf(Hit hit, Features features, DrawnLight light, inout Surface lit) {
 #if GLINT_SHADOW_GLASS
     if (passesFacets(features)) {
-        lit.bsdf.transmitted = vec3(0.0);
+        lit.bsdf.base.transmitted = vec3(0.0);
         if (isWithinGlass(hit, features)) {
             return vec3(0.0);
         }
@@ -138,10 +138,10 @@ float partOfSample(Hit hit, Surface surface, Features features, DrawnLight light
     if (light.density <= 0.0) {
         return 1.0;
     }
-    lit.bsdf.transmitted *= sky.transmitted;
+    lit.bsdf.base.transmitted *= sky.transmitted;
 #if GLINT_PATHS
     if (!isSampledAlone(hit, features, dot(light.direction, hit.geometricNormal) < 0.0)) {
-        surface.bsdf.transmitted *= sky.transmitted;
+        surface.bsdf.base.transmitted *= sky.transmitted;
         return light.density /
                (light.density + bsdfPdf(surface.bsdf, features, toSurface(surface, light.direction)));
     }
@@ -295,7 +295,7 @@ ShadeResult shadeSurface(Hit hit, Surface surface, Features features) {
     // An effect that has traced the transmitted light itself leaves none. The last bounce has a direction, too, which
     // meets lights alone.
     Surface followed = surface;
-    followed.bsdf.transmitted *= sky.transmitted;
+    followed.bsdf.base.transmitted *= sky.transmitted;
     BsdfSample drawn = drawDirection(hit, followed, features);
     chooseLight(hit, surface, features, sky, drawn, result);
     if (pathGoesOn()) {
@@ -307,7 +307,7 @@ ShadeResult shadeSurface(Hit hit, Surface surface, Features features) {
     chooseLight(hit, surface, features, sky, result);
     if (pathGoesOn()) {
         // An effect that has traced the transmitted light itself leaves none.
-        surface.bsdf.transmitted *= sky.transmitted;
+        surface.bsdf.base.transmitted *= sky.transmitted;
         BsdfSample drawn = drawDirection(hit, surface, features);
         result.path = nextStep(hit, surface, features, drawn, arrivingShare(hit.arrival, hit.position));
     } else {

@@ -17,15 +17,15 @@ ShadeResult shade(Hit hit, Features features) {
         answer.emission = surface.emission;
         return ShadeResult(answer);
     }
-    Bsdf b = surface.bsdf;
+    Base b = surface.bsdf.base;
     answer.normal = surface.normal;
     answer.roughness = surface.roughness;
-    answer.albedo = b.diffuse;
+    answer.albedo = surface.bsdf.diffuse;
     answer.occlusion = surface.occlusion;
     answer.f0 = withMetal(b, features, b.f0, b.metalF0);
     answer.f90 = hasBothBases(features) ? mix(b.f90, 1.0, b.metallic) : b.f90;
     answer.emission = surface.emission;
-    answer.transmission = luminance(b.transmitted) + luminance(b.diffuseTransmitted);
+    answer.transmission = luminance(b.transmitted) + luminance(surface.bsdf.diffuseTransmitted);
     return ShadeResult(answer);
 }
 

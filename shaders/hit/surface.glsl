@@ -47,8 +47,3 @@ vec3 scatteredLight(Surface surface, Features features, vec3 geometricNormal, ve
 GLINT_RELAXED float baseShare(Surface surface, Features features) {
     return passedByLayers(surface.bsdf.layers, features, surface.bsdf.view);
 }
-
-// The share of a uniform sky's light that the microfacets let through to the diffuse lobes.
-GLINT_RELAXED float diffusePassed(Surface surface) {
-    return max(smallest(specularPassed(surface.bsdf, surface.bsdf.viewLoss, surface.bsdf.viewBias)), 0.0);
-}

@@ -47,7 +47,7 @@ vec4 storedAlbedo(vec3 albedo) {
 
 // The share of light that passes microfacets and layers both ways.
 float passedToDiffuse(PrimaryPoint at) {
-    return diffusePassed(at.surface) * baseShare(at.surface, at.features);
+    return diffusePassed(at.surface.bsdf.base) * baseShare(at.surface, at.features);
 }
 
 vec3 diffuseAlbedo(PrimaryPoint at) {
@@ -60,11 +60,11 @@ vec3 diffuseAlbedo(PrimaryPoint at) {
 
 vec3 specularAlbedoWithLayers(PrimaryPoint at) {
     Bsdf b = at.surface.bsdf;
-    return addAlbedoOfLayers(b.layers, at.features, b.view, specularAlbedo(b, at.features, b.viewLoss, b.viewBias));
+    return addAlbedoOfLayers(b.layers, at.features, b.view, specularAlbedo(b.base, at.features));
 }
 
 vec3 transmissionAlbedo(PrimaryPoint at) {
-    return passesFacets(at.features) ? at.surface.bsdf.transmitted * passedToDiffuse(at) : vec3(0.0);
+    return passesFacets(at.features) ? at.surface.bsdf.base.transmitted * passedToDiffuse(at) : vec3(0.0);
 }
 
 vec4 primaryAlbedo(PrimaryPoint at) {

@@ -84,7 +84,7 @@ GlintSurface librarySurface(GlintHit given, HostGeometry geometry, Features feat
     Bsdf bsdf = result.inner.bsdf;
     result.normal = result.inner.normal;
     result.albedo = bsdf.diffuse;
-    result.f0 = withMetal(bsdf, features, bsdf.f0, bsdf.metalF0);
+    result.f0 = withMetal(bsdf.base, features, bsdf.base.f0, bsdf.base.metalF0);
     result.roughness = result.inner.roughness;
     result.emission = result.inner.emission;
     result.occlusion = result.inner.occlusion;
@@ -158,8 +158,7 @@ GlintMirror libraryMirror(GlintSurface given, Features features) {
     }
     Surface surface = given.inner;
     result.direction = onSide(reflect(-given.view, surface.normal), given.geometricNormal);
-    result.weight = singleScatterAlbedo(surface.bsdf, features, surface.bsdf.viewLoss, surface.bsdf.viewBias) *
-                    baseShare(surface, features);
+    result.weight = singleScatterAlbedo(surface.bsdf.base, features) * baseShare(surface, features);
     SkyShares with = wholeSky();
     SkyShares without = wholeSky();
     without.mirrored = 0.0;

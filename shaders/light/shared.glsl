@@ -55,10 +55,11 @@ bool passesAsLight(uint emitter) {
 
 // Keeps these shares of the lobes.
 void keepShares(Features features, SkyShares shares, inout Surface surface) {
-    surface.bsdf.mirrored = hasModel(features) ? shares.diffuse : shares.mirrored;
+    surface.bsdf.base.mirrored = shares.mirrored;
+    surface.bsdf.counted = shares.diffuse;
     surface.bsdf.layers.counted = shares.layers;
     surface.bsdf.diffuse *= shares.diffuse;
-    surface.bsdf.transmitted *= shares.transmitted;
+    surface.bsdf.base.transmitted *= shares.transmitted;
     surface.bsdf.diffuseTransmitted *= shares.behind;
 }
 

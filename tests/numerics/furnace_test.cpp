@@ -22,7 +22,7 @@ constexpr std::uint64_t kSeed = 20240601;
 double singleScatterAlbedo(double alpha, double cosine, int points) {
     glsl::energyCompensation = 0;
     TestMaterial material = makeMaterial(alpha);
-    material.bsdf.f0 = glm::dvec3(1.0);
+    material.bsdf.base.f0 = glm::dvec3(1.0);
     const double result = albedo(material.seenFrom(direction(cosine, 0.4)), points).x;
     glsl::energyCompensation = 1;
     return result;
@@ -72,7 +72,7 @@ TEST(Ggx, SingleScatterAlbedoAgreesWithTheTable) {
 // Returns the share of a white sky that black microfacets (f0 = 0, f90 = 1) or white ones reflect once.
 double reflectedOnce(TestMaterial material, double f0, const glm::dvec3& view) {
     glsl::energyCompensation = 0;
-    material.bsdf.f0 = glm::dvec3(f0);
+    material.bsdf.base.f0 = glm::dvec3(f0);
     const double result = albedo(material.seenFrom(view), 8000).x;
     glsl::energyCompensation = 1;
     return result;
@@ -84,12 +84,13 @@ TEST(Ggx, AnisotropicAlbedoIsWithinItsBounds) {
     for (int i = 0; i < 400; ++i) {
         TestMaterial material = makeMaterial(randomAlpha(engine, 1e-3));
         material.lobes = GLINT_ANISOTROPY;
-        material.bsdf.alpha.x = anisotropicAlpha(material.bsdf.alpha.y, i % 3 == 0 ? 1.0 : uniform(engine));
+        material.bsdf.base.alpha.x =
+            anisotropicAlpha(material.bsdf.base.alpha.y, i % 3 == 0 ? 1.0 : uniform(engine));
         const double cosine = i % 2 == 0 ? std::exp(uniform(engine, std::log(1e-3), 0.0)) : uniform(engine);
         const glm::dvec3 view = direction(cosine, uniform(engine, 0.0, 2.0 * kPi));
         const TestMaterial seen = material.seenFrom(view);
-        const double white = 1.0 - seen.bsdf.viewLoss - reflectedOnce(material, 1.0, view);
-        const double weighted = seen.bsdf.viewBias - reflectedOnce(material, 0.0, view);
+        const double white = 1.0 - seen.bsdf.base.viewLoss - reflectedOnce(material, 1.0, view);
+        const double weighted = seen.bsdf.base.viewBias - reflectedOnce(material, 0.0, view);
         EXPECT_GE(white, -2.5e-3) << seen;
         EXPECT_LE(white, cosine < 0.05 ? 1.8e-2 : 1e-2) << seen;
         EXPECT_GE(weighted, -2.5e-3) << seen;
@@ -100,7 +101,7 @@ TEST(Ggx, AnisotropicAlbedoIsWithinItsBounds) {
 TEST(Furnace, WhiteMetalReflectsEverything) {
     for (const double roughness : {0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.85, 1.0}) {
         TestMaterial metal = makeMaterial(roughness * roughness);
-        metal.bsdf.f0 = glm::dvec3(1.0);
+        metal.bsdf.base.f0 = glm::dvec3(1.0);
         for (const double cosine : kCosines) {
             const double reflected = albedo(metal.seenFrom(direction(cosine, 0.4)), 20000).x;
             EXPECT_NEAR(reflected, 1.0, 0.01) << "roughness " << roughness << ", cosine " << cosine;
@@ -117,17 +118,17 @@ TEST(Furnace, APartialMetalIsAMixOfTwoBases) {
             engine, GLINT_ANISOTROPY | GLINT_TRANSMISSION | GLINT_VOLUME | GLINT_DIFFUSE_TRANSMISSION);
         dielectric.inputs = 0;
         TestMaterial metal = dielectric;
-        metal.bsdf.f0 = colour(engine);
-        metal.bsdf.f90 = 1.0;
-        metal.bsdf.diffuse = metal.bsdf.transmitted = metal.bsdf.diffuseTransmitted = glm::dvec3(0.0);
+        metal.bsdf.base.f0 = colour(engine);
+        metal.bsdf.base.f90 = 1.0;
+        metal.bsdf.diffuse = metal.bsdf.base.transmitted = metal.bsdf.diffuseTransmitted = glm::dvec3(0.0);
         metal.lobes &= GLINT_ANISOTROPY;
         const double share = uniform(engine);
         TestMaterial both = dielectric;
         both.inputs = GLINT_PARTIAL_METAL;
-        both.bsdf.metalF0 = metal.bsdf.f0;
-        both.bsdf.metallic = share;
+        both.bsdf.base.metalF0 = metal.bsdf.base.f0;
+        both.bsdf.base.metallic = share;
         for (glm::dvec3* const lobe :
-             {&both.bsdf.diffuse, &both.bsdf.transmitted, &both.bsdf.diffuseTransmitted}) {
+             {&both.bsdf.diffuse, &both.bsdf.base.transmitted, &both.bsdf.diffuseTransmitted}) {
             *lobe *= 1.0 - share;
         }
         const glm::dvec3 view = direction(uniform(engine, 0.01, 1.0), uniform(engine, 0.0, 2.0 * kPi));
@@ -146,9 +147,9 @@ TEST(Furnace, WhitePartialMetalReflectsEverything) {
             for (const bool passes : {false, true}) {
                 TestMaterial material = makeMaterial(roughness * roughness);
                 material.inputs = GLINT_PARTIAL_METAL;
-                material.bsdf.f0 = glm::dvec3(0.04);
-                material.bsdf.metalF0 = glm::dvec3(1.0);
-                material.bsdf.metallic = metallic;
+                material.bsdf.base.f0 = glm::dvec3(0.04);
+                material.bsdf.base.metalF0 = glm::dvec3(1.0);
+                material.bsdf.base.metallic = metallic;
                 glm::dvec3& lobe = passes ? material.bsdf.diffuseTransmitted : material.bsdf.diffuse;
                 lobe = glm::dvec3(1.0 - metallic);
                 material.lobes = passes ? GLINT_DIFFUSE_TRANSMISSION : 0U;
@@ -168,8 +169,8 @@ TEST(Furnace, WhiteAnisotropicMetalReflectsEverything) {
         for (const double strength : {0.2, 0.5, 0.75, 1.0}) {
             TestMaterial metal = makeMaterial(roughness * roughness);
             metal.lobes = GLINT_ANISOTROPY;
-            metal.bsdf.f0 = glm::dvec3(1.0);
-            metal.bsdf.alpha.x = anisotropicAlpha(metal.bsdf.alpha.y, strength);
+            metal.bsdf.base.f0 = glm::dvec3(1.0);
+            metal.bsdf.base.alpha.x = anisotropicAlpha(metal.bsdf.base.alpha.y, strength);
             int view = 0;
             for (const double cosine : {0.05, 0.15, 0.4, 0.75, 1.0}) {
                 for (const double phi : {0.0, 0.4, 0.8, 1.2, 1.5707}) {
@@ -214,7 +215,7 @@ TEST(Furnace, NothingReflectsMoreThanItReceives) {
             most = largestOf(albedo(seen, 20000));
         }
         // The light that a rough volume passes from outside is an estimate (see the tests of glass below).
-        const double bound = seen.has(GLINT_VOLUME) && seen.bsdf.eta.y > 1.0 ? 1.011 : 1.001;
+        const double bound = seen.has(GLINT_VOLUME) && seen.bsdf.base.eta.y > 1.0 ? 1.011 : 1.001;
         EXPECT_LE(most, bound) << "material " << i << " of seed " << kSeed << ": " << seen;
         failures += most > bound ? 1 : 0;
     }
@@ -241,9 +242,9 @@ TEST(Furnace, GlassReflectsAndTransmitsEverything) {
                 const bool thin = eta == 0.0;
                 TestMaterial material = makeMaterial(roughness * roughness);
                 material.lobes = thin ? GLINT_TRANSMISSION : GLINT_TRANSMISSION | GLINT_VOLUME;
-                material.bsdf.eta = glm::dvec3(eta);
-                material.bsdf.f0 = glm::dvec3(glsl::dielectricF0(thin ? 1.5 : eta));
-                material.bsdf.transmitted = glm::dvec3(1.0);
+                material.bsdf.base.eta = glm::dvec3(eta);
+                material.bsdf.base.f0 = glm::dvec3(glsl::dielectricF0(thin ? 1.5 : eta));
+                material.bsdf.base.transmitted = glm::dvec3(1.0);
                 const double whole = meanWeight(material.seenFrom(direction(cosine, 0.4)));
                 // From outside, the sum is as exact as the fits of the reflection's albedo, and for a volume
                 // as the estimate of what its visible facets pass.
@@ -265,10 +266,10 @@ TEST(Furnace, AnisotropicGlassReflectsAndTransmitsNearlyEverything) {
                 for (const double phi : {0.0, 0.8, 1.45, 1.57}) {
                     TestMaterial material = makeMaterial(roughness * roughness);
                     material.lobes = GLINT_TRANSMISSION | GLINT_VOLUME | GLINT_ANISOTROPY;
-                    material.bsdf.alpha.x = anisotropicAlpha(material.bsdf.alpha.y, strength);
-                    material.bsdf.eta = glm::dvec3(1.5);
-                    material.bsdf.f0 = glm::dvec3(0.04);
-                    material.bsdf.transmitted = glm::dvec3(1.0);
+                    material.bsdf.base.alpha.x = anisotropicAlpha(material.bsdf.base.alpha.y, strength);
+                    material.bsdf.base.eta = glm::dvec3(1.5);
+                    material.bsdf.base.f0 = glm::dvec3(0.04);
+                    material.bsdf.base.transmitted = glm::dvec3(1.0);
                     EXPECT_NEAR(meanWeight(material.seenFrom(direction(cosine, phi))), 1.0,
                                 strength < 0.5 ? 2e-2 : 6e-2)
                         << "roughness " << roughness << ", strength " << strength << ", cosine " << cosine
@@ -295,10 +296,10 @@ void expectReciprocity(glsl::uint lobes, bool passes) {
         TestMaterial material = randomMaterial(engine, 0, 0.01);
         material.lobes = lobes;
         glsl::Bsdf& b = material.bsdf;
-        b.transmitted = colour(engine);
+        b.base.transmitted = colour(engine);
         b.diffuseTransmitted = colour(engine);
         if ((lobes & GLINT_ANISOTROPY) != 0U) {
-            b.alpha.x = anisotropicAlpha(b.alpha.y, uniform(engine));
+            b.base.alpha.x = anisotropicAlpha(b.base.alpha.y, uniform(engine));
         }
         const glm::dvec3 view = direction(uniform(engine, 0.01, 1.0), uniform(engine, 0.0, 2.0 * kPi));
         const double side = passes ? -1.0 : 1.0;

@@ -33,11 +33,11 @@ TEST(Grazing, SamplesOfWeakLobesDoNotBringThePeakOfSmoothOnes) {
     for (const glsl::uint lobes : {0U, GLINT_TRANSMISSION | GLINT_VOLUME}) {
         const glsl::Features features{0U, 0U, 0xFFFFFFFFU, 0xFFFFFFFFU, 0U, 0U, 0U, lobes, 0U, 0U, 0U};
         glsl::Bsdf b{};
-        b.alpha = glsl::vec2(glsl::kMinAlpha);
-        b.f0 = glsl::vec3(0.04F);
-        b.f90 = 1.0F;
-        b.eta = glsl::vec3(1.5F);
-        b.transmitted = glsl::vec3(lobes == 0U ? 0.0F : 0.9F);
+        b.base.alpha = glsl::vec2(glsl::kMinAlpha);
+        b.base.f0 = glsl::vec3(0.04F);
+        b.base.f90 = 1.0F;
+        b.base.eta = glsl::vec3(1.5F);
+        b.base.transmitted = glsl::vec3(lobes == 0U ? 0.0F : 0.9F);
         b.diffuse = glsl::vec3(lobes == 0U ? 0.9F : 0.0F);
         float largest = 0.0F;
         for (int i = 0; i < kSamples; ++i) {

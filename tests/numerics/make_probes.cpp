@@ -58,7 +58,8 @@ public:
         texts_["generated/features.glsl"] = glint::materials::builtinMaterialModel().featureDefines();
         // A scene chooses these values; here, the code that compiles the text defines them.
         texts_["generated/scene.glsl"] =
-            "#if !defined(GLINT_RELAXED)\n#define GLINT_PRECISION 32\n#define GLINT_RELAXED\n#endif\n";
+            "#if !defined(GLINT_RELAXED)\n#define GLINT_PRECISION 32\n#define GLINT_RELAXED\n#endif\n"
+            "#define GLINT_USES_MODELS 0\n";
     }
 
     // Adds what Glint generates for a package that has every feature.

@@ -42,9 +42,9 @@ struct TestMaterial {
 // Returns a black material whose other values are neutral.
 [[maybe_unused]] TestMaterial makeMaterial(double alpha) {
     TestMaterial material;
-    material.bsdf.f90 = 1.0;
-    material.bsdf.alpha = glm::dvec2(alpha);
-    material.bsdf.eta = glm::dvec3(1.5);
+    material.bsdf.base.f90 = 1.0;
+    material.bsdf.base.alpha = glm::dvec2(alpha);
+    material.bsdf.base.eta = glm::dvec3(1.5);
     material.bsdf.layers.clearcoat.alpha = 0.01;
     material.bsdf.layers.clearcoat.normal = {0.0, 0.0, 1.0};
     material.bsdf.layers.sheen.alpha = 0.25;
@@ -79,26 +79,26 @@ using Engine = std::mt19937_64;
     glsl::Bsdf& b = material.bsdf;
     material.lobes = static_cast<glsl::uint>(engine()) & allowed;
     if (material.has(GLINT_ANISOTROPY)) {
-        b.alpha.x = anisotropicAlpha(b.alpha.y, uniform(engine));
+        b.base.alpha.x = anisotropicAlpha(b.base.alpha.y, uniform(engine));
     }
     const double ior = uniform(engine) < 0.1 ? 1.0 : uniform(engine, 1.0, 3.0);
     const bool leaves = material.has(GLINT_VOLUME) && uniform(engine) < 0.4;
     const double spread = material.has(GLINT_DISPERSION) ? (ior - 1.0) * uniform(engine, 0.0, 0.05) : 0.0;
     const glm::dvec3 iors(ior - spread, ior, ior + spread);
-    b.eta = leaves ? 1.0 / iors : iors;
+    b.base.eta = leaves ? 1.0 / iors : iors;
     const double metal = uniform(engine) < 0.5 ? std::round(uniform(engine)) : uniform(engine);
-    b.f0 = glm::dvec3(glsl::dielectricF0(ior));
-    b.metalF0 = colour(engine);
-    b.metallic = metal;
+    b.base.f0 = glm::dvec3(glsl::dielectricF0(ior));
+    b.base.metalF0 = colour(engine);
+    b.base.metallic = metal;
     if (metal == 1.0) {
-        b.f0 = b.metalF0;
+        b.base.f0 = b.base.metalF0;
     } else if (metal > 0.0) {
         material.inputs = GLINT_PARTIAL_METAL;
     }
     const double transmission = material.has(GLINT_TRANSMISSION) ? uniform(engine) : 0.0;
     const double through = material.has(GLINT_DIFFUSE_TRANSMISSION) ? uniform(engine) : 0.0;
     const double dielectric = 1.0 - metal;
-    b.transmitted = colour(engine) * (dielectric * transmission);
+    b.base.transmitted = colour(engine) * (dielectric * transmission);
     b.diffuse = colour(engine) * (dielectric * (1.0 - transmission) * (1.0 - through));
     b.diffuseTransmitted = colour(engine) * (dielectric * (1.0 - transmission) * through);
     b.layers.clearcoat.factor = uniform(engine);
@@ -114,19 +114,19 @@ using Engine = std::mt19937_64;
 [[maybe_unused]] Quadrature quadratureOf(const TestMaterial& material) {
     const glsl::Bsdf& b = material.bsdf;
     Quadrature quadrature(b.view);
-    quadrature.addReflection(b.alpha);
+    quadrature.addReflection(b.base.alpha);
     if (material.has(GLINT_CLEARCOAT)) {
         quadrature.addReflection(glm::dvec2(b.layers.clearcoat.alpha), b.layers.clearcoat.normal);
     }
     if (material.has(GLINT_TRANSMISSION)) {
         for (int channel = 0; channel < (material.has(GLINT_DISPERSION) ? 3 : 1); ++channel) {
-            const double eta = material.has(GLINT_DISPERSION) ? b.eta[channel] : b.eta.y;
+            const double eta = material.has(GLINT_DISPERSION) ? b.base.eta[channel] : b.base.eta.y;
             const bool bends = material.has(GLINT_VOLUME) && glsl::refracts(eta);
             if (bends) {
-                quadrature.addRefraction(b.alpha, eta);
+                quadrature.addRefraction(b.base.alpha, eta);
             } else {
                 quadrature.addThinTransmission(material.has(GLINT_VOLUME) ? glm::dvec2(glsl::kMinAlpha)
-                                                                          : b.alpha);
+                                                                          : b.base.alpha);
             }
         }
     }
@@ -147,16 +147,16 @@ using Engine = std::mt19937_64;
     const auto put = [&](const char* name, const glm::dvec3& v) {
         out << ", " << name << " (" << v.x << ", " << v.y << ", " << v.z << ")";
     };
-    out << "lobes " << material.lobes << ", alpha (" << b.alpha.x << ", " << b.alpha.y << ")";
-    put("f0", b.f0);
+    out << "lobes " << material.lobes << ", alpha (" << b.base.alpha.x << ", " << b.base.alpha.y << ")";
+    put("f0", b.base.f0);
     if (material.inputs != 0U) {
-        out << ", metal " << b.metallic;
-        put("metal's f0", b.metalF0);
+        out << ", metal " << b.base.metallic;
+        put("metal's f0", b.base.metalF0);
     }
     put("diffuse", b.diffuse);
-    put("transmitted", b.transmitted);
+    put("transmitted", b.base.transmitted);
     put("diffuse transmitted", b.diffuseTransmitted);
-    put("eta", b.eta);
+    put("eta", b.base.eta);
     out << ", coat " << b.layers.clearcoat.factor << " of alpha " << b.layers.clearcoat.alpha;
     put("coat's normal", b.layers.clearcoat.normal);
     put("sheen", b.layers.sheen.color);

@@ -9,7 +9,6 @@
 #include "bsdf/transmission.glsl"
 #include "materials/clearcoat/clearcoat.glsl"
 #include "materials/dispersion/dispersion.glsl"
-#include "bsdf/attenuation.glsl"
 #include "bsdf/bsdf.glsl"
 #include "bsdf/sample.glsl"
 #include "numerics/probe_vectors.glsl"
@@ -205,12 +204,12 @@ PROBE(SheenAlbedo) {
 Bsdf givenBsdf(float f0X, float f0Y, float f0Z, vec3 diffuse, float f90, vec2 alpha, vec3 transmitted, vec3 eta,
                vec3 diffuseTransmitted) {
     Bsdf b;
-    b.f0 = vec3(f0X, f0Y, f0Z);
+    b.base.f0 = vec3(f0X, f0Y, f0Z);
     b.diffuse = diffuse;
-    b.f90 = f90;
-    b.alpha = alpha;
-    b.transmitted = transmitted;
-    b.eta = eta;
+    b.base.f90 = f90;
+    b.base.alpha = alpha;
+    b.base.transmitted = transmitted;
+    b.base.eta = eta;
     b.diffuseTransmitted = diffuseTransmitted;
     return b;
 }
@@ -220,20 +219,20 @@ Bsdf givenBsdf(float f0X, float f0Y, float f0Z, vec3 diffuse, float f90, vec2 al
 #define GIVEN_FEATURES_WITHOUT_SHEEN                                                                        \
     GLINT_FEATURES_OF_GLTF(0u, 0u, 0xFFFFFFFFu, 0xFFFFFFFFu, uint(i[0]) & ~GLINT_SHEEN, GIVEN_INPUTS)
 #define GIVEN_BSDF(b)                                                                                       \
-    Bsdf b = givenBsdf(i[1], i[2], i[3], VEC3(4), i[7], VEC2(8), VEC3(10), VEC3(13), VEC3(16));              \
-    b.layers.clearcoat.factor = i[19];                                                                                \
-    b.layers.clearcoat.alpha = i[20];                                                                               \
-    b.layers.clearcoat.normal = VEC3(21);                                                                           \
-    b.layers.sheen.color = VEC3(24);                                                                                \
-    b.layers.sheen.alpha = i[27];                                                                                   \
-    b.metalF0 = VEC3(34);                                                                                   \
-    b.metallic = i[37];                                                                                     \
+    Bsdf b = givenBsdf(i[1], i[2], i[3], VEC3(4), i[7], VEC2(8), VEC3(10), VEC3(13), VEC3(16));             \
+    b.layers.clearcoat.factor = i[19];                                                                      \
+    b.layers.clearcoat.alpha = i[20];                                                                       \
+    b.layers.clearcoat.normal = VEC3(21);                                                                   \
+    b.layers.sheen.color = VEC3(24);                                                                        \
+    b.layers.sheen.alpha = i[27];                                                                           \
+    b.base.metalF0 = VEC3(34);                                                                              \
+    b.base.metallic = i[37];                                                                                \
     prepareBsdf(b, GIVEN_FEATURES, VEC3(28))
 
 // The facet's normal and the reflectance of both bases.
 PROBE(FacetBetween) {
     GIVEN_BSDF(b);
-    Facet facet = facetBetween(b, GIVEN_FEATURES, VEC3(31));
+    Facet facet = facetBetween(b.base, GIVEN_FEATURES, b.view, VEC3(31));
     vec3 f = facet.fresnel;
     WRITE3(0, facet.h);
     WRITE3(3, f);
@@ -250,7 +249,7 @@ PROBE(EvaluateBsdfByPeak) {
     GIVEN_BSDF(b);
     vec3 f = evaluateBsdf(b, GIVEN_FEATURES, VEC3(31));
     WRITE3(0, f);
-    o[3] = 0.25 / (kPi * (refracts(b.eta.y) ? b.alpha.x * b.alpha.y : kMinAlpha * kMinAlpha));
+    o[3] = 0.25 / (kPi * (refracts(b.base.eta.y) ? b.base.alpha.x * b.base.alpha.y : kMinAlpha * kMinAlpha));
 }
 
 // The scale is the material without its sheen, because white sheen leaves almost nothing of it near grazing.

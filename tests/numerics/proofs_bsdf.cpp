@@ -334,7 +334,7 @@ std::vector<Proof> surfaceProofs(const ClaimedSurface& of) {
     };
     if (of.samplesFacets) {
         all.push_back({text("Sample", of.name),
-                       text("sampleMicrofacet", title),
+                       text("baseSample", title),
                        "a vector of length 1 or 0: no longer than 1",
                        {drawn, {{"squared length", 0.0, 1.0 + 1e-4}}}});
     }

@@ -9,7 +9,6 @@
 #include "bsdf/transmission.glsl"
 #include "materials/clearcoat/clearcoat.glsl"
 #include "materials/dispersion/dispersion.glsl"
-#include "bsdf/attenuation.glsl"
 #include "bsdf/bsdf.glsl"
 #include "bsdf/sample.glsl"
 #include "numerics/proof_vectors.glsl"
@@ -275,19 +274,19 @@ PROOF(RefractedTransmission) {
 
 Bsdf claimedBsdf(float f0, float f90, float loss, float meanLoss) {
     Bsdf b;
-    b.f0 = vec3(f0);
-    b.f90 = f90;
-    b.metalF0 = vec3(f0);
-    b.metallic = 0.0;
+    b.base.f0 = vec3(f0);
+    b.base.f90 = f90;
+    b.base.metalF0 = vec3(f0);
+    b.base.metallic = 0.0;
     b.diffuse = vec3(1.0);
-    b.transmitted = vec3(0.0);
+    b.base.transmitted = vec3(0.0);
     b.diffuseTransmitted = vec3(0.0);
-    b.eta = vec3(1.5);
-    b.alpha = vec2(1.0);
-    b.viewLoss = loss;
-    b.viewBias = 0.0;
-    b.meanLoss = meanLoss;
-    b.meanBias = 0.0;
+    b.base.eta = vec3(1.5);
+    b.base.alpha = vec2(1.0);
+    b.base.viewLoss = loss;
+    b.base.viewBias = 0.0;
+    b.base.meanLoss = meanLoss;
+    b.base.meanBias = 0.0;
     return b;
 }
 
@@ -299,25 +298,25 @@ PROOF(MultiScatterOf) {
 
 PROOF(PassedAgain) {
     Bsdf b = claimedBsdf(i[0], claimedF90(i[0], i[1]), 0.0, i[2]);
-    o[0] = passedAgain(b).x;
-    o[1] = o[0] + multiScatterOf(b.f0, b.f90, b.meanLoss).x;
+    o[0] = passedAgain(b.base).x;
+    o[1] = o[0] + multiScatterOf(b.base.f0, b.base.f90, b.base.meanLoss).x;
 }
 
 // i[3]: the bias as a share of E.
 PROOF(SpecularShares) {
     Bsdf b = claimedBsdf(i[0], claimedF90(i[0], i[1]), i[2], i[4]);
-    float bias = i[3] * (1.0 - i[2]);
-    o[0] = specularAlbedo(b, CLAIMED_FEATURES(0u), i[2], bias).x;
-    o[1] = specularPassed(b, i[2], bias).x;
+    b.base.viewBias = i[3] * (1.0 - i[2]);
+    o[0] = specularAlbedo(b.base, CLAIMED_FEATURES(0u)).x;
+    o[1] = specularPassed(b.base, i[2], b.base.viewBias).x;
     o[2] = o[0] + o[1];
 }
 
 // The chances of reflection and passage of an interface with an index: i[3] is the cosine, i[4] the index.
 PROOF(FacetChances) {
     Bsdf b = claimedBsdf(i[0], claimedF90(i[0], i[1]), 0.0, 0.0);
-    b.transmitted = vec3(i[2]);
-    vec2 chances = facetChances(b, CLAIMED_FEATURES(GLINT_TRANSMISSION | GLINT_VOLUME), exactSquare(vec2(i[3], 0.0)),
-                                i[4]);
+    b.base.transmitted = vec3(i[2]);
+    vec2 chances = facetChances(b.base, CLAIMED_FEATURES(GLINT_TRANSMISSION | GLINT_VOLUME),
+                                exactSquare(vec2(i[3], 0.0)), i[4]);
     o[0] = chances.x;
     o[1] = chances.y;
     o[2] = chances.x + chances.y;
@@ -326,9 +325,9 @@ PROOF(FacetChances) {
 // `more` is what a surface has besides; i[9] is its own input.
 #define CLAIMED_SURFACE(lobes, more)                                                            \
     Bsdf b = claimedBsdf(i[0], 1.0, 0.0, 0.0);                                                  \
-    b.alpha = vec2(i[1]);                                                                       \
+    b.base.alpha = vec2(i[1]);                                                                  \
     b.diffuse = vec3(i[2]);                                                                     \
-    b.transmitted = vec3(i[2]);                                                                 \
+    b.base.transmitted = vec3(i[2]);                                                            \
     b.diffuseTransmitted = vec3(i[2]);                                                          \
     b.layers.clearcoat = Clearcoat(i[2], i[1], vec3(0.0, 0.0, 1.0));                            \
     b.layers.sheen = Sheen(vec3(i[2]), max(i[1], kMinSheenAlpha), 0.0);                         \
@@ -339,10 +338,10 @@ PROOF(FacetChances) {
 #define CLAIMS_OF_SURFACE(name, lobes, side, more)                                              \
     PROOF(Prepare##name) {                                                                      \
         CLAIMED_SURFACE(lobes, more);                                                           \
-        o[0] = b.viewLoss;                                                                      \
-        o[1] = b.viewBias;                                                                      \
-        o[2] = b.meanLoss;                                                                      \
-        o[3] = b.meanBias;                                                                      \
+        o[0] = b.base.viewLoss;                                                                 \
+        o[1] = b.base.viewBias;                                                                 \
+        o[2] = b.base.meanLoss;                                                                 \
+        o[3] = b.base.meanBias;                                                                 \
     }                                                                                           \
     PROOF(Evaluate##name) {                                                                     \
         CLAIMED_SURFACE(lobes, more);                                                           \
@@ -355,16 +354,16 @@ PROOF(FacetChances) {
     PROOF(Chances##name) {                                                                      \
         CLAIMED_SURFACE(lobes, more);                                                           \
         LobeChances chances = lobeChances(b, CLAIMED_FEATURES(lobes));                          \
-        o[0] = chances.microfacets;                                                             \
+        o[0] = chances.own;                                                                     \
         o[1] = chances.diffuse;                                                                 \
         o[2] = chances.passed;                                                                  \
-        o[3] = chances.microfacets + chances.diffuse + chances.passed + sumOfChances(chances.layers); \
+        o[3] = o[0] + o[1] + o[2] + sumOfChances(chances.layers);                               \
     }
 
 #define CLAIM_OF_SAMPLES(name, lobes, more)                                                     \
     PROOF(Sample##name) {                                                                       \
         CLAIMED_SURFACE(lobes, more);                                                           \
-        vec3 l = sampleMicrofacet(b, CLAIMED_FEATURES(lobes), vec3(i[6], i[7], i[8]));          \
+        vec3 l = baseSample(b.base, CLAIMED_FEATURES(lobes), b.view, vec3(i[6], i[7], i[8]));   \
         o[0] = dot(l, l);                                                                       \
     }
 
@@ -373,9 +372,9 @@ CLAIMS_OF_SURFACE(Coated, GLINT_CLEARCOAT, 1.0, )
 CLAIMS_OF_SURFACE(Sheen, GLINT_SHEEN, 1.0, )
 CLAIMS_OF_SURFACE(Thin, GLINT_TRANSMISSION, -1.0, )
 CLAIMS_OF_SURFACE(Translucent, GLINT_DIFFUSE_TRANSMISSION, -1.0, )
-CLAIMS_OF_SURFACE(Volume, GLINT_TRANSMISSION | GLINT_VOLUME, -1.0, b.eta = vec3(i[9]))
-CLAIMS_OF_SURFACE(Anisotropic, GLINT_ANISOTROPY, 1.0, b.alpha.y = max(i[1] * i[9], kMinAlpha))
+CLAIMS_OF_SURFACE(Volume, GLINT_TRANSMISSION | GLINT_VOLUME, -1.0, b.base.eta = vec3(i[9]))
+CLAIMS_OF_SURFACE(Anisotropic, GLINT_ANISOTROPY, 1.0, b.base.alpha.y = max(i[1] * i[9], kMinAlpha))
 
 CLAIM_OF_SAMPLES(Base, 0u, )
 CLAIM_OF_SAMPLES(Thin, GLINT_TRANSMISSION, )
-CLAIM_OF_SAMPLES(Volume, GLINT_TRANSMISSION | GLINT_VOLUME, b.eta = vec3(i[9]))
+CLAIM_OF_SAMPLES(Volume, GLINT_TRANSMISSION | GLINT_VOLUME, b.base.eta = vec3(i[9]))

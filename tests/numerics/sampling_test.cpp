@@ -206,7 +206,7 @@ protected:
         TestMaterial material = randomMaterial(engine, 0, leastAlpha);
         const glsl::uint lobes = GetParam().lobes;
         const auto unsuitable = [&] {
-            return material.lobes != lobes || std::abs(material.bsdf.eta.y - 1.0) < leastIndexStep;
+            return material.lobes != lobes || std::abs(material.bsdf.base.eta.y - 1.0) < leastIndexStep;
         };
         while (unsuitable()) {
             material = randomMaterial(engine, lobes, leastAlpha);

@@ -93,9 +93,9 @@ TEST(Transmission, SmoothGlassKeepsAllLight) {
             for (const glsl::uint volume : {0U, static_cast<glsl::uint>(GLINT_VOLUME)}) {
                 TestMaterial glass = makeMaterial(1e-3);
                 glass.lobes = GLINT_TRANSMISSION | volume;
-                glass.bsdf.f0 = glm::dvec3(glsl::dielectricF0(ior));
-                glass.bsdf.transmitted = glm::dvec3(1.0);
-                glass.bsdf.eta = glm::dvec3(leaves ? 1.0 / ior : ior);
+                glass.bsdf.base.f0 = glm::dvec3(glsl::dielectricF0(ior));
+                glass.bsdf.base.transmitted = glm::dvec3(1.0);
+                glass.bsdf.base.eta = glm::dvec3(leaves ? 1.0 / ior : ior);
                 for (const double cosine : {0.05, 0.2, 0.5, 0.9, 1.0}) {
                     const double sum = albedo(glass.seenFrom(direction(cosine, 0.3)), 8000).y;
                     EXPECT_NEAR(sum, 1.0, 0.01) << "ior " << ior << (leaves ? ", leaving" : ", entering")
@@ -114,9 +114,9 @@ TEST(Transmission, RoughGlassMakesNoLight) {
             for (const double alpha : {0.05, 0.3, 1.0}) {
                 TestMaterial glass = makeMaterial(alpha);
                 glass.lobes = GLINT_TRANSMISSION | GLINT_VOLUME;
-                glass.bsdf.f0 = glm::dvec3(glsl::dielectricF0(ior));
-                glass.bsdf.transmitted = glm::dvec3(1.0);
-                glass.bsdf.eta = glm::dvec3(leaves ? 1.0 / ior : ior);
+                glass.bsdf.base.f0 = glm::dvec3(glsl::dielectricF0(ior));
+                glass.bsdf.base.transmitted = glm::dvec3(1.0);
+                glass.bsdf.base.eta = glm::dvec3(leaves ? 1.0 / ior : ior);
                 for (const double cosine : {0.01, 0.3, 1.0}) {
                     // At grazing the sum has an error: it knows no facets that are mirrored at the plane.
                     const double most = leaves && cosine < 0.1 ? 1.02 : 1.002;

@@ -38,12 +38,12 @@ glsl::Bsdf bsdfOf(const materials::Material& material, const Vec3& color, const 
     const Base base = baseOf(material, color);
     glsl::Bsdf bsdf{};
     bsdf.diffuse = base.diffuse;
-    bsdf.f0 = base.f0;
-    bsdf.f90 = base.f90;
-    bsdf.metalF0 = base.metalF0;
-    bsdf.metallic = base.metallic;
-    bsdf.alpha = glm::dvec2(std::max(squared(material["roughnessFactor"]), glsl::kMinAlpha));
-    bsdf.eta = Vec3(1.0);
+    bsdf.base.f0 = base.f0;
+    bsdf.base.f90 = base.f90;
+    bsdf.base.metalF0 = base.metalF0;
+    bsdf.base.metallic = base.metallic;
+    bsdf.base.alpha = glm::dvec2(std::max(squared(material["roughnessFactor"]), glsl::kMinAlpha));
+    bsdf.base.eta = Vec3(1.0);
     bsdf.layers.clearcoat.factor = material["clearcoatFactor"];
     bsdf.layers.clearcoat.alpha = std::max(squared(material["clearcoatRoughnessFactor"]), glsl::kMinAlpha);
     bsdf.layers.clearcoat.normal = {0.0, 0.0, 1.0};

@@ -143,7 +143,6 @@ void addLayers(mustache::data& context, const materials::MaterialModel& model,
         }
     }
     context.set("anyShadesAll", mustache::data(anyShadesAll));
-    context.set("hasModels", mustache::data(!models.is_empty_list()));
     context.set("models", models);
     context.set("diffuse", diffuse);
     context.set("layers", layers);

@@ -19,8 +19,6 @@ const float kIndirectSpread = 0.125;
 float indirectFarChance = 0.0;
 #endif
 
-#if GLINT_MODELS
-
 // Sends a ray in a direction that a model samples itself, so that its mirrors and its glass show what is around them.
 EffectSample sampleOfModel(Hit hit, Surface surface, Features features) {
     Bsdf b = surface.bsdf;
@@ -39,13 +37,11 @@ EffectSample sampleOfModel(Hit hit, Surface surface, Features features) {
                       max(min(kIndirectSpread, inversesqrt(density)), GLINT_FRAME.pixelSpread));
 }
 
-#endif
-
 // Sends one cosine-weighted ray on the viewer's side, or on the far side through a surface that scatters light to it.
 // The weights are those of the sky's light (effects/ambient.glsl), so that an empty scene looks the same; or those of
 // the BSDF, where samples of lights bring a part of the same light.
 EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, inout SkyShares sky) {
-    vec3 base = baseShare(surface, features) * vec3(diffusePassed(surface));
+    vec3 base = baseShare(surface, features) * vec3(diffusePassed(surface.bsdf.base));
     vec3 front = surface.bsdf.diffuse * base;
     vec3 back = vec3(0.0);
     if (scattersBehind(features)) {
@@ -57,11 +53,9 @@ EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, 
     if (total <= 0.0) {
         return noSample(kRayAbsent);
     }
-#if GLINT_MODELS
     if (samplesModel(features)) {
         return sampleOfModel(hit, surface, features);
     }
-#endif
     float chance = luminance(back) / total;
 #if GLINT_SHARED_LIGHTS
     indirectFarChance = chance;
@@ -83,11 +77,9 @@ EffectSample sampleIndirectDiffuse(Hit hit, Surface surface, Features features, 
 
 // The density of the ray that was sent, by solid angle.
 float densityIndirectDiffuse(Surface surface, Features features, vec3 l) {
-#if GLINT_MODELS
     if (samplesModel(features)) {
         return modelDensity(surface.bsdf.layers, features, surface.bsdf.view, l);
     }
-#endif
     return (l.z > 0.0 ? 1.0 - indirectFarChance : indirectFarChance) * abs(l.z) * kInversePi;
 }
 

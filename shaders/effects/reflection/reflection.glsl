@@ -10,16 +10,15 @@
 
 // The share of a uniform white sky that the base reflects at the first bounce, through the layers above it.
 vec3 firstBounce(Surface surface, Features features) {
-    return singleScatterAlbedo(surface.bsdf, features, surface.bsdf.viewLoss, surface.bsdf.viewBias) *
-           baseShare(surface, features);
+    return singleScatterAlbedo(surface.bsdf.base, features) * baseShare(surface, features);
 }
 
 // The base's lobe at the first bounce, times n·l, through the layers above it; l.z > 0.
 vec3 baseLobe(Surface surface, Features features, vec3 l, out float pdf) {
     Bsdf b = surface.bsdf;
-    Facet facet = facetBetween(b, features, l);
-    pdf = mirroredPdf(b.view, facet.h, b.alpha);
-    return facet.fresnel * (ggxDistribution(facet.h, b.alpha) * ggxVisibility(l, b.view, b.alpha) * l.z) *
+    Facet facet = facetBetween(b.base, features, b.view, l);
+    pdf = mirroredPdf(b.view, facet.h, b.base.alpha);
+    return facet.fresnel * (ggxDistribution(facet.h, b.base.alpha) * ggxVisibility(l, b.view, b.base.alpha) * l.z) *
            baseShare(surface, features);
 }
 
@@ -50,7 +49,7 @@ EffectSample glossySample(Hit hit, Surface surface, Features features, TracedLay
                           uint chosen) {
     Bsdf b = surface.bsdf;
     vec2 u = hostRandomPair(hit.target, kPairDirection);
-    vec3 l = chosen == kChosenBase ? reflectAbout(b.view, sampleVisibleNormal(b.view, b.alpha, u))
+    vec3 l = chosen == kChosenBase ? reflectAbout(b.view, sampleVisibleNormal(b.view, b.base.alpha, u))
                                    : sampleTracedLayer(surface, features, chosen, u);
     if (chosen == kChosenBase ? l.z <= 0.0 : l == vec3(0.0)) {
         // The facet sends the view to other facets. Energy compensation accounts for that light.
@@ -119,7 +118,7 @@ float glossyDensity(Surface surface, Features features, vec3 l) {
     float density = 0.0;
     if (reflectionRay.baseChance > 0.0 && l.z > 0.0) {
         density = reflectionRay.baseChance *
-                  mirroredPdf(surface.bsdf.view, normalize(surface.bsdf.view + l), surface.bsdf.alpha);
+                  mirroredPdf(surface.bsdf.view, normalize(surface.bsdf.view + l), surface.bsdf.base.alpha);
     }
     addTracedLayers(surface, features, reflectionRay.layers, l, light, density);
     return density;

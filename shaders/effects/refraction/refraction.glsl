@@ -9,7 +9,7 @@ EffectSample sampleRefraction(Hit hit, Surface surface, Features features, inout
         return noSample(kRayAbsent);
     }
     float share = baseShare(surface, features);
-    vec3 weight = surface.bsdf.transmitted * (diffusePassed(surface) * share);
+    vec3 weight = surface.bsdf.base.transmitted * (diffusePassed(surface.bsdf.base) * share);
     sky.transmitted = 0.0;
     // The walk begins again at the surface, without its coat and sheen. The share that these let through is stored in
     // the place of the cone, which the walk computes anew.

@@ -49,23 +49,24 @@ const uint kAbsorbs = 3u;
 // the end, too. At a thin wall both lobes then grow in proportion and keep their shape (Turquin, "Practical multiple
 // scattering compensation for microfacet models", 2019). The albedo of a lobe that bends is not known; there a facet's
 // whole light leaves along its own direction, mirrored at the plane if it points below.
-float shareBehindFacets(Bsdf b, bool thin, vec3 l) {
+float shareBehindFacets(Base b, bool thin, vec3 view, vec3 l) {
     if (GLINT_ENERGY_COMPENSATION != 0 && !thin) {
         return 1.0;
     }
-    float open = 2.0 * ggxVisibility(l, b.view, b.alpha) * l.z * (b.view.z + ggxProjection(b.view, b.alpha));
+    float open = 2.0 * ggxVisibility(l, view, b.alpha) * l.z * (view.z + ggxProjection(view, b.alpha));
     return GLINT_ENERGY_COMPENSATION != 0 ? open / (1.0 - b.viewLoss) : open;
 }
 
 // Chooses at random whether a ray passes, reflects or stops at a surface. `first` marks the primary surface, whose
 // other light is already shaded, so that the ray always passes.
 uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth, inout Walker walker) {
-    Bsdf b = surface.bsdf;
+    Base b = surface.bsdf.base;
+    vec3 view = surface.bsdf.view;
     vec2 u = hostRandomPair(hit.target, kPairInterface + 2u * depth);
     vec2 choice = hostRandomPair(hit.target, kPairInterface + 2u * depth + 1u);
     // The part of a surface that is not clear is shaded where it is met, in proportion.
     float clear = luminance(b.transmitted);
-    float rest = luminance(b.diffuse) + luminance(b.diffuseTransmitted);
+    float rest = luminance(surface.bsdf.diffuse) + luminance(surface.bsdf.diffuseTransmitted);
     bool pure = rest <= 0.0;
     if (!first && !pure) {
         float chance = clear / (clear + rest);
@@ -84,8 +85,8 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
     }
     float eta = channelOf(b.eta, walker.channel);
     b.eta = vec3(eta);
-    vec3 h = sampleVisibleNormal(b.view, b.alpha, u);
-    vec2 deciding = decidingCosine2(b, features, exactSquare(exactDot(b.view, h)), eta);
+    vec3 h = sampleVisibleNormal(view, b.alpha, u);
+    vec2 deciding = decidingCosine2(features, view, exactSquare(exactDot(view, h)), eta);
     float apparent = boundsMedium(features) && refracts(eta) ? eta : 1.0;
     bool thin = !boundsMedium(features);
     bool straight = thin || passesStraight(features, eta);
@@ -93,14 +94,14 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
         float reflected = facetChances(b, features, deciding, eta).x;
         float random = walker.channel == 3u || !dispersed ? choice.y : fract(3.0 * choice.y);
         if (random < reflected) {
-            vec3 l = reflectAbout(b.view, h);
+            vec3 l = reflectAbout(view, h);
             if ((GLINT_ENERGY_COMPENSATION == 0 || thin) && l.z <= 0.0) {
                 return kAbsorbs;
             }
             l.z = abs(l.z);
             vec3 fresnel = withMetal(b, features, fresnelInterface(b.f0, b.f90, deciding, apparent),
                                      fresnelSchlick(b.metalF0, 1.0, sqrt(deciding.x)));
-            walker.weight *= fresnel * (shareBehindFacets(b, thin, l) / reflected);
+            walker.weight *= fresnel * (shareBehindFacets(b, thin, view, l) / reflected);
             walker.direction = onSide(toWorld(surface, l), hit.geometricNormal);
             return kReflects;
         }
@@ -110,28 +111,28 @@ uint scatter(Hit hit, Surface surface, Features features, bool first, uint depth
     float passed;
     if (straight) {
         vec2 alpha = passesStraight(features, eta) ? vec2(kMinAlpha) : b.alpha;
-        l = reflectAbout(b.view, sampleVisibleNormal(b.view, alpha, u));
+        l = reflectAbout(view, sampleVisibleNormal(view, alpha, u));
         l.z = -l.z;
-        passed = l.z < 0.0 ? specularTransmission(b, features, l, eta) /
-                                 mirroredPdf(b.view, normalize(b.view + vec3(l.xy, -l.z)), alpha)
+        passed = l.z < 0.0 ? specularTransmission(b, features, view, l, eta) /
+                                 mirroredPdf(view, normalize(view + vec3(l.xy, -l.z)), alpha)
                            : 0.0;
     } else {
-        if (!refractDirection(b.view, h, eta, l)) {
+        if (!refractDirection(view, h, eta, l)) {
             return kAbsorbs;
         }
         RefractingFacet facet;
-        passed = l.z < 0.0 && refractionHalfVector(b.view, l, eta, facet)
-                     ? specularTransmission(b, features, l, eta) /
-                           (visibleNormalPdf(b.view, facet.h, b.alpha) * facet.spread * facet.cosineL)
+        passed = l.z < 0.0 && refractionHalfVector(view, l, eta, facet)
+                     ? specularTransmission(b, features, view, l, eta) /
+                           (visibleNormalPdf(view, facet.h, b.alpha) * facet.spread * facet.cosineL)
                      : 0.0;
     }
     if (GLINT_ENERGY_COMPENSATION != 0 && thin) {
         // At the first interface, the effect reflection and the sky have added all reflected light. Where nothing
         // passes, both are 0; the bound keeps their quotient finite.
-        passed *= first ? diffusePassed(surface) / max(passedOnce(b), 1e-6) : 1.0 / (1.0 - b.viewLoss);
+        passed *= first ? diffusePassed(b) / max(passedOnce(b), 1e-6) : 1.0 / (1.0 - b.viewLoss);
     } else if (GLINT_ENERGY_COMPENSATION != 0) {
         l.z = -abs(l.z);
-        passed = first ? diffusePassed(surface) : interfacePassed(b.f0, b.f90, deciding, apparent);
+        passed = first ? diffusePassed(b) : interfacePassed(b.f0, b.f90, deciding, apparent);
     }
     walker.weight *= b.transmitted * passed;
     walker.direction = onSide(toWorld(surface, l), -hit.geometricNormal);
@@ -194,7 +195,7 @@ uint walk(uvec2 pixel, uint target) {
             Surface surface = evaluateSurface(hit, features);
             bool volume = boundsMedium(features);
             if (volume) {
-                nestMedia(hit, features, walker.media, surface.bsdf);
+                nestMedia(hit, features, walker.media, surface.bsdf.base);
             }
             vec3 before = walker.direction;
             uint outcome = scatter(hit, surface, features, depth == 0u, depth, walker);

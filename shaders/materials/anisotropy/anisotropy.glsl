@@ -20,7 +20,7 @@ void anisotropyBsdf(Hit hit, Features features, inout SurfaceValues values, inou
     vec3 along = tangent * direction.x + bitangent * direction.y;
     surface.tangent = directionOr(along - surface.normal * dot(surface.normal, along), surface.tangent);
     surface.bitangent = cross(surface.normal, surface.tangent);
-    float alpha = surface.bsdf.alpha.y;
-    surface.bsdf.alpha.x = mix(alpha, 1.0, strength * strength);
-    surface.roughness = sqrt(surface.bsdf.alpha.x);
+    float alpha = surface.bsdf.base.alpha.y;
+    surface.bsdf.base.alpha.x = mix(alpha, 1.0, strength * strength);
+    surface.roughness = sqrt(surface.bsdf.base.alpha.x);
 }

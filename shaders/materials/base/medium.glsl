@@ -1,5 +1,4 @@
 // The media of Glint's own base, as rays need them that go through.
-#include "bsdf/attenuation.glsl"
 #include "materials/base/media.glsl"
 #include "materials/volume/nesting.glsl"
 

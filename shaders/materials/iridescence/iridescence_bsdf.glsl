@@ -24,8 +24,8 @@ void iridescenceBsdf(Hit hit, Features features, inout SurfaceValues values, ino
         thickness = mix(thinnest, thickness, texel.g);
     }
     float filmIor = GLINT_MATERIAL_IRIDESCENCE_IOR(hit);
-    surface.bsdf.f0 = filmF0(surface.bsdf.f0, surface.bsdf.f90, nDotV, filmIor, thickness, factor);
+    surface.bsdf.base.f0 = filmF0(surface.bsdf.base.f0, surface.bsdf.base.f90, nDotV, filmIor, thickness, factor);
     if (hasInput(features, GLINT_PARTIAL_METAL)) {
-        surface.bsdf.metalF0 = filmF0(surface.bsdf.metalF0, 1.0, nDotV, filmIor, thickness, factor);
+        surface.bsdf.base.metalF0 = filmF0(surface.bsdf.base.metalF0, 1.0, nDotV, filmIor, thickness, factor);
     }
 }

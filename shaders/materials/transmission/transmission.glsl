@@ -6,7 +6,7 @@ void transmissionBsdf(Hit hit, Features features, inout SurfaceValues values, in
     if (hasInput(features, GLINT_TRANSMISSION_TEXTURE)) {
         transmission *= sampleSlot(hit, kTransmissionTexture, features).r;
     }
-    surface.bsdf.transmitted = values.color.rgb * values.dielectric * transmission;
+    surface.bsdf.base.transmitted = values.color.rgb * values.dielectric * transmission;
     surface.bsdf.diffuse *= 1.0 - transmission;
     values.dielectric *= 1.0 - transmission;
 }

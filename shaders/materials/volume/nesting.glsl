@@ -32,7 +32,7 @@ vec3 iorsOfMedium(uint number) {
 }
 
 // Sets the indices on both sides of a volume's surface, for the media that the ray is in.
-void nestMedia(Hit hit, Features features, Media media, inout Bsdf b) {
+void nestMedia(Hit hit, Features features, Media media, inout Base b) {
     // The medium outside of the surface.
     bool leavesInnermost = !hit.frontFace && placeOf(media, hit.material) == 0u;
     uint around = mediumAt(media, leavesInnermost ? 1u : 0u);

@@ -1,15 +1,14 @@
 // KHR_materials_volume: the index on the far side, and the absorption of the volume.
 #include "hit/surface_values.glsl"
-#include "bsdf/attenuation.glsl"
 #include "materials/volume/nesting.glsl"
 
 void volumeBsdf(Hit hit, Features features, inout SurfaceValues values, inout Surface surface) {
     bool inside = showsBack(features) && !hit.frontFace;
 #if GLINT_PATHS
-    nestMedia(hit, features, hit.arrival.media, surface.bsdf);
+    nestMedia(hit, features, hit.arrival.media, surface.bsdf.base);
 #else
     vec3 iors = mediumIors(hit, features);
-    surface.bsdf.eta = inside ? vec3(1.0) / iors : iors;
+    surface.bsdf.base.eta = inside ? vec3(1.0) / iors : iors;
 #endif
     if (inside) {
         // From within, more light is reflected than by the outside's albedos, so the diffuse lobe is removed.
@@ -32,7 +31,7 @@ void volumeBsdf(Hit hit, Features features, inout SurfaceValues values, inout Su
 #if GLINT_SHADOW_GLASS
         surface.unabsorbed = transmittance;
 #else
-        surface.bsdf.transmitted *= transmittance;
+        surface.bsdf.base.transmitted *= transmittance;
         surface.bsdf.diffuseTransmitted *= transmittance;
 #endif
     }

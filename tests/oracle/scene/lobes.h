@@ -31,9 +31,9 @@ Base applyBase(const Inputs& inputs, glsl::Bsdf& bsdf) {
     Base base;
     base.color = Vec3(inputs.baseColor());
     if (material.gives("KHR_materials_pbrSpecularGlossiness")) {
-        bsdf.f0 = toVec(material["glossySpecularFactor"]) * Vec3(texel);
-        bsdf.f90 = 1.0;
-        bsdf.diffuse = base.color * (1.0 - largestOf(bsdf.f0));
+        bsdf.base.f0 = toVec(material["glossySpecularFactor"]) * Vec3(texel);
+        bsdf.base.f90 = 1.0;
+        bsdf.diffuse = base.color * (1.0 - largestOf(bsdf.base.f0));
         base.roughness = 1.0 - material["glossinessFactor"] * texel.a;
         return base;
     }
@@ -45,10 +45,10 @@ Base applyBase(const Inputs& inputs, glsl::Bsdf& bsdf) {
     base.specularColor = tint;
     const Vec3 dielectric = glm::min(squared((ior - 1.0) / (ior + 1.0)) * tint, Vec3(1.0)) * specular;
     bsdf.diffuse = base.color * (1.0 - base.metallic);
-    bsdf.f0 = dielectric;
-    bsdf.f90 = specular;
-    bsdf.metalF0 = base.color;
-    bsdf.metallic = base.metallic;
+    bsdf.base.f0 = dielectric;
+    bsdf.base.f90 = specular;
+    bsdf.base.metalF0 = base.color;
+    bsdf.base.metallic = base.metallic;
     return base;
 }
 
@@ -86,12 +86,12 @@ struct SurfaceLobes {
         const materials::Material& material = inputs.material();
         const Vec3 normal = side * inputs.mappedNormal("normalTexture", material["normalScale"]);
         frame = frameAbout(normal);
-        bsdf.eta = Vec3(1.0);
+        bsdf.base.eta = Vec3(1.0);
         bsdf.layers.clearcoat.alpha = 1.0;
         bsdf.layers.clearcoat.normal = Vec3(0.0, 0.0, 1.0);
         bsdf.layers.sheen.alpha = 1.0;
         const Base base = applyBase(inputs, bsdf);
-        bsdf.alpha = glm::dvec2(std::max(squared(base.roughness), glsl::kMinAlpha));
+        bsdf.base.alpha = glm::dvec2(std::max(squared(base.roughness), glsl::kMinAlpha));
         roughness = base.roughness;
         if (!material.gives("KHR_materials_pbrSpecularGlossiness")) {
             applyAnisotropy();
@@ -147,8 +147,8 @@ struct SurfaceLobes {
             const Vec3 tangent = glm::normalize(along);
             frame = {tangent, glm::cross(n, tangent), n};
         }
-        bsdf.alpha.x = glm::mix(bsdf.alpha.y, 1.0, squared(strength));
-        roughness = std::sqrt(bsdf.alpha.x);
+        bsdf.base.alpha.x = glm::mix(bsdf.base.alpha.y, 1.0, squared(strength));
+        roughness = std::sqrt(bsdf.base.alpha.x);
     }
 
     // KHR_materials_iridescence, at the angle of the view.
@@ -169,8 +169,8 @@ struct SurfaceLobes {
             const Vec3 film = glsl::iridescentFresnel(cosine, f0, float{given["iridescenceIor"]}, thickness);
             return glm::mix(f0, glm::min(glsl::schlickF0(film, f90, cosine), Vec3(f90)), factor);
         };
-        bsdf.f0 = covered(bsdf.f0, bsdf.f90);
-        bsdf.metalF0 = covered(bsdf.metalF0, 1.0);
+        bsdf.base.f0 = covered(bsdf.base.f0, bsdf.base.f90);
+        bsdf.base.metalF0 = covered(bsdf.base.metalF0, 1.0);
     }
 
     // KHR_materials_transmission, _diffuse_transmission, _volume, _dispersion.
@@ -181,7 +181,7 @@ struct SurfaceLobes {
         if (material["transmissionFactor"] > 0.0F) {
             lobes |= GLINT_TRANSMISSION;
             passed = material["transmissionFactor"] * inputs.texel("transmissionTexture").r;
-            bsdf.transmitted = base.color * (dielectric * passed);
+            bsdf.base.transmitted = base.color * (dielectric * passed);
             bsdf.diffuse *= 1.0 - passed;
         }
         if (material["diffuseTransmissionFactor"] > 0.0F) {
@@ -208,17 +208,17 @@ struct SurfaceLobes {
             const double spread = (material["ior"] - 1.0) * 0.025 * material["dispersion"];
             iors += Vec3(-spread, 0.0, spread);
         }
-        bsdf.eta = side < 0.0 ? 1.0 / iors : iors;
+        bsdf.base.eta = side < 0.0 ? 1.0 / iors : iors;
         if (side < 0.0 && (surroundings == nullptr || has(GLINT_TRANSMISSION))) {
             bsdf.diffuse = Vec3(0.0);
             bsdf.diffuseTransmitted = Vec3(0.0);
         }
         if (surroundings != nullptr) {
-            bsdf.eta = side < 0.0 ? surroundings->ior / iors : iors / surroundings->ior;
+            bsdf.base.eta = side < 0.0 ? surroundings->ior / iors : iors / surroundings->ior;
             if (surroundings->nested) {
                 // KHR_materials_specular, with the index of the medium outside. f90 is its factor.
-                const double plain = squared((bsdf.eta.y - 1.0) / (bsdf.eta.y + 1.0));
-                bsdf.f0 = glm::min(plain * base.specularColor, Vec3(1.0)) * bsdf.f90;
+                const double plain = squared((bsdf.base.eta.y - 1.0) / (bsdf.base.eta.y + 1.0));
+                bsdf.base.f0 = glm::min(plain * base.specularColor, Vec3(1.0)) * bsdf.base.f90;
             }
             return;
         }
@@ -227,7 +227,7 @@ struct SurfaceLobes {
                 material["thicknessFactor"] * inputs.texel("thicknessTexture").g * inputs.point().scale;
             const Vec3 transmittance = glm::pow(toVec(material["attenuationColor"]),
                                                 Vec3(thickness / material["attenuationDistance"]));
-            bsdf.transmitted *= transmittance;
+            bsdf.base.transmitted *= transmittance;
             bsdf.diffuseTransmitted *= transmittance;
         }
     }

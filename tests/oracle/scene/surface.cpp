@@ -30,13 +30,13 @@ struct LitSurface::Lobes : SurfaceLobes {
         double total = 0.0;
         for (unsigned i = 0; i < kTaps; ++i) {
             const Vec2 u((kReversed[i] + 0.5) / kTaps, (i + 0.5) / kTaps);
-            const Vec3 h = glsl::sampleVisibleNormal(v, bsdf.alpha, u);
+            const Vec3 h = glsl::sampleVisibleNormal(v, bsdf.base.alpha, u);
             const Vec3 l = glm::reflect(-v, h);
             if (l.z <= 0.0) {
                 continue;
             }
-            const double weight = l.z * glsl::ggxVisibility(l, v, bsdf.alpha);
-            const double density = glsl::visibleNormalPdf(v, h, bsdf.alpha) / (4.0 * glm::dot(v, h));
+            const double weight = l.z * glsl::ggxVisibility(l, v, bsdf.base.alpha);
+            const double density = glsl::visibleNormalPdf(v, h, bsdf.base.alpha) / (4.0 * glm::dot(v, h));
             // (1 + α²) / (4π α²) = 16 density
             const double filled =
                 std::min(1.0 / (4.0 * std::numbers::pi * kTaps * std::max(density, 1e-6)), 0.5);
@@ -47,8 +47,8 @@ struct LitSurface::Lobes : SurfaceLobes {
     }
     // Returns what the microfacets reflect of the sky, of which rays bring `traced` of the first bounce.
     Vec3 reflection(const GradientSky& sky, double traced) const {
-        const Vec3 all = glsl::specularAlbedo(bsdf, features(), bsdf.viewLoss, bsdf.viewBias);
-        const Vec3 first = glsl::singleScatterAlbedo(bsdf, features(), bsdf.viewLoss, bsdf.viewBias);
+        const Vec3 all = glsl::specularAlbedo(bsdf.base, features());
+        const Vec3 first = glsl::singleScatterAlbedo(bsdf.base, features());
         if (has(GLINT_ANISOTROPY)) {
             return first * (1.0 - traced) * skyAroundLobe(sky) + (all - first) * diffuseSky(sky, frame[2]);
         }
@@ -60,7 +60,7 @@ struct LitSurface::Lobes : SurfaceLobes {
         Vec3 behind(0.0);
         for (int channel = 0; channel < 3; ++channel) {
             Vec3 direction = -bsdf.view;
-            const double eta = bsdf.eta[channel];
+            const double eta = bsdf.base.eta[channel];
             if (!has(GLINT_VOLUME) || !glsl::refracts(eta) ||
                 glsl::refractDirection(bsdf.view, Vec3(0.0, 0.0, 1.0), eta, direction)) {
                 behind[channel] = skyAround(sky, frame * direction, roughness)[channel];
@@ -69,13 +69,12 @@ struct LitSurface::Lobes : SurfaceLobes {
         return behind;
     }
     Vec3 ambient(const GradientSky& sky) const {
-        const Vec3 passed3 = glsl::specularPassed(bsdf, bsdf.viewLoss, bsdf.viewBias);
-        const double passed = std::max(std::min({passed3.x, passed3.y, passed3.z}), 0.0);
+        const double passed = glsl::diffusePassed(bsdf.base);
         const Vec3 n = frame[2];
         Vec3 result = (bsdf.diffuse * passed * diffuseSky(sky, n) + reflection(sky, tracedShare(roughness))) *
                       occlusion;
         if (has(GLINT_TRANSMISSION)) {
-            result += bsdf.transmitted * skyBehind(sky) * passed;
+            result += bsdf.base.transmitted * skyBehind(sky) * passed;
         }
         if (has(GLINT_DIFFUSE_TRANSMISSION)) {
             result += bsdf.diffuseTransmitted * passed * diffuseSky(sky, -n);
@@ -147,8 +146,8 @@ std::vector<Mirror> LitSurface::mirrors() const {
     std::vector<Mirror> mirrors;
     if (const double traced = l.tracedShare(l.roughness); traced > 0.0) {
         const Vec3 weight =
-            glm::mix(glsl::fresnelSchlick(l.bsdf.f0, l.bsdf.f90, l.bsdf.view.z),
-                     glsl::fresnelSchlick(l.bsdf.metalF0, 1.0, l.bsdf.view.z), l.bsdf.metallic) *
+            glm::mix(glsl::fresnelSchlick(l.bsdf.base.f0, l.bsdf.base.f90, l.bsdf.view.z),
+                     glsl::fresnelSchlick(l.bsdf.base.metalF0, 1.0, l.bsdf.view.z), l.bsdf.base.metallic) *
             (traced * l.baseShare());
         if (weight != Vec3(0.0)) {
             mirrors.push_back({l.mirrorDirection(l.frame[2]), weight});

@@ -77,7 +77,8 @@ bool PathSurface::volume() const {
 
 Vec3 PathSurface::straightThrough() const {
     const SurfaceLobes& l = lobes_->surface;
-    return l.bsdf.transmitted * (glsl::schlickPassed(l.bsdf.f0, l.bsdf.f90, l.bsdf.view.z) * l.baseShare());
+    return l.bsdf.base.transmitted *
+           (glsl::schlickPassed(l.bsdf.base.f0, l.bsdf.base.f90, l.bsdf.view.z) * l.baseShare());
 }
 
 Vec3 PathSurface::geometricNormal() const {

@@ -102,6 +102,6 @@ void main() {
     }
     store(weight);
     store(sampled.pdf);
-    store(singleScatterAlbedo(own.bsdf, features, own.bsdf.viewLoss, own.bsdf.viewBias) * baseShare(own, features));
+    store(singleScatterAlbedo(own.bsdf.base, features) * baseShare(own, features));
 #endif
 }

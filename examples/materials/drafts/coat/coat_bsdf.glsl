@@ -71,14 +71,14 @@ void coatBsdf(Hit hit, Features features, inout SurfaceValues values, inout Surf
     // Light that the coat's inner side reflects meets the base again and again. K is the share of it for diffuse light,
     // and for light that a smooth base mirrors the Fresnel reflectance: the roughness of the base chooses between them.
     float inner = 1.0 - (1.0 - f0) / (ior * ior);
-    vec3 base = mix(surface.bsdf.diffuse + surface.bsdf.f0 * (1.0 - surface.bsdf.diffuse), values.color.rgb,
+    vec3 base = mix(surface.bsdf.diffuse + surface.bsdf.base.f0 * (1.0 - surface.bsdf.diffuse), values.color.rgb,
                     values.metallic);
     float k = mix(f0, inner, values.roughness);
     vec3 darkening = mix(vec3(1.0), (1.0 - k) / (vec3(1.0) - clamp(base, 0.0, 1.0) * k),
                          GLINT_MATERIAL_COAT_DARKENING_FACTOR(hit));
     vec3 below = mix(vec3(1.0), tint * darkening, factor);
     surface.bsdf.diffuse *= below;
-    surface.bsdf.f0 *= below;
-    surface.bsdf.f90 *= largest(below);
-    surface.bsdf.metalF0 *= below;
+    surface.bsdf.base.f0 *= below;
+    surface.bsdf.base.f90 *= largest(below);
+    surface.bsdf.base.metalF0 *= below;
 }

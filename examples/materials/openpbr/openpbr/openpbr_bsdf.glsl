@@ -1,7 +1,6 @@
 // Reads the parameters of OpenPBR.
 #include "hit/surface_values.glsl"
 #include "materials/metallic_roughness/metallic_roughness.glsl"
-#include "bsdf/attenuation.glsl"
 
 // Quotients by lengths and logarithms of colours stay finite.
 const float kLeastDepth = 1e-9;

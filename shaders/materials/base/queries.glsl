@@ -1,22 +1,14 @@
-// What the base of a key does. Only this file and materials/ know the features behind the questions. They are macros, as
-// hasLobe() is, so that what a module decides is known before functions are inlined.
+// What Glint's own base does for a key. Shaders outside of materials/ ask these questions and do not know the features
+// behind them. They are macros, as hasLobe() is, so that what a module decides is known before functions are inlined.
 
-// Whether the base sends light to the far side.
-#define transmits(features)                                                                                     \
-    (hasLobe(features, GLINT_BOTH_SIDES_LOBES) || GLINT_MODEL_HAS(features, kModelBothSides))
-
-// Whether light passes the microfacets of Glint's own base: Bsdf::transmitted.
+// Whether light passes the microfacets: Base::transmitted.
 #define passesFacets(features) hasLobe(features, GLINT_TRANSMISSION)
 #define passesFacetsOfKey(features) lobeOfKey(features, GLINT_TRANSMISSION)
 
-// Whether a diffuse lobe of this base sends light to the far side.
+// Whether a diffuse lobe sends light to the far side.
 #define passesDiffusely(features) hasLobe(features, GLINT_DIFFUSE_TRANSMISSION)
 
-// Whether any base scatters light there: Bsdf::diffuseTransmitted.
-#define scattersBehind(features)                                                                                \
-    (passesDiffusely(features) || GLINT_MODEL_HAS(features, kModelOwnCode | kModelBothSides))
-
-// Whether the surface bounds a medium, whose index bends light: Bsdf::eta. Without one it is a thin wall.
+// Whether the surface bounds a medium, whose index bends light: Base::eta. Without one it is a thin wall.
 #define boundsMedium(features) hasLobe(features, GLINT_VOLUME)
 
 // Whether this medium absorbs light.
