@@ -91,6 +91,7 @@ Status run(const Arguments& arguments) {
     compiler::CompileSettings compile;
     compile.strategies = package::kStrategyUber;
     compile.tracers = context->handles().tracers;
+    compile.plan.keys.alpha = package::AlphaPolicy::Stochastic;
     GLINT_TRY(const auto build, compiler::resolve(std::span(&scene, 1), compile));
     GLINT_TRY(const auto package, session::compileAndLoad(build));
     session::SceneViewData data = session::sceneView(settings, scene);
@@ -123,14 +124,16 @@ Status run(const Arguments& arguments) {
     fmt::print("{}: {}, {} x {}, {} rounds\n\n", arguments.scene, context->deviceName(), options.width,
                options.height, arguments.rounds);
     fmt::print(
-        "| way | BLASes | KiB of them | instances of the TLAS | MiB in all | ms of a frame |\n"
-        "|---|--:|--:|--:|--:|--:|\n");
+        "| way | BLASes | KiB of them | instances of the TLAS | proved triangles | MiB in all | ms of a "
+        "frame |\n"
+        "|---|--:|--:|--:|--:|--:|--:|\n");
     for (Way& way : ways) {
         way.frames.erase(way.frames.begin());
         const GpuScene::Statistics& statistics = way.scene->statistics();
-        fmt::print("| {} | {} | {:.1f} | {} | {:.1f} | {:.2f} ({:.2f} to {:.2f}) |\n", way.name,
+        fmt::print("| {} | {} | {:.1f} | {} | {} | {:.1f} | {:.2f} ({:.2f} to {:.2f}) |\n", way.name,
                    statistics.blasCount, static_cast<double>(statistics.blasBytes) / 1024,
                    way.scene->state().store->topLevel.records().count(),
+                   statistics.provedOpaque + statistics.provedTransparent,
                    static_cast<double>(way.scene->allocatedBytes()) / 1048576,
                    benchmarks::quantile(way.frames, 0.5), benchmarks::quantile(way.frames, 0.0),
                    benchmarks::quantile(way.frames, 1.0));
