@@ -1,9 +1,8 @@
 // Glint's own base: metallic-roughness (glTF 2.0, appendix B) and its extensions. Appendix B.1 mixes the BRDFs of a
-// dielectric and a metal: mix(dielectric, metal, metallic). Both have the same microfacets. A key has both if
-// hasBothBases(); in any other key the base is all metal or all dielectric.
-//
-// It has what a model of a pack has (bsdf/model.glsl): a struct, and functions that prepare, evaluate and sample it. They
-// take the features too, because a lobe leaves no code if no key of the case has it.
+// dielectric and a metal with the same microfacets: mix(dielectric, metal, metallic). A key has both if hasBothBases();
+// in any other key the base is all metal or all dielectric. As a model of a pack (bsdf/model.glsl), it is a struct with
+// functions that prepare, evaluate and sample it. They take the features too, because a lobe leaves no code if no key
+// of the case has it.
 #include "bsdf/albedo.glsl"
 #include "bsdf/features.glsl"
 #include "bsdf/fresnel.glsl"
