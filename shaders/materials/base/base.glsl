@@ -17,8 +17,7 @@ struct Base {
     GLINT_RELAXED float f90;         // reflectance at grazing angles, of the same base as f0
     GLINT_RELAXED vec3 metalF0;      // reflectance of the metal at normal incidence; it is 1 at grazing angles
     GLINT_RELAXED float metallic;    // share of the metal; this and metalF0 are read if the key has both bases
-    vec2 alpha;                      // of the microfacets along x and y, at least kMinAlpha; equal unless the key has
-                                     // anisotropy, where x is no smaller
+    vec2 alpha;                      // along x and y, at least kMinAlpha; x >= y, and equal without anisotropy
     GLINT_RELAXED vec3 transmitted;  // tint and share of light that passes the microfacets
     vec3 eta;                        // n_t / n_i for red, green, blue; read if the key has a volume
 #if GLINT_SHARED_LIGHTS
