@@ -17,11 +17,11 @@ struct Base {
     GLINT_RELAXED float f90;         // reflectance at grazing angles, of the same base as f0
     GLINT_RELAXED vec3 metalF0;      // reflectance of the metal at normal incidence; it is 1 at grazing angles
     GLINT_RELAXED float metallic;    // share of the metal; this and metalF0 are read if the key has both bases
-    vec2 alpha;                      // along x and y, at least kMinAlpha; x >= y, and equal without anisotropy
+    vec2 alpha;                      // of facets along x and y, at least kMinAlpha; x >= y, equal without anisotropy
     GLINT_RELAXED vec3 transmitted;  // tint and share of light that passes the microfacets
     vec3 eta;                        // n_t / n_i for red, green, blue; read if the key has a volume
 #if GLINT_SHARED_LIGHTS
-    float mirrored;                  // share of their first reflection that counts; 1 unless rays bring the rest
+    float mirrored;                  // share of the first reflection that counts; 1 unless rays bring the rest
 #endif
     // basePrepare() sets the following members, which depend on the view:
     float viewLoss;  // 1 - E: the share that white microfacets lose by single scattering
