@@ -1,9 +1,8 @@
 // Glint's own base: metallic-roughness (glTF 2.0, appendix B) and its extensions. Appendix B.1 mixes the BRDFs of a
-// dielectric and a metal: mix(dielectric, metal, metallic). Both have the same microfacets. A key has both if
-// hasBothBases(); in any other key the base is all metal or all dielectric.
-//
-// It has what a model of a pack has (bsdf/model.glsl): a struct, and functions that prepare, evaluate and sample it. They
-// take the features too, because a lobe leaves no code if no key of the case has it.
+// dielectric and a metal with the same microfacets: mix(dielectric, metal, metallic). A key has both if hasBothBases();
+// in any other key the base is all metal or all dielectric. As a model of a pack (bsdf/model.glsl), it is a struct with
+// functions that prepare, evaluate and sample it. They take the features too, because a lobe leaves no code if no key
+// of the case has it.
 #include "bsdf/albedo.glsl"
 #include "bsdf/features.glsl"
 #include "bsdf/fresnel.glsl"
@@ -18,12 +17,11 @@ struct Base {
     GLINT_RELAXED float f90;         // reflectance at grazing angles, of the same base as f0
     GLINT_RELAXED vec3 metalF0;      // reflectance of the metal at normal incidence; it is 1 at grazing angles
     GLINT_RELAXED float metallic;    // share of the metal; this and metalF0 are read if the key has both bases
-    vec2 alpha;                      // of the microfacets along x and y, at least kMinAlpha; equal unless the key has
-                                     // anisotropy, where x is no smaller
+    vec2 alpha;                      // of facets along x and y, at least kMinAlpha; x >= y, equal without anisotropy
     GLINT_RELAXED vec3 transmitted;  // tint and share of light that passes the microfacets
     vec3 eta;                        // n_t / n_i for red, green, blue; read if the key has a volume
 #if GLINT_SHARED_LIGHTS
-    float mirrored;                  // share of their first reflection that counts; 1 unless rays bring the rest
+    float mirrored;                  // share of the first reflection that counts; 1 unless rays bring the rest
 #endif
     // basePrepare() sets the following members, which depend on the view:
     float viewLoss;  // 1 - E: the share that white microfacets lose by single scattering

@@ -1,8 +1,7 @@
-// Makes Glint's own base of the material's values.
+// Makes Glint's own base of the material's values: glTF 2.0, appendix B.3.5.
 #include "materials/base/base.glsl"
 #include "hit/surface_values.glsl"
 
-// glTF 2.0, appendix B.3.5.
 Base makeBase(SurfaceValues values, Features features) {
     Base b;
     bool both = hasBothBases(features);
