@@ -17,7 +17,7 @@ compiler::ModuleCache& sharedModules() {
 }
 
 Result<std::vector<std::uint32_t>> compileComputeOnce(const std::string& name, const std::string& glsl) {
-    const std::string text = "compute shader of a test\n" + glsl;
+    const compiler::TextHash text = compiler::hashOfText("compute shader of a test\n" + glsl);
     if (std::optional<compiler::CachedModule> found = sharedModules().find(text)) {
         return std::move(found->spirv);
     }

@@ -281,8 +281,13 @@ Result<SourceSet> makeSourceSet(const gltf::SceneList& scenes, const Plan& plan,
     }
     GLINT_TRY_DO(addHost(sources, settings.host));
     const materials::FeatureMask used = usedFeatures(plan);
-    sources.addItems("generated/features.glsl", plan.model->featureDefines(used));
-    sources.addItems("generated/material_record.glsl", recordDeclarations(materialLayoutOf(plan), used));
+    // Modules of cases have their own forms of these files if packs have models, which may be many.
+    const auto addOfModels = [&](const char* name, std::string text) {
+        plan.model->models.empty() ? sources.addItems(name, std::move(text))
+                                   : sources.add(name, std::move(text));
+    };
+    addOfModels("generated/features.glsl", plan.model->featureDefines(used));
+    addOfModels("generated/material_record.glsl", recordDeclarations(materialLayoutOf(plan), used));
     const bool surface = settings.answer == package::HitAnswer::Surface;
     sources.add("generated/answer.glsl",
                 fmt::format("#include \"hit/answer_{}.glsl\"\n", package::nameOf(settings.answer)));

@@ -59,7 +59,7 @@ public:
         addItem("");
         for (std::size_t i = 0; i < text.size(); ++i) {
             if (ofAllLines || !itemFiles_.contains(text.file(i))) {
-                forEachPiece(text.line(i), [&](std::string_view piece) { addItem(piece); });
+                addItemsOf(text.line(i));
             }
         }
     }
@@ -75,6 +75,19 @@ private:
         const std::vector<std::string_view>* words = nullptr;  // null once it was added
     };
 
+    // Takes words of comments for names, too.
+    void addItemsOf(std::string_view line) {
+        for (std::size_t i = 0; i < line.size();) {
+            std::size_t end = i;
+            while (end < line.size() && continuesWord(line[end])) {
+                ++end;
+            }
+            if (end > i) {
+                addItem(line.substr(i, end - i));
+            }
+            i = end + 1;
+        }
+    }
     void addItem(std::string_view name) {
         const auto [begin, end] = items_.equal_range(name);
         for (auto item = begin; item != end; ++item) {

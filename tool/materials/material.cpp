@@ -309,11 +309,13 @@ Channels MaterialFacts::number(int symbol) const {
                         isReadable(material_, primitive_, parameter.scaledBy);
     assert(parameter.isNamedByConditions());
     number.count = parameter.numbers;
+    const std::span<const double> values = material_.values.of(parameter);
     for (int i = 0; i < parameter.numbers; ++i) {
-        const auto place = static_cast<std::size_t>(parameter.first) + static_cast<std::size_t>(i);
-        ValueInterval& target = number.of[static_cast<std::size_t>(i)];
-        target = material_.ranges.empty() ? ValueInterval{material_.values[place], material_.values[place]}
-                                          : material_.ranges[place];
+        const auto channelOfValue = static_cast<std::size_t>(i);
+        ValueInterval& target = number.of[channelOfValue];
+        target = material_.ranges.empty()
+                     ? ValueInterval{values[channelOfValue], values[channelOfValue]}
+                     : material_.ranges[static_cast<std::size_t>(parameter.first) + channelOfValue];
         const int channel = parameter.scaledByChannels[static_cast<std::size_t>(i)];
         if (scaled && textures_ == Textures::Scale && channel >= 0) {
             const TextureContent& content = contentOf(material_, primitive_, parameter.scaledBy);
