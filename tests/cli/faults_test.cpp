@@ -222,7 +222,8 @@ TEST_F(CompileFaults, FailingCallLeavesFilesWhole) {
         }
         ASSERT_FALSE(HasFailure()) << at << outcome.err;
     }
-    EXPECT_GT(failed, struck.size() / 2);
+    // Other calls only clean up, or keep a file of the earlier package.
+    EXPECT_GT(failed, struck.size() / 3);
     expectLoadable();
 }
 
