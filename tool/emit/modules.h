@@ -19,7 +19,7 @@
 
 namespace glint::compiler {
 
-// What is known of modules before they are made.
+// Results of earlier runs and processes, by which modules are found.
 struct KnownModules {
     const ModuleCache* cache = nullptr;  // may be null
     WarmModules* warm = nullptr;         // may be null

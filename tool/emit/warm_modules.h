@@ -95,7 +95,7 @@ public:
     void endRun();
 
 private:
-    // What a template has made of some sources in one state.
+    // The text that a template becomes with some sources in one state.
     struct Text {
         std::vector<std::uint64_t> sources;
         std::uint64_t state = 0;  // IncludedFiles::stateOf() them

@@ -1,4 +1,4 @@
-// What is known of the texts of modules from runs before.
+// The texts of modules that are known from runs before.
 #include "emit/warm_modules.h"
 
 #include "support/must.h"
