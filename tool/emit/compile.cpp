@@ -64,8 +64,7 @@ struct Prepared {
     std::vector<ModuleSource> modules;
 };
 
-// `makesAll`: also texts whose hash is known.
-Result<Prepared> makeGlsl(const Build& build, ModuleCache* cache, WarmModules& warm, bool makesAll) {
+Result<Prepared> makeGlsl(const Build& build, const KnownModules& known) {
     const gltf::SceneList& scenes = *build.scenes;
     const CompileSettings& settings = build.settings.compile;
     if (build.excess) {
@@ -73,8 +72,7 @@ Result<Prepared> makeGlsl(const Build& build, ModuleCache* cache, WarmModules& w
     }
     GLINT_TRY(auto made, makeSourceSet(scenes, build.plan, settings));
     const auto sources = std::make_shared<const SourceSet>(std::move(made));
-    GLINT_TRY(auto modules,
-              makeModuleSources(scenes, build.plan, sources, settings, {cache, &warm, makesAll}));
+    GLINT_TRY(auto modules, makeModuleSources(scenes, build.plan, sources, settings, known));
     return Prepared{sources, std::move(modules)};
 }
 
@@ -82,15 +80,13 @@ Result<CompiledPackage> compile(const Build& build, ModuleCache* cache, WarmModu
     const base::Clock::time_point start = base::Clock::now();
     const gltf::SceneList& scenes = *build.scenes;
     const CompileSettings& settings = build.settings.compile;
-    WarmModules own;
-    WarmModules& known = warm != nullptr ? *warm : own;
     const bool makesAll = settings.emitGlsl || settings.debugInfo || !settings.modules.empty();
-    GLINT_TRY(auto prepared, makeGlsl(build, cache, known, makesAll));
+    GLINT_TRY(auto prepared, makeGlsl(build, {cache, warm, makesAll}));
     const base::Clock::time_point planned = base::Clock::now();
     Result<std::vector<CompiledModule>> compiled =
         !settings.modules.empty()
             ? takeModules(std::move(prepared.modules), settings.debugInfo, settings.modules)
-            : compileModules(std::move(prepared.modules), settings.jobs, settings.debugInfo, cache, &known,
+            : compileModules(std::move(prepared.modules), settings.jobs, settings.debugInfo, cache, warm,
                              settings.progress);
     if (!compiled) {
         return explainGlslError(compiled.error(), *build.plan.model, settings.host);
@@ -155,8 +151,7 @@ Result<Value> guarded(std::span<const gltf::Scene> scenes, const Work& work) {
 
 Result<PackagePlan> planPackage(const Build& build) {
     return guarded<PackagePlan>(build.scenes->scenes(), [&]() -> Result<PackagePlan> {
-        WarmModules none;
-        GLINT_TRY(const auto prepared, makeGlsl(build, nullptr, none, true));
+        GLINT_TRY(const auto prepared, makeGlsl(build, {}));
         return PackagePlan{build.plan, planModules(prepared.modules, build.settings.compile.debugInfo)};
     });
 }
