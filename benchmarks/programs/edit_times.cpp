@@ -197,18 +197,13 @@ Status measureEdits(const Arguments& arguments) {
 
 int main(int count, char** words) {
     glint::Arguments arguments;
-    CLI::App app{"Measures how long the host takes to record edits of a scene."};
-    app.add_option("--lamps", arguments.lamps, "instances that shine")
-        ->check(CLI::Range(0, 1'000'000))
-        ->capture_default_str();
-    app.add_option("--objects", arguments.objects, "other instances")
-        ->check(CLI::Range(1, 10'000'000))
-        ->capture_default_str();
-    app.add_flag("--moves", arguments.moves, "the scene moves, so its TLAS is updated");
-    app.add_flag("--sorted", arguments.sorted, "the TLAS is sorted, as for CPU drivers");
-    app.add_option("--triangles", arguments.triangles, "triangles of each")
-        ->check(CLI::Range(2, 1'000'000))
-        ->capture_default_str();
-    glint::benchmarks::addRoundsOption(app, arguments.rounds, "edits of each kind");
-    return glint::benchmarks::runProgram(app, count, words, [&] { return glint::measureEdits(arguments); });
+    return glint::benchmarks::runProgram(
+        "Measures how long the host takes to record edits of a scene.",
+        {{"--lamps", &arguments.lamps, "instances that shine", {false, 0, 1'000'000}},
+         {"--objects", &arguments.objects, "other instances", {false, 1, 10'000'000}},
+         {"--moves", &arguments.moves, "the scene moves, so its TLAS is updated"},
+         {"--sorted", &arguments.sorted, "the TLAS is sorted, as for CPU drivers"},
+         {"--triangles", &arguments.triangles, "triangles of each", {false, 2, 1'000'000}},
+         glint::benchmarks::roundsOption(arguments.rounds, "edits of each kind")},
+        count, words, [&] { return glint::measureEdits(arguments); });
 }

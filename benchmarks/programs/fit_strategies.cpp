@@ -38,8 +38,9 @@ Status fitFile(const std::string& points, const std::string& device) {
 int main(int count, char** words) {
     std::string points;
     std::string device;
-    CLI::App app{"Fits a device file again to the measurements of `glint bench --calibrate`."};
-    app.add_option("points", points, "the calibration.json of the measurements")->required();
-    app.add_option("device", device, "the device file to write")->required();
-    return glint::benchmarks::runProgram(app, count, words, [&] { return glint::fitFile(points, device); });
+    return glint::benchmarks::runProgram(
+        "Fits a device file again to the measurements of `glint bench --calibrate`.",
+        {{"points", &points, "the calibration.json of the measurements", glint::benchmarks::kNeeded},
+         {"device", &device, "the device file to write", glint::benchmarks::kNeeded}},
+        count, words, [&] { return glint::fitFile(points, device); });
 }

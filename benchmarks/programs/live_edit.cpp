@@ -350,18 +350,22 @@ Status measure(const Arguments& arguments) {
 
 int main(int count, char** words) {
     glint::Arguments arguments;
-    CLI::App app{"Measures the way of an edit from a pack's GLSL to the picture, part by part."};
-    app.add_option("--glint", arguments.glint, "the command")->required();
-    app.add_option("--scene", arguments.scene, "a scene that uses the pack")->required();
-    app.add_option("--pack", arguments.pack, "folder of the pack")->required();
-    app.add_option("--file", arguments.file, "the GLSL that is edited, and mended at the end")->required();
-    app.add_option("--from", arguments.from, "a number in that file, which the edits multiply")->required();
-    app.add_option("--folder", arguments.folder, "an existing folder for the package")->required();
-    app.add_option("--strategy", arguments.strategy, "name of the strategy")->capture_default_str();
-    glint::benchmarks::addSizeOptions(app, arguments.size);
-    glint::benchmarks::addRoundsOption(app, arguments.rounds, "edits");
-    app.add_flag("--no-fallback", arguments.noFallback,
-                 "compile no fallback, and make pipelines in replacePackage()");
-    app.add_option("--json", arguments.json, "a file for every edit's times");
-    return glint::benchmarks::runProgram(app, count, words, [&] { return glint::measure(arguments); });
+    return glint::benchmarks::runProgram(
+        "Measures the way of an edit from a pack's GLSL to the picture, part by part.",
+        {{"--glint", &arguments.glint, "the command", glint::benchmarks::kNeeded},
+         {"--scene", &arguments.scene, "a scene that uses the pack", glint::benchmarks::kNeeded},
+         {"--pack", &arguments.pack, "folder of the pack", glint::benchmarks::kNeeded},
+         {"--file", &arguments.file, "the GLSL that is edited, and mended at the end",
+          glint::benchmarks::kNeeded},
+         {"--from", &arguments.from, "a number in that file, which the edits multiply",
+          glint::benchmarks::kNeeded},
+         {"--folder", &arguments.folder, "an existing folder for the package", glint::benchmarks::kNeeded},
+         {"--strategy", &arguments.strategy, "name of the strategy"},
+         glint::benchmarks::roundsOption(arguments.rounds, "edits"),
+         {"--no-fallback", &arguments.noFallback,
+          "compile no fallback, and make pipelines in replacePackage()"},
+         {"--json", &arguments.json, "a file for every edit's times"},
+         glint::benchmarks::widthOption(arguments.size),
+         glint::benchmarks::heightOption(arguments.size)},
+        count, words, [&] { return glint::measure(arguments); });
 }

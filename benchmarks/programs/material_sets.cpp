@@ -144,14 +144,15 @@ Status measure(const Arguments& arguments) {
 
 int main(int count, char** words) {
     glint::Arguments arguments;
-    CLI::App app{"Measures how long a program waits for the package of its materials."};
-    app.add_option("--materials", arguments.materials, "of the set")->capture_default_str();
-    app.add_option("--cases", arguments.cases, "of these materials")->capture_default_str();
-    app.add_option("--strategy", arguments.strategy, "name of the strategy")->capture_default_str();
-    app.add_option("--cache", arguments.cache, "folder of compiled shaders; without it, memory alone");
-    glint::benchmarks::addRoundsOption(app, arguments.rounds, "edits of each kind");
-    app.add_option("--jobs", arguments.jobs, "threads; 0: one for each core")->capture_default_str();
-    app.add_flag("--steps", arguments.steps, "for rays of an engine's own, without a frame");
-    app.add_flag("--fallback", arguments.fallback, "compile a fallback, too");
-    return glint::benchmarks::runProgram(app, count, words, [&] { return glint::measure(arguments); });
+    return glint::benchmarks::runProgram(
+        "Measures how long a program waits for the package of its materials.",
+        {{"--materials", &arguments.materials, "of the set"},
+         {"--cases", &arguments.cases, "of these materials"},
+         {"--strategy", &arguments.strategy, "name of the strategy"},
+         {"--cache", &arguments.cache, "folder of compiled shaders; without it, memory alone"},
+         glint::benchmarks::roundsOption(arguments.rounds, "edits of each kind"),
+         {"--jobs", &arguments.jobs, "threads; 0: one for each core"},
+         {"--steps", &arguments.steps, "for rays of an engine's own, without a frame"},
+         {"--fallback", &arguments.fallback, "compile a fallback, too"}},
+        count, words, [&] { return glint::measure(arguments); });
 }

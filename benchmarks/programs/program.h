@@ -4,14 +4,12 @@
 
 #include <glint/result.h>
 
-#include <CLI/CLI.hpp>
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <exception>
-#include <filesystem>
+#include <functional>
+#include <string>
+#include <variant>
 #include <vector>
 
 namespace glint::benchmarks {
@@ -26,14 +24,25 @@ struct Size {
     }
 };
 
-inline void addSizeOptions(CLI::App& app, Size& size) {
-    app.add_option("--width", size.width, "pixels")->capture_default_str();
-    app.add_option("--height", size.height, "pixels")->capture_default_str();
-}
+// What an option's words have to be.
+struct Demand {
+    bool present = false;
+    int least = 0;  // of a number; there is no bound unless `least` is less than `most`
+    int most = 0;
+};
+constexpr Demand kNeeded{true};
 
-inline void addRoundsOption(CLI::App& app, int& rounds, const char* help) {
-    app.add_option("--rounds", rounds, help)->check(CLI::Range(1, 10'000))->capture_default_str();
-}
+// A value is left as it is if its option is not there, and `--help` shows it as the default.
+struct Option {
+    const char* name;  // without dashes it is a positional argument
+    std::variant<bool*, int*, std::uint32_t*, std::size_t*, std::string*, std::vector<std::string>*> value;
+    const char* help;
+    Demand demand{};
+};
+
+Option widthOption(Size& size);
+Option heightOption(Size& size);
+Option roundsOption(int& rounds, const char* help);
 
 // Returns the quantile of measured values, of which there must be some.
 template <typename Value>
@@ -42,21 +51,9 @@ Value quantile(std::vector<Value> values, double share) {
     return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
-// Reads the command line into what the options of `app` refer to, and calls `run`. Returns the exit code. An
-// error is printed.
-template <typename Run>
-int runProgram(CLI::App& app, int count, char** words, const Run& run) {
-    CLI11_PARSE(app, count, words);
-    try {
-        const Status status = run();
-        if (status) {
-            return 0;
-        }
-        fmt::print(stderr, "{}\n", toString(status.error()));
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "{}: {}\n", std::filesystem::path(words[0]).filename().string(), error.what());
-    }
-    return 1;
-}
+// Reads the command line into the values of `options`, and calls `run`. Returns the exit code. An error is
+// printed.
+int runProgram(const char* purpose, const std::vector<Option>& options, int count, char** words,
+               const std::function<Status()>& run);
 
 }  // namespace glint::benchmarks

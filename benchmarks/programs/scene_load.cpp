@@ -145,9 +145,11 @@ Status run(const Arguments& arguments) {
 
 int main(int count, char** words) {
     glint::Arguments arguments;
-    CLI::App app{"Measures how long a scene takes to its first frame, by the way in which it is uploaded."};
-    app.add_option("scene", arguments.scene, "glTF file")->required();
-    glint::benchmarks::addRoundsOption(app, arguments.rounds, "rounds of each way, which alternate");
-    glint::benchmarks::addSizeOptions(app, arguments.size);
-    return glint::benchmarks::runProgram(app, count, words, [&] { return glint::run(arguments); });
+    return glint::benchmarks::runProgram(
+        "Measures how long a scene takes to its first frame, by the way in which it is uploaded.",
+        {{"scene", &arguments.scene, "glTF file", glint::benchmarks::kNeeded},
+         glint::benchmarks::roundsOption(arguments.rounds, "rounds of each way, which alternate"),
+         glint::benchmarks::widthOption(arguments.size),
+         glint::benchmarks::heightOption(arguments.size)},
+        count, words, [&] { return glint::run(arguments); });
 }

@@ -147,10 +147,12 @@ Status run(const Arguments& arguments) {
 
 int main(int count, char** words) {
     glint::Arguments arguments;
-    CLI::App app{"Compares a scene that is not edited, one that is, and one whose instances are sealed."};
-    app.add_option("scene", arguments.scene, "glTF file")->required();
-    app.add_flag("--sorted", arguments.sorted, "triangles and instances are sorted, as for CPU drivers");
-    glint::benchmarks::addRoundsOption(app, arguments.rounds, "frames of each way, which alternate");
-    glint::benchmarks::addSizeOptions(app, arguments.size);
-    return glint::benchmarks::runProgram(app, count, words, [&] { return glint::run(arguments); });
+    return glint::benchmarks::runProgram(
+        "Compares a scene that is not edited, one that is, and one whose instances are sealed.",
+        {{"scene", &arguments.scene, "glTF file", glint::benchmarks::kNeeded},
+         {"--sorted", &arguments.sorted, "triangles and instances are sorted, as for CPU drivers"},
+         glint::benchmarks::roundsOption(arguments.rounds, "frames of each way, which alternate"),
+         glint::benchmarks::widthOption(arguments.size),
+         glint::benchmarks::heightOption(arguments.size)},
+        count, words, [&] { return glint::run(arguments); });
 }

@@ -263,25 +263,25 @@ Status run(const Arguments& arguments) {
 
 int main(int count, char** words) {
     glint::Arguments arguments;
-    CLI::App app{
+    return glint::benchmarks::runProgram(
         "Measures the time to the first frame of a scene with many cases, and the frames while pipelines "
         "swap in. Turn off the driver's shader cache before (MESA_SHADER_CACHE_DISABLE=true, "
-        "__GL_SHADER_DISK_CACHE=0)."};
-    app.add_option("--cases", arguments.cases, "cases of the scene, 1 to 256")->capture_default_str();
-    app.add_flag("--cheap", arguments.cheap, "cheap materials instead of expensive ones");
-    app.add_flag("--incoherent", arguments.incoherent, "rays in all directions instead of a mirror's");
-    app.add_option("--strategies", arguments.strategies, "strategies, by name")->capture_default_str();
-    glint::benchmarks::addSizeOptions(app, arguments.size);
-    app.add_option("--threads", arguments.threads, "threads that make pipelines; 0: one for each core");
-    app.add_option("--after", arguments.after, "frames after the last pipeline")->capture_default_str();
-    app.add_flag("--no-draft", arguments.noDraft, "wait for the fixed passes and the fallback");
-    app.add_flag("--deferred-shadows", arguments.defersShadows,
-                 "trace the shadow rays of hits in a pass of their own, so that cases are compute shaders");
-    app.add_option("--package", arguments.packageFolder, "also write the package to this folder");
-    app.add_flag("--background-only", arguments.skipsAllFirst,
-                 "do not measure pipelines that are made first");
-    app.add_flag(
-        "--replace", arguments.replaces,
-        "then replace the package by one without energy compensation, and print histograms of the frames");
-    return glint::benchmarks::runProgram(app, count, words, [&] { return glint::run(arguments); });
+        "__GL_SHADER_DISK_CACHE=0).",
+        {{"--cases", &arguments.cases, "cases of the scene, 1 to 256"},
+         {"--cheap", &arguments.cheap, "cheap materials instead of expensive ones"},
+         {"--incoherent", &arguments.incoherent, "rays in all directions instead of a mirror's"},
+         {"--strategies", &arguments.strategies, "strategies, by name"},
+         {"--threads", &arguments.threads, "threads that make pipelines; 0: one for each core"},
+         {"--after", &arguments.after, "frames after the last pipeline"},
+         {"--no-draft", &arguments.noDraft, "wait for the fixed passes and the fallback"},
+         {"--deferred-shadows", &arguments.defersShadows,
+          "trace the shadow rays of hits in a pass of their own, so that cases are compute shaders"},
+         {"--package", &arguments.packageFolder, "also write the package to this folder"},
+         {"--background-only", &arguments.skipsAllFirst, "do not measure pipelines that are made first"},
+         {"--replace", &arguments.replaces,
+          "then replace the package by one without energy compensation, and print histograms of the "
+          "frames"},
+         glint::benchmarks::widthOption(arguments.size),
+         glint::benchmarks::heightOption(arguments.size)},
+        count, words, [&] { return glint::run(arguments); });
 }

@@ -134,12 +134,12 @@ Status run(const Arguments& arguments) {
 
 int main(int count, char** words) {
     glint::Arguments arguments;
-    CLI::App app("Measures how long the images of scenes take to load, and their size on a desktop device.");
-    app.add_option("scenes", arguments.scenes, "glTF files")->required();
-    glint::benchmarks::addRoundsOption(app, arguments.rounds, "rounds of each scene");
-    app.add_flag("--compress", arguments.compress, "compress PNG, JPEG and WebP, without a cache");
-    app.add_flag("--unpack", arguments.unpack, "as for a device without block formats");
-    app.add_option("--png", arguments.png,
-                   "write the first scene's images to this folder, and measure nothing");
-    return glint::benchmarks::runProgram(app, count, words, [&] { return glint::run(arguments); });
+    return glint::benchmarks::runProgram(
+        "Measures how long the images of scenes take to load, and their size on a desktop device.",
+        {{"scenes", &arguments.scenes, "glTF files", glint::benchmarks::kNeeded},
+         glint::benchmarks::roundsOption(arguments.rounds, "rounds of each scene"),
+         {"--compress", &arguments.compress, "compress PNG, JPEG and WebP, without a cache"},
+         {"--unpack", &arguments.unpack, "as for a device without block formats"},
+         {"--png", &arguments.png, "write the first scene's images to this folder, and measure nothing"}},
+        count, words, [&] { return glint::run(arguments); });
 }

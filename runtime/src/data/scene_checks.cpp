@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* kSameScene = "compile the package from the scene that is rendered";
 
-std::string placeOf(std::uint32_t mesh, std::uint32_t primitive) {
+std::string placeOfPrimitive(std::uint32_t mesh, std::uint32_t primitive) {
     return phrase("mesh ", mesh, ", primitive ", primitive);
 }
 
@@ -108,7 +108,7 @@ Status checkIndices(const PrimitiveView& view, const std::string& where) {
     return okStatus();
 }
 
-std::tuple<std::uint32_t, std::uint32_t> keyOf(const PrimitiveView& view) {
+std::tuple<std::uint32_t, std::uint32_t> orderOf(const PrimitiveView& view) {
     return {view.mesh, view.primitive};
 }
 
@@ -116,8 +116,8 @@ Status checkPrimitives(const Package& package, const PackageScene& known,
                        std::span<const PrimitiveView> primitives) {
     const PrimitiveView* previous = nullptr;
     for (const PrimitiveView& view : primitives) {
-        const std::string where = placeOf(view.mesh, view.primitive);
-        if (previous != nullptr && keyOf(*previous) >= keyOf(view)) {
+        const std::string where = placeOfPrimitive(view.mesh, view.primitive);
+        if (previous != nullptr && orderOf(*previous) >= orderOf(view)) {
             return makeError("scene-order", where, "the primitives are not sorted, or one is there twice",
                              "sort them by mesh, then primitive");
         }
@@ -144,8 +144,8 @@ Status checkInstances(const PackageScene& known, const SceneView& scene) {
             continue;
         }
         if (!std::ranges::binary_search(scene.primitives, std::tuple(entry.mesh, entry.primitive),
-                                        std::less<>{}, keyOf)) {
-            return makeError("scene-package", placeOf(entry.mesh, entry.primitive),
+                                        std::less<>{}, orderOf)) {
+            return makeError("scene-package", placeOfPrimitive(entry.mesh, entry.primitive),
                              "the scene lacks a primitive that the package knows", kSameScene);
         }
     }

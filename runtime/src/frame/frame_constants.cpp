@@ -39,7 +39,7 @@ bool isUnit(const glm::vec3& v) {
     return std::abs(glm::dot(v, v) - 1.0F) < 1e-3F;
 }
 
-bool isFinite(const glm::vec3& v) {
+bool isFiniteVector(const glm::vec3& v) {
     return !glm::any(glm::isnan(v)) && !glm::any(glm::isinf(v));
 }
 
@@ -80,7 +80,7 @@ Status checkCamera(const CameraView& camera) {
     const glm::vec3 forward = toVector(camera.forward);
     const glm::vec3 up = toVector(camera.up);
     const auto isPlace = [](double value) { return std::isfinite(value); };
-    if (!std::ranges::all_of(camera.position, isPlace) || !isFinite(forward) || !isFinite(up) ||
+    if (!std::ranges::all_of(camera.position, isPlace) || !isFiniteVector(forward) || !isFiniteVector(up) ||
         !std::isfinite(camera.halfWidth) || !std::isfinite(camera.halfHeight) ||
         !std::isfinite(camera.near) || !std::isfinite(camera.far)) {
         return makeError("camera", "", "the camera has a value that is not finite", hint);

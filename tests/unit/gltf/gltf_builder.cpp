@@ -1,5 +1,7 @@
 #include "unit/gltf/gltf_builder.h"
 
+#include "support/must.h"
+
 #include <algorithm>
 #include <iterator>
 #include <set>
@@ -160,6 +162,10 @@ Result<gltf::Scene> importText(const std::string& text, const gltf::ImportOption
 
 Result<gltf::Scene> import(const GltfBuilder& builder, const gltf::ImportOptions& options) {
     return importText(builder.text(), options);
+}
+
+gltf::Scene mustImport(const GltfBuilder& builder, const gltf::ImportOptions& options) {
+    return must(import(builder, options));
 }
 
 GltfBuilder sceneWithImage(const base::Bytes& bytes, const std::string& mimeType) {

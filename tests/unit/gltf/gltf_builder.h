@@ -122,6 +122,7 @@ std::string base64(const base::Bytes& bytes);
 // Writes `text` to a file in a new folder and imports it.
 Result<gltf::Scene> importText(const std::string& text, const gltf::ImportOptions& options = {});
 Result<gltf::Scene> import(const GltfBuilder& builder, const gltf::ImportOptions& options = {});
+gltf::Scene mustImport(const GltfBuilder& builder, const gltf::ImportOptions& options = {});
 
 // A material whose base colour is the image of those bytes.
 GltfBuilder sceneWithImage(const base::Bytes& bytes, const std::string& mimeType = "image/png");

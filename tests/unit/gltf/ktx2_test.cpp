@@ -51,7 +51,7 @@ std::array<int, 4> pixelAt(const gltf::Image& image, int level, int x, int y) {
 }
 
 // Expects every channel to be within the tolerance.
-::testing::AssertionResult isNear(const std::array<int, 4>& pixel, const std::array<int, 4>& expected,
+::testing::AssertionResult isNearPixel(const std::array<int, 4>& pixel, const std::array<int, 4>& expected,
                                   int tolerance) {
     for (std::size_t channel = 0; channel < 4; ++channel) {
         if (std::abs(pixel[channel] - expected[channel]) > tolerance) {
@@ -107,10 +107,10 @@ TEST_F(GltfKtx2, DecodesEveryKindOfData) {
         ASSERT_EQ(image.pixels.size(), byteCount(image));
         EXPECT_EQ(image.transfer, kind.transfer);
         const int right = kind.alpha ? 96 : 255;
-        EXPECT_TRUE(isNear(pixelAt(image, 0, 1, 1), {200, 24, 24, 255}, kind.tolerance));
-        EXPECT_TRUE(isNear(pixelAt(image, 0, 14, 1), {24, 160, 40, right}, kind.tolerance));
-        EXPECT_TRUE(isNear(pixelAt(image, 0, 1, 6), {32, 48, 208, 255}, kind.tolerance));
-        EXPECT_TRUE(isNear(pixelAt(image, 0, 14, 6), {240, 232, 224, right}, kind.tolerance));
+        EXPECT_TRUE(isNearPixel(pixelAt(image, 0, 1, 1), {200, 24, 24, 255}, kind.tolerance));
+        EXPECT_TRUE(isNearPixel(pixelAt(image, 0, 14, 1), {24, 160, 40, right}, kind.tolerance));
+        EXPECT_TRUE(isNearPixel(pixelAt(image, 0, 1, 6), {32, 48, 208, 255}, kind.tolerance));
+        EXPECT_TRUE(isNearPixel(pixelAt(image, 0, 14, 6), {240, 232, 224, right}, kind.tolerance));
     }
 }
 
@@ -123,7 +123,7 @@ TEST_F(GltfKtx2, MayLieAnywhereInABuffer) {
         builder.root["bufferViews"][0]["byteOffset"] = padding;
         builder.buffer.insert(builder.buffer.begin(), padding, std::uint8_t{0});
         const gltf::Scene scene = must(import(builder, kDecodeKtx2));
-        EXPECT_TRUE(isNear(pixelAt(scene.images[0], 0, 1, 1), {200, 24, 24, 255}, 3));
+        EXPECT_TRUE(isNearPixel(pixelAt(scene.images[0], 0, 1, 1), {200, 24, 24, 255}, 3));
     }
 }
 
@@ -138,9 +138,9 @@ TEST_F(GltfKtx2, KeepsTheMipsOfTheFile) {
         ASSERT_EQ(image.pixels.size(), 4U * (256 + 64 + 16 + 4 + 1));
         for (int level = 0; level < image.levels; ++level) {
             const int last = (16 >> level) - 1;
-            EXPECT_TRUE(isNear(pixelAt(image, level, 0, 0), kSteps[static_cast<std::size_t>(level)], 12));
+            EXPECT_TRUE(isNearPixel(pixelAt(image, level, 0, 0), kSteps[static_cast<std::size_t>(level)], 12));
             EXPECT_TRUE(
-                isNear(pixelAt(image, level, last, last), kSteps[static_cast<std::size_t>(level)], 12));
+                isNearPixel(pixelAt(image, level, last, last), kSteps[static_cast<std::size_t>(level)], 12));
         }
     }
 }

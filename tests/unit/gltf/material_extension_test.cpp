@@ -21,10 +21,6 @@ GltfBuilder withMaterial(Json material) {
     return builder;
 }
 
-gltf::Scene mustImport(const GltfBuilder& builder) {
-    return must(import(builder));
-}
-
 gltf::Scene importMaterial(const std::string& extensions) {
     return mustImport(withMaterial({{"extensions", Json::parse(extensions)}}));
 }

@@ -24,10 +24,6 @@ GltfBuilder texturedMaterial() {
     return builder;
 }
 
-gltf::Scene mustImport(const GltfBuilder& builder, const gltf::ImportOptions& options = {}) {
-    return must(import(builder, options));
-}
-
 TEST(GltfMaterials, HaveTheDefaultsOfTheSpecification) {
     GltfBuilder builder;
     builder.append("materials", Json::object());

@@ -159,10 +159,10 @@ GltfBuilder skinned(const std::vector<std::vector<float>>& weights) {
     return builder;
 }
 
-const std::vector<float> kHalves{0.5F, 0.5F, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0};
+const std::vector<float> kHalfWeights{0.5F, 0.5F, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0};
 
 TEST(GltfSkins, AreRead) {
-    const gltf::Scene scene = importMotion(skinned({kHalves}));
+    const gltf::Scene scene = importMotion(skinned({kHalfWeights}));
     EXPECT_TRUE(scene.warnings.empty());
     ASSERT_EQ(scene.skins.size(), 1U);
     EXPECT_EQ(scene.nodes.at(0).skin, 0);
@@ -189,7 +189,7 @@ TEST(GltfSkins, JoinSetsAndNormaliseWeights) {
 }
 
 TEST(GltfSkins, ReadNormalisedWeightsOf16Bits) {
-    GltfBuilder builder = skinned({kHalves});
+    GltfBuilder builder = skinned({kHalfWeights});
     Json& attributes = builder.root["meshes"][0]["primitives"][0]["attributes"];
     attributes["WEIGHTS_0"] = builder.addAccessor(
         std::vector<std::uint16_t>{32768, 32767, 0, 0, 65535, 0, 0, 0, 0, 65535, 0, 0}, 4, true);
@@ -201,35 +201,35 @@ TEST(GltfSkins, ReadNormalisedWeightsOf16Bits) {
 }
 
 TEST(GltfSkins, AreChecked) {
-    GltfBuilder builder = skinned({kHalves});
+    GltfBuilder builder = skinned({kHalfWeights});
     builder.root["skins"][0]["joints"] = {1};
     EXPECT_EQ(errorId(builder), "skin-joint-range");
-    builder = skinned({kHalves});
+    builder = skinned({kHalfWeights});
     builder.root["skins"][0]["joints"] = Json::array();
     EXPECT_EQ(errorId(builder), "skin-joints");
-    builder = skinned({kHalves});
+    builder = skinned({kHalfWeights});
     builder.root["skins"][0]["joints"] = {1, 2, 1};
     EXPECT_EQ(errorId(builder), "skin-matrices");
-    builder = skinned({kHalves});
+    builder = skinned({kHalfWeights});
     builder.root["skins"][0]["joints"] = {1, 9};
     EXPECT_EQ(errorId(builder), "index-range");
-    builder = skinned({kHalves});
+    builder = skinned({kHalfWeights});
     builder.root["nodes"][0]["skin"] = 1;
     EXPECT_EQ(errorId(builder), "index-range");
-    builder = skinned({kHalves});
+    builder = skinned({kHalfWeights});
     builder.root["skins"][0]["inverseBindMatrices"] = 0;
     EXPECT_EQ(errorId(builder), "accessor-type");
-    builder = skinned({kHalves});
+    builder = skinned({kHalfWeights});
     builder.root["meshes"][0]["primitives"][0]["attributes"].erase("WEIGHTS_0");
     EXPECT_EQ(errorId(builder), "skin-attribute");
-    builder = skinned({kHalves});
+    builder = skinned({kHalfWeights});
     Json& attributes = builder.root["meshes"][0]["primitives"][0]["attributes"];
     attributes["JOINTS_0"] = builder.addAccessor(std::vector<float>(12, 0.0F), 4);
     EXPECT_EQ(errorId(builder), "attribute-type");
 }
 
 TEST(GltfSkins, AreLeftOutWhereAJointIsNotInTheScene) {
-    GltfBuilder builder = skinned({kHalves});
+    GltfBuilder builder = skinned({kHalfWeights});
     builder.root["scenes"] = {{{"nodes", {0, 1}}}};
     const gltf::Scene scene = importMotion(builder);
     EXPECT_EQ(countWarnings(scene, "skin-joint-outside"), 1U);

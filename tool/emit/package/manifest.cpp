@@ -45,7 +45,7 @@ double fact(const StrategyAdvice& advice) {
     return rounded(advice.choice.facts.*Member);
 }
 
-std::vector<std::pair<std::string_view, double>> partsOf(const StrategyEstimate& estimate) {
+std::vector<std::pair<std::string_view, double>> timesOfTerms(const StrategyEstimate& estimate) {
     std::vector<std::pair<std::string_view, double>> parts;
     for (const CostTermInfo& info : costTerms()) {
         if (hasTerm(estimate.strategy, info.term)) {
@@ -73,7 +73,7 @@ static base::Fields fieldsOf(const StrategyEstimate*) {
                               "Whether it could be chosen, that is, device, package and tracer can run it."),
         output("milliseconds", "Expected time of all rounds of rays, from the list to the shaded hits.",
                [](const T& estimate) { return rounded(estimate.ms); }),
-        output<partsOf>("parts", "Milliseconds of each term of the model that the strategy has, by name.")};
+        output<timesOfTerms>("parts", "Milliseconds of each term of the model that the strategy has, by name.")};
 }
 
 base::Fields fieldsOf(const StrategyAdvice*) {

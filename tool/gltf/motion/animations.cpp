@@ -135,7 +135,7 @@ const Json* follow(const Json& from, Tokens tokens) {
     return at;
 }
 
-std::string nameOf(Tokens tokens) {
+std::string joined(Tokens tokens) {
     return fmt::format("{}", fmt::join(tokens, "/"));
 }
 
@@ -239,7 +239,7 @@ private:
             return weights(targets, scene_.nodes[static_cast<std::size_t>(placed)].restWeights.size(),
                            rest.subspan(1));
         }
-        const std::string name = nameOf(rest);
+        const std::string name = joined(rest);
         if (name == "extensions/KHR_node_visibility/visible") {
             return file_.nodes[index].extensions.contains("KHR_node_visibility")
                        ? known(AnimationPath::Visible, 1, targets, 0, ValueKind::Bool)
@@ -275,7 +275,7 @@ private:
     }
 
     PointerTarget material(std::size_t index, Tokens rest) const {
-        const std::optional<int> property = findMaterialProperty(model_, nameOf(rest));
+        const std::optional<int> property = findMaterialProperty(model_, joined(rest));
         if (!property) {
             return unknown();
         }
@@ -304,7 +304,7 @@ private:
     }
 
     PointerTarget camera(std::size_t index, Tokens rest) const {
-        const std::optional<int> property = findCameraProperty(nameOf(rest));
+        const std::optional<int> property = findCameraProperty(joined(rest));
         if (!property) {
             return unknown();  // this includes aspectRatio, which the picture's size decides
         }
@@ -316,7 +316,7 @@ private:
     }
 
     PointerTarget light(std::size_t index, Tokens rest) const {
-        const std::optional<int> property = findLightProperty(nameOf(rest));
+        const std::optional<int> property = findLightProperty(joined(rest));
         if (!property) {
             return unknown();
         }
