@@ -50,6 +50,7 @@ struct Arguments {
     benchmarks::Size size{320, 180};
     int rounds = 5;
     bool noFallback = false;
+    bool noOptimize = false;
     std::string json;
 };
 
@@ -71,6 +72,9 @@ public:
             "none",          "--materials",      arguments.pack,  "--watch"};
         if (!arguments.noFallback) {
             words.emplace_back("--fallback");
+        }
+        if (arguments.noOptimize) {
+            words.emplace_back("--no-optimize");
         }
         std::error_code ignored;
         fs::remove(out_, ignored);  // of an earlier program
@@ -364,6 +368,7 @@ int main(int count, char** words) {
          glint::benchmarks::roundsOption(arguments.rounds, "edits"),
          {"--no-fallback", &arguments.noFallback,
           "compile no fallback, and make pipelines in replacePackage()"},
+         {"--no-optimize", &arguments.noOptimize, "as of glint compile"},
          {"--json", &arguments.json, "a file for every edit's times"},
          glint::benchmarks::widthOption(arguments.size),
          glint::benchmarks::heightOption(arguments.size)},

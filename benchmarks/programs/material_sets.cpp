@@ -29,6 +29,7 @@ struct Arguments {
     int jobs = 0;
     bool fallback = false;
     bool steps = false;
+    bool noOptimize = false;
 };
 
 // Returns the material of a case: eight switches, which are mixed so that any few cases have each of them.
@@ -103,6 +104,7 @@ Status measure(const Arguments& arguments) {
     settings.compile.strategies = package::findStrategy(arguments.strategy)->strategy;
     settings.compile.plan.merge = compiler::MergePolicy::None;
     settings.compile.plan.fallback = arguments.fallback;
+    settings.compile.optimize = !arguments.noOptimize;
     settings.compile.passes = arguments.steps ? package::Passes::Steps : package::Passes::Frame;
     settings.compile.jobs = arguments.jobs;
     gltf::MaterialSet set;
@@ -153,6 +155,7 @@ int main(int count, char** words) {
          glint::benchmarks::roundsOption(arguments.rounds, "edits of each kind"),
          {"--jobs", &arguments.jobs, "threads; 0: one for each core"},
          {"--steps", &arguments.steps, "for rays of an engine's own, without a frame"},
-         {"--fallback", &arguments.fallback, "compile a fallback, too"}},
+         {"--fallback", &arguments.fallback, "compile a fallback, too"},
+         {"--no-optimize", &arguments.noOptimize, "as of glint compile"}},
         count, words, [&] { return glint::measure(arguments); });
 }

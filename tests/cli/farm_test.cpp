@@ -67,6 +67,7 @@ TEST_F(Farm, MakesTheSamePackageToTheByte) {
         {{tiny}, {"--strategy", "sorted-uber", "--merge", "all", "--debug-info"}},
         {{tiny},
          {"--strategy", "hit-shaders", "--variant", "Day", "--alpha=tested", "--hit-lobes=base,sheen"}},
+        {{tiny}, {"--strategy", "uber,visibility", "--no-optimize"}},
     };
     for (const auto& [scenes, options] : runs) {
         Words whole = options;

@@ -71,7 +71,7 @@ Result<std::vector<compiler::CompiledModule>> compileOrdering(std::uint32_t case
     std::erase_if(modules, [](const compiler::ModuleSource& module) {
         return std::ranges::find(kRoles, module.key.role) == std::end(kRoles);
     });
-    return compileModules(std::move(modules), 0, false, &sharedModules());
+    return compileModules(std::move(modules), 0, {}, &sharedModules());
 }
 
 }  // namespace

@@ -106,6 +106,13 @@ TEST(RayPipelines, PackedHitsToo) {
     expectAllWaysAgreeInHall(settings);
 }
 
+TEST(RayPipelines, ShadersThatAreNotOptimisedToo) {
+    compiler::CompileSettings settings = settingsFor(ShadowPlacement::Inline, compiler::MergePolicy::Family);
+    settings.optimize = false;
+    settings.strategies = package::kStrategyUber | package::kStrategyHitShaders;
+    expectAllWaysAgreeInHall(settings);
+}
+
 // First no surface, so that lists have no elements; then one whose rays all leave the scene.
 TEST(RayPipelines, ListsWithoutElementsAndRaysWithoutHits) {
     gltf::Scene scene = sceneWithCamera();

@@ -58,6 +58,10 @@ void addModuleFiles(CompiledPackage& package, const std::string& source, bool em
     }
 }
 
+ShaderCompileOptions shaderOptions(const CompileSettings& settings) {
+    return {.debugInfo = settings.debugInfo, .optimize = settings.optimize};
+}
+
 // The results of all steps before SPIR-V.
 struct Prepared {
     std::shared_ptr<const SourceSet> sources;
@@ -80,14 +84,14 @@ Result<CompiledPackage> compile(const Build& build, ModuleCache* cache, WarmModu
     const base::Clock::time_point start = base::Clock::now();
     const gltf::SceneList& scenes = *build.scenes;
     const CompileSettings& settings = build.settings.compile;
+    const ShaderCompileOptions options = shaderOptions(settings);
     const bool makesAll = settings.emitGlsl || settings.debugInfo || !settings.modules.empty();
     GLINT_TRY(auto prepared, makeGlsl(build, {cache, warm, makesAll}));
     const base::Clock::time_point planned = base::Clock::now();
     Result<std::vector<CompiledModule>> compiled =
-        !settings.modules.empty()
-            ? takeModules(std::move(prepared.modules), settings.debugInfo, settings.modules)
-            : compileModules(std::move(prepared.modules), settings.jobs, settings.debugInfo, cache, warm,
-                             settings.progress);
+        !settings.modules.empty() ? takeModules(std::move(prepared.modules), options, settings.modules)
+                                  : compileModules(std::move(prepared.modules), settings.jobs, options, cache,
+                                                   warm, settings.progress);
     if (!compiled) {
         return explainGlslError(compiled.error(), *build.plan.model, settings.host);
     }
@@ -152,7 +156,7 @@ Result<Value> guarded(std::span<const gltf::Scene> scenes, const Work& work) {
 Result<PackagePlan> planPackage(const Build& build) {
     return guarded<PackagePlan>(build.scenes->scenes(), [&]() -> Result<PackagePlan> {
         GLINT_TRY(const auto prepared, makeGlsl(build, {}));
-        return PackagePlan{build.plan, planModules(prepared.modules, build.settings.compile.debugInfo)};
+        return PackagePlan{build.plan, planModules(prepared.modules, shaderOptions(build.settings.compile))};
     });
 }
 

@@ -92,7 +92,8 @@ public:
         std::vector<std::size_t> parts;  // texts, the one with the entry point first
     };
 
-    DistinctTexts(std::span<const ModuleSource> sources, bool debugInfo) : debugInfo_(debugInfo) {
+    DistinctTexts(std::span<const ModuleSource> sources, const ShaderCompileOptions& options)
+        : options_(options) {
         for (std::size_t i = 0; i < sources.size(); ++i) {
             const std::size_t known = texts_.size();
             textOf_.push_back(add(sources[i]));
@@ -117,14 +118,14 @@ private:
         for (const std::shared_ptr<const ModuleSource>& part : source.parts) {
             parts.push_back(add(*part));
         }
-        const auto [place, added] = places_.emplace(hashOfModuleText(source, debugInfo_), texts_.size());
+        const auto [place, added] = places_.emplace(hashOfModuleText(source, options_), texts_.size());
         if (added) {
             texts_.push_back({&source, place->first, std::move(parts)});
         }
         return place->second;
     }
 
-    bool debugInfo_;
+    const ShaderCompileOptions& options_;
     std::map<TextHash, std::size_t> places_;
     std::vector<Text> texts_;
     std::vector<std::size_t> textOf_;
@@ -134,10 +135,11 @@ private:
 // Compiles texts on several threads, and joins what is joined as soon as its parts are there.
 class TextCompiler {
 public:
-    TextCompiler(const std::vector<DistinctTexts::Text>& texts, bool debugInfo, ModuleCache* cache,
-                 WarmModules* warm, const std::function<void(std::size_t, std::size_t)>& progress)
+    TextCompiler(const std::vector<DistinctTexts::Text>& texts, const ShaderCompileOptions& options,
+                 ModuleCache* cache, WarmModules* warm,
+                 const std::function<void(std::size_t, std::size_t)>& progress)
         : texts_(texts),
-          options_{debugInfo},
+          options_(options),
           cache_(cache),
           warm_(warm),
           progress_(progress),
@@ -328,23 +330,24 @@ std::vector<CompiledModule> makeModules(std::vector<ModuleSource>& sources, cons
 }  // namespace
 
 Result<std::vector<CompiledModule>> compileModules(
-    std::vector<ModuleSource> sources, int jobs, bool debugInfo, ModuleCache* cache, WarmModules* warm,
-    const std::function<void(std::size_t, std::size_t)>& progress) {
-    const DistinctTexts distinct(sources, debugInfo);
-    GLINT_TRY(auto compiled, TextCompiler(distinct.texts(), debugInfo, cache, warm, progress).run(jobs));
+    std::vector<ModuleSource> sources, int jobs, const ShaderCompileOptions& options, ModuleCache* cache,
+    WarmModules* warm, const std::function<void(std::size_t, std::size_t)>& progress) {
+    const DistinctTexts distinct(sources, options);
+    GLINT_TRY(auto compiled, TextCompiler(distinct.texts(), options, cache, warm, progress).run(jobs));
     return makeModules(sources, distinct, compiled);
 }
 
-Result<std::vector<CompiledModule>> takeModules(std::vector<ModuleSource> sources, bool debugInfo,
+Result<std::vector<CompiledModule>> takeModules(std::vector<ModuleSource> sources,
+                                                const ShaderCompileOptions& options,
                                                 const std::filesystem::path& folder) {
-    const DistinctTexts distinct(sources, debugInfo);
+    const DistinctTexts distinct(sources, options);
     std::vector<std::optional<CompiledText>> taken;
     for (const DistinctTexts::Text& text : distinct.texts()) {
         taken.emplace_back();
         if (text.source->link) {
             continue;  // the module that was joined from it has been made already
         }
-        GLINT_TRY(taken.back(), takeText(*text.source, makeModuleText(*text.source, debugInfo), folder));
+        GLINT_TRY(taken.back(), takeText(*text.source, makeModuleText(*text.source, options), folder));
     }
     return makeModules(sources, distinct, taken);
 }

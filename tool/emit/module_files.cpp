@@ -63,6 +63,7 @@ constexpr std::string_view kExport = "// export ";
 constexpr std::string_view kImport = "// import ";
 constexpr std::string_view kEntry = "// entry point";
 constexpr std::string_view kPart = "// part ";
+constexpr std::string_view kFolded = "// folded";  // it is not optimised
 constexpr std::string_view kNamed = "// names of ";
 constexpr std::string_view kLastLine = "//";
 
@@ -120,6 +121,8 @@ bool takeInput(std::string_view line, ModuleText& module) {
         link().keepsEntryPoint = true;
     } else if (line.starts_with(kPart)) {
         module.parts.push_back(rest(kPart));
+    } else if (line == kFolded) {
+        module.options.optimize = false;
     } else if (line.starts_with(kNamed)) {
         module.source.name = rest(kNamed);
         module.options.debugInfo = true;
@@ -135,7 +138,8 @@ namespace {
 
 // Returns the comments above the GLSL. `nameOfPart` returns a text that stands for that of a part.
 template <typename NameOfPart>
-std::string headOfText(const ModuleSource& source, bool debugInfo, const NameOfPart& nameOfPart) {
+std::string headOfText(const ModuleSource& source, const ShaderCompileOptions& options,
+                       const NameOfPart& nameOfPart) {
     std::string text = fmt::format("{}\n{}{}\n", kFirstLine, kStage, nameInText(source.stage));
     for (const std::string& function : source.functionsApart) {
         text += fmt::format("{}{}\n", kApart, function);
@@ -154,7 +158,10 @@ std::string headOfText(const ModuleSource& source, bool debugInfo, const NameOfP
     for (const std::shared_ptr<const ModuleSource>& part : source.parts) {
         text += fmt::format("{}{}\n", kPart, nameOfPart(*part));
     }
-    if (debugInfo) {
+    if (!options.optimize) {
+        text += fmt::format("{}\n", kFolded);
+    }
+    if (options.debugInfo) {
         text += fmt::format("{}{}\n", kNamed, source.name);
     }
     text += kLastLine;
@@ -168,20 +175,19 @@ std::string hexText(const TextHash& hash) {
 
 }  // namespace
 
-std::string makeModuleText(const ModuleSource& source, bool debugInfo) {
-    const std::string head = headOfText(source, debugInfo, [&](const ModuleSource& part) {
-        return nameOfModuleText(makeModuleText(part, debugInfo));
+std::string makeModuleText(const ModuleSource& source, const ShaderCompileOptions& options) {
+    const std::string head = headOfText(source, options, [&](const ModuleSource& part) {
+        return nameOfModuleText(makeModuleText(part, options));
     });
     const GlslUnit& unit = source.glsl->made();
-    return head + (debugInfo ? unit.withPlaces() : essentialText(unit.text()));
+    return head + (options.debugInfo ? unit.withPlaces() : essentialText(unit.text()));
 }
 
-TextHash hashOfModuleText(const ModuleSource& source, bool debugInfo) {
-    const std::string head = headOfText(source, debugInfo, [&](const ModuleSource& part) {
-        return hexText(hashOfModuleText(part, debugInfo));
-    });
-    return hashOfText(
-        head + hexText(debugInfo ? hashOfText(source.glsl->made().withPlaces()) : source.glsl->hash()));
+TextHash hashOfModuleText(const ModuleSource& source, const ShaderCompileOptions& options) {
+    const std::string head = headOfText(
+        source, options, [&](const ModuleSource& part) { return hexText(hashOfModuleText(part, options)); });
+    return hashOfText(head + hexText(options.debugInfo ? hashOfText(source.glsl->made().withPlaces())
+                                                       : source.glsl->hash()));
 }
 
 Result<ModuleText> readModuleText(std::string_view text, const std::string& name) {
@@ -303,7 +309,8 @@ Status joinModuleFile(const ModuleText& source, std::string_view text, const fs:
 
 }  // namespace
 
-std::vector<PlannedModule> planModules(std::span<const ModuleSource> sources, bool debugInfo) {
+std::vector<PlannedModule> planModules(std::span<const ModuleSource> sources,
+                                       const ShaderCompileOptions& options) {
     std::vector<PlannedModule> modules;
     std::set<std::string> known;
     const auto add = [&](const auto& self, const ModuleSource& source) -> std::string {
@@ -311,7 +318,7 @@ std::vector<PlannedModule> planModules(std::span<const ModuleSource> sources, bo
         for (const std::shared_ptr<const ModuleSource>& part : source.parts) {
             parts.push_back(self(self, *part));
         }
-        std::string text = makeModuleText(source, debugInfo);
+        std::string text = makeModuleText(source, options);
         std::string file = nameOfModuleText(text);
         if (known.insert(file).second) {
             modules.push_back({file, source.name, std::move(text), std::move(parts)});

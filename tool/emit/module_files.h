@@ -36,13 +36,13 @@ std::string moduleCompiler();
 // compiled anywhere.
 
 // Returns the GLSL below comments that hold the other inputs: the stage, the functions that are kept apart or
-// linked, the names of the texts of its parts, and its own name if names are kept. Two modules have equal
-// texts exactly if they are compiled alike. Without debug information the GLSL is that of essentialText().
-// The GLSL of the module and its parts must have been made.
-std::string makeModuleText(const ModuleSource& source, bool debugInfo);
+// linked, the names of the texts of its parts, whether it is optimised, and its own name if names are kept.
+// Two modules have equal texts exactly if they are compiled alike. Without debug information the GLSL is that
+// of essentialText(). The GLSL of the module and its parts must have been made.
+std::string makeModuleText(const ModuleSource& source, const ShaderCompileOptions& options);
 // Returns a hash that differs between texts of makeModuleText(), which it need not make. With debug
 // information the GLSL must have been made.
-TextHash hashOfModuleText(const ModuleSource& source, bool debugInfo);
+TextHash hashOfModuleText(const ModuleSource& source, const ShaderCompileOptions& options);
 
 struct ModuleText {
     ShaderSource source;
@@ -66,7 +66,8 @@ inline constexpr std::string_view kCompiledModuleSuffix = ".module";
 
 // Returns each distinct text once, in the order of the modules, those of parts before what is joined from
 // them.
-std::vector<PlannedModule> planModules(std::span<const ModuleSource> sources, bool debugInfo);
+std::vector<PlannedModule> planModules(std::span<const ModuleSource> sources,
+                                       const ShaderCompileOptions& options);
 
 // Implements `glint compile-module`: reads a module's text from `input` and writes `output`. If the module is
 // joined from parts, it reads their compiled files in the folder of `output`. It touches nothing else. Errors

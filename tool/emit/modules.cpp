@@ -320,7 +320,8 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
         module->stage = stageOf(info, key.tracer);
         module->name = moduleName(source, info, key, caseName, *plan.model);
         const std::string origin = source.ends_with(kTemplateSuffix) ? module->name : std::string(source);
-        if (ofSwitch) {
+        // Joining is for optimised parts alone: it takes longer than to fold the whole.
+        if (ofSwitch && settings.optimize) {
             GLINT_TRY_DO(parts.addTo(*module, origin, text, ofFallback));
         }
         drafts.add(module, origin, std::move(text), std::move(ofModule));

@@ -8,6 +8,7 @@
 #include "gltf/scene_list.h"
 #include "plan/plan.h"
 #include "settings/settings.h"
+#include "spirv/compiler.h"
 
 #include <glint/result.h>
 
@@ -40,12 +41,14 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
 // error depends on `jobs`: if there are several errors, it is that of the first module. Modules with equal
 // SPIR-V get the same `file`, that of the first of them. `progress` is CompileSettings::progress.
 Result<std::vector<CompiledModule>> compileModules(
-    std::vector<ModuleSource> sources, int jobs, bool debugInfo, ModuleCache* cache = nullptr,
-    WarmModules* warm = nullptr, const std::function<void(std::size_t, std::size_t)>& progress = {});
+    std::vector<ModuleSource> sources, int jobs, const ShaderCompileOptions& options,
+    ModuleCache* cache = nullptr, WarmModules* warm = nullptr,
+    const std::function<void(std::size_t, std::size_t)>& progress = {});
 
 // Takes every module from `folder`, where `glint compile-module` left them. Errors are those of
 // readCompiledModule(); if there are several, that of the first module is reported.
-Result<std::vector<CompiledModule>> takeModules(std::vector<ModuleSource> sources, bool debugInfo,
+Result<std::vector<CompiledModule>> takeModules(std::vector<ModuleSource> sources,
+                                                const ShaderCompileOptions& options,
                                                 const std::filesystem::path& folder);
 
 }  // namespace glint::compiler

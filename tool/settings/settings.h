@@ -133,6 +133,7 @@ struct CompileSettings {
     bool emitLibrary = false;   // writes shading as functions in GLSL, in library/
     bool emitLinkable = false;  // writes the same functions as a SPIR-V module that can be linked, there
     bool debugInfo = false;     // keeps names in the SPIR-V
+    bool optimize = true;       // as in ShaderCompileOptions
     // A folder with files that stand in for those of shaders/host; empty: none (resolve/host.h).
     std::string host{};
     // The choice that led to `strategies`, for the manifest. Empty if the user named the strategies.

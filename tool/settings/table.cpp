@@ -454,6 +454,13 @@ std::span<const Descriptor> settingsTable() {
             "hits where they find them (with ray queries, or in hit shaders)",
             flag<&Settings::compile, &CompileSettings::positionFetch>(),
             {.bench = changesTime(withoutPositionFetch, "off on"), .recorded = true}),
+        row("optimize", kMakers, Package, kShaders,
+            "inline and simplify shaders; otherwise compiling takes a third of the time, and that is left to "
+            "drivers",
+            flag<&Settings::compile, &CompileSettings::optimize>(),
+            {.bench = changesTime(nullptr, "on off", "on"),
+             .document = "compile_times.md#without-the-optimiser",
+             .recorded = true}),
         row("strategy", kOfCompile, Choice, kShaders, "how hits can be shaded, separated by commas",
             bits<package::Strategy, &Settings::advisesStrategy, &Settings::compile,
                  &CompileSettings::strategies>(

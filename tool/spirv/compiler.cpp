@@ -152,8 +152,10 @@ std::vector<std::string> functionsApart(const ShaderSource& source, const LinkNa
 Result<std::vector<std::uint32_t>> compileShader(const ShaderSource& source,
                                                  const ShaderCompileOptions& options) {
     GLINT_TRY(auto translated, translate(source));
-    GLINT_TRY(auto optimized, optimizeSpirv(translated, source.name, source.functionsApart, options.debugInfo,
-                                            options.halvesAll));
+    GLINT_TRY(auto optimized, options.optimize || options.halvesAll || relaxesPrecision(translated)
+                                  ? optimizeSpirv(translated, source.name, source.functionsApart,
+                                                  options.debugInfo, options.halvesAll)
+                                  : foldSpirv(translated, source.name, options.debugInfo));
     GLINT_TRY_DO(validateSpirv(optimized, source.name));
     return optimized;
 }

@@ -72,21 +72,6 @@ void appendHidden(std::span<const std::uint32_t> extract, const MemberTypes& typ
     }
 }
 
-// Returns whether anything in the module may have fewer than 32 bits, as GLSL's mediump allows.
-bool relaxesPrecision(const std::vector<std::uint32_t>& words) {
-    for (const SpirvInstruction& it : SpirvInstructions(words)) {
-        if ((it.opcode == spv::OpDecorate && it.operands[1] == spv::DecorationRelaxedPrecision) ||
-            (it.opcode == spv::OpMemberDecorate && it.operands[2] == spv::DecorationRelaxedPrecision)) {
-            return true;
-        }
-        // Decorations come before functions (SPIR-V 2.4).
-        if (it.opcode == spv::OpFunction) {
-            break;
-        }
-    }
-    return false;
-}
-
 // SPIRV-Tools 2023.1 treats every float that OpCompositeExtract takes out of a structure or an array as
 // relaxed, even the positions of lights: its pass asks whether all float operands are relaxed, and there is
 // none. hideExtractions() hides such instructions from that pass as instructions with the same layout that it
@@ -149,14 +134,18 @@ void registerLevel(spvtools::Optimizer& optimizer) {
         .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
 }
 
-void registerInlining(spvtools::Optimizer& optimizer, bool keepNames) {
+void registerFirstFolding(spvtools::Optimizer& optimizer, bool keepNames) {
     if (!keepNames) {
         optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
     }
-    // Code that literals rule out within a function is removed before anything is inlined. Inlining every
-    // lobe of the BSDF and removing it afterwards takes several times as long.
     registerFolding(optimizer);
     optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
+}
+
+void registerInlining(spvtools::Optimizer& optimizer, bool keepNames) {
+    // Code that literals rule out within a function is removed before anything is inlined. Inlining every
+    // lobe of the BSDF and removing it afterwards takes several times as long.
+    registerFirstFolding(optimizer, keepNames);
     optimizer.RegisterPerformancePasses();
 }
 
@@ -299,6 +288,20 @@ Status inlineAndClear(std::vector<std::uint32_t>& words, const std::string& name
 
 }  // namespace
 
+bool relaxesPrecision(std::span<const std::uint32_t> words) {
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
+        if ((it.opcode == spv::OpDecorate && it.operands[1] == spv::DecorationRelaxedPrecision) ||
+            (it.opcode == spv::OpMemberDecorate && it.operands[2] == spv::DecorationRelaxedPrecision)) {
+            return true;
+        }
+        // Decorations come before functions (SPIR-V 2.4).
+        if (it.opcode == spv::OpFunction) {
+            break;
+        }
+    }
+    return false;
+}
+
 bool tracesByPipeline(std::span<const std::uint32_t> words) {
     return hasCapability(words, spv::CapabilityRayTracingKHR);
 }
@@ -313,6 +316,17 @@ Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t
     }
     GLINT_TRY_DO(inlineAndClear(optimized, name, keepNames, halvesAll));
     return optimized;
+}
+
+Result<std::vector<std::uint32_t>> foldSpirv(const std::vector<std::uint32_t>& words, const std::string& name,
+                                             bool keepNames) {
+    std::vector<std::uint32_t> folded = words;
+    GLINT_TRY_DO(runPasses(folded, name, [&](spvtools::Optimizer& optimizer) {
+        registerFirstFolding(optimizer, keepNames);
+        optimizer.RegisterPass(spvtools::CreateCompactIdsPass());
+    }));
+    GLINT_TRY_DO(finishSpirv(folded, name));
+    return folded;
 }
 
 Result<std::vector<std::uint32_t>> optimizePart(const std::vector<std::uint32_t>& words,

@@ -22,6 +22,14 @@ Result<std::vector<std::uint32_t>> optimizeSpirv(const std::vector<std::uint32_t
                                                  const std::vector<std::string>& apart, bool keepNames,
                                                  bool halvesAll = false);
 
+// Folds code that depends on literal constants within each function, and removes functions that nothing
+// calls. It inlines nothing. Names are removed, unless `keepNames` keeps them. Error "spirv-optimize".
+Result<std::vector<std::uint32_t>> foldSpirv(const std::vector<std::uint32_t>& words, const std::string& name,
+                                             bool keepNames);
+
+// Returns whether anything in the module may have fewer than 32 bits, as GLSL's mediump allows.
+bool relaxesPrecision(std::span<const std::uint32_t> words);
+
 // Optimises a part of a shader: everything is inlined into main and the functions named in `apart`, which
 // stay functions. Names and members are kept, because the join needs them. Inlining level by level would only
 // cost time, because a part's literals decide about its features before anything is inlined. Error

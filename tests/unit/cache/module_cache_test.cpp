@@ -20,7 +20,7 @@ protected:
     int compile(std::vector<compiler::ModuleSource> sources, compiler::ModuleCache* cache,
                 bool debugInfo = false) {
         Result<std::vector<compiler::CompiledModule>> compiled =
-            compileModules(std::move(sources), 2, debugInfo, cache);
+            compileModules(std::move(sources), 2, {.debugInfo = debugInfo}, cache);
         EXPECT_TRUE(compiled) << toString(compiled.error());
         if (!compiled) {
             return -1;

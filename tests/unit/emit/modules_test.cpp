@@ -16,7 +16,7 @@ TEST(CompileModules, SharesTheFileOfEqualSpirv) {
     const auto modules = must(compiler::compileModules(
         {testing::makeTinyModule(0, "data.x = 1u + 1u;"), testing::makeTinyModule(1, "data.x = 3u;"),
          testing::makeTinyModule(2, "data.x = 2u;  // the same in the end")},
-        2, false));
+        2, {}));
     EXPECT_EQ(modules.at(0).file, "shade_0.spv");
     EXPECT_EQ(modules.at(1).file, "shade_1.spv");
     EXPECT_EQ(modules.at(2).file, "shade_0.spv");
@@ -32,7 +32,7 @@ TEST(CompileModules, ReportsTheFirstErrorWhateverTheJobs) {
             sources.push_back(
                 testing::makeTinyModule(i, i >= 5 ? "data.x = wrong" + std::to_string(i) + ";" : ""));
         }
-        const Diagnostic modules = mustFail(compileModules(std::move(sources), jobs, false));
+        const Diagnostic modules = mustFail(compileModules(std::move(sources), jobs, {}));
         EXPECT_EQ(modules.id, "glsl");
         EXPECT_EQ(modules.where, "case.glsl:13");
         EXPECT_NE(modules.message.find("wrong5"), std::string::npos) << modules.message;
@@ -40,7 +40,7 @@ TEST(CompileModules, ReportsTheFirstErrorWhateverTheJobs) {
 }
 
 TEST(CompileModules, TakesNoModules) {
-    const auto modules = compiler::compileModules({}, 4, false);
+    const auto modules = compiler::compileModules({}, 4, {});
     ASSERT_TRUE(modules);
     EXPECT_TRUE(modules->empty());
 }

@@ -38,6 +38,7 @@ compiler::Configuration usual() {
             {"merge", "family"},
             {"shadows", "inline"},
             {"position-fetch", "off"},
+            {"optimize", "on"},
             {"ordering", "auto"},
             {"binning", "none"},
             {"batch-effects", "off"},

@@ -65,6 +65,21 @@ TEST(CompileShader, FoldsDecidedFeaturesAway) {
     EXPECT_EQ(statistics->branches, 2U);
 }
 
+TEST(CompileShader, LeavesInliningToDriversOnRequest) {
+    const compiler::ShaderSource source{"three.comp", compiler::ShaderStage::Compute, kThreeCases};
+    const auto words = must(compiler::compileShader(source, {.optimize = false}));
+    const auto statistics = compiler::measureSpirv(words);
+    ASSERT_TRUE(statistics);
+    // The one function that all cases call.
+    EXPECT_EQ(statistics->textureFetches, 5U);
+    EXPECT_FALSE(compiler::findFunctions(words).empty());
+    // Only the optimiser makes 16 bits of mediump.
+    compiler::ShaderSource relaxed = source;
+    relaxed.glsl.replace(relaxed.glsl.find("vec4 sum"), 4, "mediump vec4");
+    EXPECT_EQ(must(compiler::compileShader(relaxed, {.optimize = false})),
+              must(compiler::compileShader(relaxed, {})));
+}
+
 // Returns the IDs of the structures that ray queries are initialised with. Each must be the result of the
 // instruction directly before.
 std::vector<std::uint32_t> queriedStructures(const std::string& glsl) {
