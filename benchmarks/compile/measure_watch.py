@@ -5,15 +5,17 @@
 
 A list has N models with a material each: copies of examples/materials/models/blinn_phong, of which every second has a
 texture. Every program (default: the built one) watches a copy of its own, and gets the same edits in turn: of one
-model's GLSL, and of one value in the list. Prints Markdown: medians in milliseconds of the parts that the watch prints,
-of the time from the edit to its line, with the least and the most, and of processor time; and the ratio of the time to
-that of the first program. At the end each watch's package is compared with that of a fresh run.
+model's GLSL, and of one value in the list. A program may have options behind it in the same word. Prints Markdown:
+medians in milliseconds of the parts that the watch prints, of the time from the edit to its line, with the least and
+the most, and of processor time; and the ratio of the time to that of the first program. At the end each watch's package
+is compared with that of a fresh run.
 """
 import argparse
 import json
 import os
 import pathlib
 import re
+import shlex
 import shutil
 import statistics
 import subprocess
@@ -89,14 +91,16 @@ def main():
     parser.add_argument("--models", type=int, default=1000)
     parser.add_argument("--rounds", type=int, default=5)
     arguments = parser.parse_args()
-    programs = [os.path.abspath(program) for program in arguments.glint]
+    programs = []
+    for words in map(shlex.split, arguments.glint):
+        programs.append([os.path.abspath(words[0]), *COMPILE, *words[1:]])
     with tempfile.TemporaryDirectory() as work:
         watches = []
         for index, program in enumerate(programs):
             folder = pathlib.Path(work) / str(index)
             write_list(folder, arguments.models)
             options = ["-o", "out", "--cache", pathlib.Path(work) / "cache", "--watch"]
-            watches.append((folder, subprocess.Popen([program, *COMPILE, *options], cwd=folder, text=True,
+            watches.append((folder, subprocess.Popen([*program, *options], cwd=folder, text=True,
                                                      stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)))
             next_line(watches[-1][1])
         print("| edit | program | read | plan | compile | write | from the edit to the line | processor time |")
@@ -112,16 +116,16 @@ def main():
                 middle = [round(statistics.median(column)) for column in zip(*rows)]
                 times = [row[4] for row in rows]
                 ratios = sorted(row[4] / first[4] for row, first in zip(rows, results[0]))
-                print(f"| {kind} | {programs[index]} | " + " | ".join(map(str, middle[:4])) +
+                print(f"| {kind} | {arguments.glint[index]} | " + " | ".join(map(str, middle[:4])) +
                       f" | {middle[4]} ({min(times):.0f} to {max(times):.0f}); {statistics.median(ratios):.2f} "
                       f"({ratios[0]:.2f} to {ratios[-1]:.2f}) | {middle[5]} |", flush=True)
         for (folder, process), program in zip(watches, programs):
             process.terminate()
             process.wait()
-            subprocess.run([program, *COMPILE, "-o", "fresh", "-q", "--cache", pathlib.Path(work) / "cache"], cwd=folder,
+            subprocess.run([*program, "-o", "fresh", "-q", "--cache", pathlib.Path(work) / "cache"], cwd=folder,
                            check=True)
             if subprocess.run(["diff", "-rq", "out", "fresh"], cwd=folder).returncode != 0:
-                sys.exit(f"measure_watch.py: the package of {program} is not that of a fresh run")
+                sys.exit(f"measure_watch.py: the package of {program[0]} is not that of a fresh run")
 
 
 if __name__ == "__main__":

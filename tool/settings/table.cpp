@@ -458,7 +458,7 @@ std::span<const Descriptor> settingsTable() {
             "inline and simplify shaders; otherwise compiling takes a third of the time, and that is left to "
             "drivers",
             flag<&Settings::compile, &CompileSettings::optimize>(),
-            {.bench = changesTime(nullptr, "on off", "on"),
+            {.bench = changesTime(nullptr, "on off"),
              .document = "compile_times.md#without-the-optimiser",
              .recorded = true}),
         row("strategy", kOfCompile, Choice, kShaders, "how hits can be shaded, separated by commas",
