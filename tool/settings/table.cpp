@@ -458,9 +458,7 @@ std::span<const Descriptor> settingsTable() {
             "inline and simplify shaders; otherwise compiling takes a third of the time, and that is left to "
             "drivers",
             flag<&Settings::compile, &CompileSettings::optimize>(),
-            {.bench = changesTime(nullptr, "on off"),
-             .document = "compile_times.md#without-the-optimiser",
-             .recorded = true}),
+            {.bench = changesTime(nullptr, "on off"), .document = "compile_times.md#without-the-optimiser"}),
         row("strategy", kOfCompile, Choice, kShaders, "how hits can be shaded, separated by commas",
             bits<package::Strategy, &Settings::advisesStrategy, &Settings::compile,
                  &CompileSettings::strategies>(
