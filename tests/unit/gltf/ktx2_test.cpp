@@ -52,7 +52,7 @@ std::array<int, 4> pixelAt(const gltf::Image& image, int level, int x, int y) {
 
 // Expects every channel to be within the tolerance.
 ::testing::AssertionResult isNearPixel(const std::array<int, 4>& pixel, const std::array<int, 4>& expected,
-                                  int tolerance) {
+                                       int tolerance) {
     for (std::size_t channel = 0; channel < 4; ++channel) {
         if (std::abs(pixel[channel] - expected[channel]) > tolerance) {
             return ::testing::AssertionFailure()
@@ -138,7 +138,8 @@ TEST_F(GltfKtx2, KeepsTheMipsOfTheFile) {
         ASSERT_EQ(image.pixels.size(), 4U * (256 + 64 + 16 + 4 + 1));
         for (int level = 0; level < image.levels; ++level) {
             const int last = (16 >> level) - 1;
-            EXPECT_TRUE(isNearPixel(pixelAt(image, level, 0, 0), kSteps[static_cast<std::size_t>(level)], 12));
+            EXPECT_TRUE(
+                isNearPixel(pixelAt(image, level, 0, 0), kSteps[static_cast<std::size_t>(level)], 12));
             EXPECT_TRUE(
                 isNearPixel(pixelAt(image, level, last, last), kSteps[static_cast<std::size_t>(level)], 12));
         }

@@ -67,13 +67,13 @@ std::vector<std::string_view> strategyWords() {
 
 static base::Fields fieldsOf(const StrategyEstimate*) {
     using T = StrategyEstimate;
-    return {
-        output<&T::strategy>("strategy", "Name of the strategy.", {.names = strategyWords()}),
-        output<&T::available>("available",
-                              "Whether it could be chosen, that is, device, package and tracer can run it."),
-        output("milliseconds", "Expected time of all rounds of rays, from the list to the shaded hits.",
-               [](const T& estimate) { return rounded(estimate.ms); }),
-        output<timesOfTerms>("parts", "Milliseconds of each term of the model that the strategy has, by name.")};
+    return {output<&T::strategy>("strategy", "Name of the strategy.", {.names = strategyWords()}),
+            output<&T::available>(
+                "available", "Whether it could be chosen, that is, device, package and tracer can run it."),
+            output("milliseconds", "Expected time of all rounds of rays, from the list to the shaded hits.",
+                   [](const T& estimate) { return rounded(estimate.ms); }),
+            output<timesOfTerms>("parts",
+                                 "Milliseconds of each term of the model that the strategy has, by name.")};
 }
 
 base::Fields fieldsOf(const StrategyAdvice*) {
