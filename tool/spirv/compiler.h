@@ -25,7 +25,7 @@ struct ShaderSource {
 struct ShaderCompileOptions {
     bool debugInfo = false;  // keeps names
     // Otherwise functions are only folded, each by itself, and drivers inline and simplify. That takes a
-    // quarter of the time. Shaders with mediump are optimised in any case, because it decides about their 16
+    // third of the time. Shaders with mediump are optimised in any case, because it decides about their 16
     // bits.
     bool optimize = true;
     // Makes every operation on floats 16-bit, not only mediump ones. It is for measuring the cost.
