@@ -18,6 +18,14 @@ if(GLINT_FUZZ)
   list(APPEND glint_link_options -fsanitize=fuzzer-no-link)
 endif()
 
+# Few cores get large units, because each reads the headers again; many cores get many units.
+cmake_host_system_information(RESULT glint_cores QUERY NUMBER_OF_LOGICAL_CORES)
+set(glint_unity_batch 8)
+if(glint_cores LESS_EQUAL 4)
+  set(glint_unity_batch 24)
+endif()
+set(GLINT_UNITY_BATCH ${glint_unity_batch} CACHE STRING "Most sources that GLINT_UNITY compiles at a time")
+
 # glint_compiled_alone(TARGET FILE…): sources that can't share a translation unit with others, as they define the
 # implementation of a library or include text with names of its own.
 function(glint_compiled_alone target)
@@ -31,7 +39,7 @@ function(glint_configure target)
   target_link_options(${target} PRIVATE ${glint_link_options})
   get_target_property(type ${target} TYPE)
   # Headers of the standard library, JSON and CLI11 take longer to read than most sources take to compile.
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${GLINT_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${GLINT_UNITY} UNITY_BUILD_BATCH_SIZE ${GLINT_UNITY_BATCH})
   if(GLINT_PRECOMPILE AND type STREQUAL "STATIC_LIBRARY")
     target_precompile_headers(${target} PRIVATE "${PROJECT_SOURCE_DIR}/cmake/precompiled.h")
   endif()

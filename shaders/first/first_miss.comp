@@ -7,7 +7,7 @@
 #include "first/first_store.glsl"
 #include "hit/answer_radiance.glsl"
 #if GLINT_SURFACE_LAYERS
-#include "generated/surface_layers.glsl"
+#include "generated/sky_layers.glsl"
 #endif
 
 GLINT_RAY_WORKGROUP

@@ -1,6 +1,5 @@
 #include "base/input_watch.h"
 
-#include "base/clock.h"
 #include "base/files.h"
 
 #include <fmt/format.h>
@@ -76,7 +75,7 @@ InputWatch::File InputWatch::stateOf(const std::string& path) {
     return file;
 }
 
-void InputWatch::watch(std::span<const InputFile> inputs) {
+void InputWatch::watch(std::span<const InputFile> inputs, std::set<std::string> folders) {
     std::map<std::string, File> files;
     for (const InputFile& input : inputs) {
         const auto known = files_.find(input.path);
@@ -87,6 +86,25 @@ void InputWatch::watch(std::span<const InputFile> inputs) {
         }
     }
     files_ = std::move(files);
+    for (const auto& [path, file] : files_) {
+        const std::string folder = std::filesystem::path(path).parent_path().string();
+        folders.insert(folder.empty() ? "." : folder);
+        if (file.look && file.look->isFolder) {
+            folders.insert(path);
+        }
+    }
+    hearsAll_ = events_.watch(folders);
+    heard_ = Clock::now();
+}
+
+bool InputWatch::wait(std::chrono::milliseconds longest) {
+    const bool heard = events_.wait(longest);
+    const Clock::time_point now = Clock::now();
+    heard_ = heard ? now : heard_;
+    const bool isTime = heard || !hearsAll_ || millisecondsBetween(heard_, now) < restlessMs_ ||
+                        millisecondsBetween(looked_, now) >= kLookMs;
+    looked_ = isTime ? now : looked_;
+    return isTime;
 }
 
 bool InputWatch::isSuspect(const std::string& path, const File& known) {

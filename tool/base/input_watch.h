@@ -1,10 +1,15 @@
 // Notices changes of files by asking for their states again and again.
 #pragma once
 
+#include "base/clock.h"
+#include "base/folder_events.h"
+
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,17 +22,25 @@ struct InputFile {
     std::optional<std::uint64_t> hash;  // of the contents that were read (digestFile()), where they are known
 };
 
-// Polling needs no service of the system and works on every file system; it costs one or two microseconds of
-// processor time for each file and poll.
+// Polling works on every file system; it costs one or two microseconds of processor time for each file and
+// poll. wait() spares most polls where the system tells of changes.
 class InputWatch {
 public:
-    // A file that is missing for less than `missingMs` has not changed.
-    explicit InputWatch(int missingMs = kMissingMs) : missingMs_(missingMs) {}
+    // A file that is missing for less than `missingMs` has not changed. For `restlessMs` after a change in a
+    // folder, wait() is for nothing but a pause.
+    explicit InputWatch(int missingMs = kMissingMs, int restlessMs = kRestlessMs)
+        : missingMs_(missingMs), restlessMs_(restlessMs) {}
 
     // Replaces the watched files. Files that were watched before keep the state in which the last changed()
     // or accept() saw them, so that no change is lost while somebody works on them. A new file whose contents
     // are no longer those that were read has changed. A folder is watched for files that come and go.
-    void watch(std::span<const InputFile> inputs);
+    // Changes in `folders` end wait(), too.
+    void watch(std::span<const InputFile> inputs, std::set<std::string> folders = {});
+
+    // Waits for a change in the folders of the files, but not longer than that. Returns whether to look for
+    // changes: not if the system tells of them, and has told of none for a while. Even then it is time to
+    // look each kLookMs, because the system does not tell of all (FolderEvents).
+    bool wait(std::chrono::milliseconds longest);
 
     // Returns the files whose contents changed since the last call. A file that was only touched has not
     // changed. A missing file has changed only if it stays away for a while: editors replace files by
@@ -41,6 +54,8 @@ public:
     static constexpr int kRestMs = 10;
     static constexpr int kPatienceMs = 500;
     static constexpr int kMissingMs = 250;
+    static constexpr int kRestlessMs = 5000;  // longer than the clocks of file systems take for a tick
+    static constexpr int kLookMs = 1000;
 
 private:
     // The state of a file by one call to the system.
@@ -70,7 +85,12 @@ private:
     std::vector<std::string> suspects() const;
 
     int missingMs_;
+    int restlessMs_;
     std::map<std::string, File> files_;
+    FolderEvents events_;
+    bool hearsAll_ = false;
+    Clock::time_point heard_ = Clock::now();  // of a change in a folder, or began to watch it
+    Clock::time_point looked_ = Clock::now();
 };
 
 }  // namespace glint::base

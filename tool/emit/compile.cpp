@@ -88,10 +88,19 @@ Result<CompiledPackage> compile(const Build& build, ModuleCache* cache, WarmModu
     const bool makesAll = settings.emitGlsl || settings.debugInfo || !settings.modules.empty();
     GLINT_TRY(auto prepared, makeGlsl(build, {cache, warm, makesAll}));
     const base::Clock::time_point planned = base::Clock::now();
-    Result<std::vector<CompiledModule>> compiled =
-        !settings.modules.empty() ? takeModules(std::move(prepared.modules), options, settings.modules)
-                                  : compileModules(std::move(prepared.modules), settings.jobs, options, cache,
-                                                   warm, settings.progress);
+    Result<std::vector<CompiledModule>> compiled = std::vector<CompiledModule>();
+    Result<std::string> header = std::string();
+    base::runParallel(settings.emitHeader ? 2 : 1, settings.jobs, [&](std::size_t i) {
+        if (i == 1) {
+            header = makeHeader(scenes, build.plan, *prepared.sources, settings.plan);
+        } else if (settings.modules.empty()) {
+            compiled = compileModules(std::move(prepared.modules), settings.jobs, options, cache, warm,
+                                      settings.progress);
+        } else {
+            compiled = takeModules(std::move(prepared.modules), options, settings.modules);
+        }
+        return true;
+    });
     if (!compiled) {
         return explainGlslError(compiled.error(), *build.plan.model, settings.host);
     }
@@ -102,17 +111,8 @@ Result<CompiledPackage> compile(const Build& build, ModuleCache* cache, WarmModu
 
     // The manifest comes last, because it lists the other files.
     addModuleFiles(package, scenes.fileNames(), settings.emitGlsl);
-    base::Bytes tables;
-    Result<std::string> header = std::string();
-    base::runParallel(settings.emitHeader ? 2 : 1, settings.jobs, [&](std::size_t i) {
-        if (i == 0) {
-            tables = makeTables(scenes, package.plan, package.modules, settings);
-        } else {
-            header = makeHeader(scenes, package.plan, *prepared.sources, settings.plan);
-        }
-        return true;
-    });
-    package.files.push_back({package::kTablesFile, std::move(tables)});
+    package.files.push_back(
+        {package::kTablesFile, makeTables(scenes, package.plan, package.modules, settings)});
     if (settings.emitHeader) {
         GLINT_TRY(const auto text, std::move(header));
         package.files.push_back({package::kHeaderFile, toBytes(text)});

@@ -87,12 +87,17 @@ void addCase(mustache::data& context, const gltf::SceneList& scenes, const mater
     context.set("materials", materialNames(scenes, shaderCase.materials));
 }
 
-mustache::data makeContext(const gltf::SceneList& scenes, const Plan& plan, const PlanOptions& options) {
+mustache::data makeContext(const gltf::SceneList& scenes, const PlanOptions& options) {
     mustache::data context;
     context.set("version", std::string(toolVersion()));
     context.set("source", commentText(scenes.fileNames()));
     context.set("merge", std::string(nameOf(options.merge)));
     context.set("alpha", std::string(nameOf(options.keys.alpha)));
+    return context;
+}
+
+void addCases(mustache::data& context, const gltf::SceneList& scenes, const Plan& plan,
+              const PlanOptions& options) {
     mustache::data cases(mustache::data::type::list);
     for (const Case& shaderCase : plan.cases) {
         if (!shaderCase.isRetired()) {
@@ -105,7 +110,6 @@ mustache::data makeContext(const gltf::SceneList& scenes, const Plan& plan, cons
     mustache::data fallback;
     addCase(fallback, scenes, *plan.model, fallbackCase(plan));
     context.set("fallback", options.fallback ? fallback : mustache::data(false));
-    return context;
 }
 
 Result<std::string> renderTemplate(const SourceSet& sources, std::string_view name,

@@ -16,8 +16,8 @@
 
 namespace glint::compiler {
 
-// Returns the embedded files, "generated/features.glsl", "generated/scene.glsl" and "generated/cases.glsl".
-// Has the errors of addHost() and renderTemplate().
+// Returns the embedded files, and those of generated/ that all modules share. Has the errors of addHost() and
+// renderTemplate().
 Result<SourceSet> makeSourceSet(const gltf::SceneList& scenes, const Plan& plan,
                                 const CompileSettings& settings);
 
@@ -36,10 +36,8 @@ std::string_view toolVersion();
 // names are cut.
 std::string commentText(std::string_view text);
 
-// Makes the context: version, source, merge, alpha, and `cases`, a list of the fields that addCase() adds.
-// Retired cases are left out.
-kainjow::mustache::data makeContext(const gltf::SceneList& scenes, const Plan& plan,
-                                    const PlanOptions& options);
+// Makes the context: version, source, merge, alpha.
+kainjow::mustache::data makeContext(const gltf::SceneList& scenes, const PlanOptions& options);
 
 // Returns a value of the members of Features that hold own features of a model, as GLSL.
 std::string ownLiteral(const package::KeyWords::Own& own);
@@ -51,6 +49,11 @@ std::string caseFeatures(const package::KeyWords& always, const package::KeyWord
 void addCase(kainjow::mustache::data& context, const gltf::SceneList& scenes,
              const materials::MaterialModel& model, const Case& shaderCase);
 
+// Adds `cases`, a list of what addCase() adds for each case that is not retired, and `fallback`, the same of
+// the fallback, or false. Copies of the context copy all of them.
+void addCases(kainjow::mustache::data& context, const gltf::SceneList& scenes, const Plan& plan,
+              const PlanOptions& options);
+
 // Renders the template `name` without HTML escapes. Error "template" if it is missing or malformed.
 Result<std::string> renderTemplate(const SourceSet& sources, std::string_view name,
                                    const kainjow::mustache::data& context);
@@ -61,7 +64,7 @@ Result<std::string> renderTemplate(const SourceSet& sources, std::string_view na
 // weights. `findsSizedLights`: rays find lights with a size, which walks may meet.
 std::string layerDefines(const Plan& plan, bool deforms, bool findsSizedLights);
 
-// Adds the fields for the templates of layers: surface_layers.glsl, compose_effects.glsl.
+// Adds the fields for the templates of layers: sky_layers.glsl, surface_layers.glsl, compose_effects.glsl.
 void addLayers(kainjow::mustache::data& context, const Plan& plan);
 // Adds the fields of one effect's layers to its entry in compose_effects.glsl.mustache.
 void addLayersOf(kainjow::mustache::data& entry, const Plan& plan, package::Effect effect);

@@ -207,7 +207,8 @@ Result<std::vector<PackageFile>> makeLibrary(const gltf::SceneList& scenes, cons
         return okStatus();
     };
 
-    mustache::data all = makeContext(scenes, plan, settings.plan);
+    mustache::data all = makeContext(scenes, settings.plan);
+    addCases(all, scenes, plan, settings.plan);
     all.set("title",
             "// Glint's library: the shading of every case. The shader ID of a hit chooses the case.");
     all.set("isSwitch", mustache::data(true));
@@ -224,7 +225,7 @@ Result<std::vector<PackageFile>> makeLibrary(const gltf::SceneList& scenes, cons
         if (shaderCase.isRetired() || !settings.emitLibrary) {
             continue;
         }
-        mustache::data one = makeContext(scenes, plan, settings.plan);
+        mustache::data one = makeContext(scenes, settings.plan);
         mustache::data entry;
         addCase(entry, scenes, *plan.model, shaderCase);
         mustache::data list(mustache::data::type::list);

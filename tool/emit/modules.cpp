@@ -52,30 +52,12 @@ public:
           codeOfCases_(codeOfCases),
           ofEmitters_(std::move(ofEmitters)) {}
 
-    // Makes the texts of the switch. Has the errors of renderTemplate().
-    Status makeSwitches() {
-        kainjow::mustache::data context = context_;
-        for (const bool fallbackAlone : {false, true}) {
-            if (fallbackAlone) {
-                context.set("cases", kainjow::mustache::data(kainjow::mustache::data::type::list));
-            }
-            for (const bool apart : {false, true}) {
-                context.set("apart", apart);
-                GLINT_TRY(auto text, renderTemplate(sources_, kSwitchTemplate, context));
-                const auto to = std::make_shared<SourceSet>();
-                to->add(std::string(kSwitchFile), std::move(text));
-                if (apart && settings_.emissiveLights != EmissiveLights::On) {
-                    // The emission of lights is the only code of materials that the switch would have, and an
-                    // edit of that code would change the switch.
-                    to->add(std::string(kEmitterFile), "");
-                }
-                (apart ? head_ : whole_)[fallbackAlone ? 1 : 0] = to;
-            }
+    // Returns the switch with the code of its cases: all of them, or the fallback alone. Has the errors of
+    // renderTemplate().
+    Result<std::shared_ptr<const SourceSet>> wholeSwitch(bool fallbackAlone) {
+        if (whole_[0] == nullptr) {
+            GLINT_TRY_DO(makeSwitches());
         }
-        return okStatus();
-    }
-    // Returns the switch with the code of its cases: all of them, or the fallback alone.
-    const std::shared_ptr<const SourceSet>& wholeSwitch(bool fallbackAlone) const {
         return whole_[fallbackAlone ? 1 : 0];
     }
     // Adds the parts of a module whose text is `text`. Has the errors of renderTemplate().
@@ -109,6 +91,29 @@ public:
     }
 
 private:
+    Status makeSwitches() {
+        kainjow::mustache::data context = context_;
+        addCases(context, scenes_, plan_, settings_.plan);
+        for (const bool fallbackAlone : {false, true}) {
+            if (fallbackAlone) {
+                context.set("cases", kainjow::mustache::data(kainjow::mustache::data::type::list));
+            }
+            for (const bool apart : {false, true}) {
+                context.set("apart", apart);
+                GLINT_TRY(auto text, renderTemplate(sources_, kSwitchTemplate, context));
+                const auto to = std::make_shared<SourceSet>();
+                to->add(std::string(kSwitchFile), std::move(text));
+                if (apart && settings_.emissiveLights != EmissiveLights::On) {
+                    // The emission of lights is the only code of materials that the switch would have, and an
+                    // edit of that code would change the switch.
+                    to->add(std::string(kEmitterFile), "");
+                }
+                (apart ? head_ : whole_)[fallbackAlone ? 1 : 0] = to;
+            }
+        }
+        return okStatus();
+    }
+
     Result<std::shared_ptr<const ModuleSource>> partOf(const Case& shaderCase) {
         const std::string function = "shade" + shaderCase.name;
         std::shared_ptr<const ModuleSource>& made = made_[function];
@@ -282,7 +287,7 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
                                                     const std::shared_ptr<const SourceSet>& sources,
                                                     const CompileSettings& settings,
                                                     const KnownModules& known) {
-    kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
+    kainjow::mustache::data context = makeContext(scenes, settings.plan);
     WarmModules own;
     WarmModules& warm = known.warm != nullptr ? *known.warm : own;
     MaterialCodeOfCases& codeOfCases = warm.codeOfCases(plan);
@@ -292,14 +297,16 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
     const Case draft = draftCase(plan);
     ModuleDrafts drafts(sources, warm, known.cache, known.makesAll);
     SwitchParts parts(context, scenes, plan, *sources, settings, drafts, codeOfCases, ofEmitters);
-    GLINT_TRY_DO(parts.makeSwitches());
     std::vector<std::shared_ptr<ModuleSource>> modules;
     for (const package::ModuleKey& key : package::requiredModules(shapeOf(scenes, plan, settings))) {
         const package::RoleInfo& info = *package::findRole(key.role);
         const bool ofCase = info.repeated == package::Repeated::ByCase;
         const bool ofSwitch = info.hasSwitch();
         const bool ofFallback = info.purpose == package::Purpose::Fallback;
-        std::shared_ptr<const SourceSet> ofModule = ofSwitch ? parts.wholeSwitch(ofFallback) : none;
+        std::shared_ptr<const SourceSet> ofModule = none;
+        if (ofSwitch) {
+            GLINT_TRY(ofModule, parts.wholeSwitch(ofFallback));
+        }
         const bool ofDraft = info.purpose == package::Purpose::Draft;
         if (ofCase || ofDraft || (ofFallback && !ofSwitch)) {
             const Case& hitCase = ofCase ? plan.cases[key.index] : ofDraft ? draft : fallback;

@@ -78,8 +78,8 @@ namespace {
 
 constexpr std::string_view kInteropFolder = "interop/";
 // The files of generated/ that are made from templates.
-constexpr std::string_view kGenerated[] = {"cases.glsl",           "effects.glsl",     "skip_effects.glsl",
-                                           "compose_effects.glsl", "hit_effects.glsl", "surface_layers.glsl",
+constexpr std::string_view kGenerated[] = {"effects.glsl",     "skip_effects.glsl", "compose_effects.glsl",
+                                           "hit_effects.glsl", "sky_layers.glsl",   "surface_layers.glsl",
                                            "tallies.glsl"};
 
 void defineFeatures(std::string& text, std::string_view prefix, const materials::MaterialModel& model,
@@ -299,7 +299,7 @@ Result<SourceSet> makeSourceSet(const gltf::SceneList& scenes, const Plan& plan,
     GLINT_TRY_DO(addMaterialCode(sources, *plan.model, used, sources));
     GLINT_TRY_DO(addMaskCode(sources, *plan.model, used, sources));
     sources.add("generated/attributes.glsl", vertexAttributeCode(*plan.model, used));
-    kainjow::mustache::data context = makeContext(scenes, plan, settings.plan);
+    kainjow::mustache::data context = makeContext(scenes, settings.plan);
     addEffects(context, plan);
     addLayers(context, plan);
     for (const std::string_view name : kGenerated) {

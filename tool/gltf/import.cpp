@@ -117,10 +117,10 @@ void warnOfMissingInputs(Document& document, const Scene& scene) {
             drawn[static_cast<std::size_t>(node.mesh)] = true;
         }
     }
-    std::map<std::pair<int, std::size_t>, Loss> losses;  // by material and feature
+    std::map<std::pair<int, int>, Loss> losses;  // by material and feature
     // Primitives of one material with the same attributes lack the same.
     using Attributes = std::tuple<int, bool, bool, bool, bool, std::uint64_t>;
-    std::map<Attributes, std::vector<std::pair<std::size_t, std::string>>> known;
+    std::map<Attributes, std::vector<std::pair<int, std::string>>> known;
     for (std::size_t mesh = 0; mesh < scene.meshes.size(); ++mesh) {
         for (std::size_t i = 0; drawn[mesh] && i < scene.meshes[mesh].primitives.size(); ++i) {
             const materials::PrimitiveInputs inputs = inputsOf(scene, mesh, i);
@@ -128,12 +128,8 @@ void warnOfMissingInputs(Document& document, const Scene& scene) {
             const auto [found, isNew] =
                 known.try_emplace({inputs.material, inputs.hasNormals, inputs.hasTangents,
                                    inputs.hasTexCoords0, inputs.hasTexCoords1, inputs.attributes});
-            const std::vector<materials::Feature>& features = material.model().features;
-            for (std::size_t feature = 0; isNew && feature < features.size(); ++feature) {
-                std::string reason = materials::lostInput(material, inputs, features[feature]);
-                if (!reason.empty()) {
-                    found->second.emplace_back(feature, std::move(reason));
-                }
+            if (isNew) {
+                found->second = materials::lostInputs(material, inputs);
             }
             for (const auto& [feature, reason] : found->second) {
                 Loss& loss = losses[{inputs.material, feature}];
@@ -146,11 +142,12 @@ void warnOfMissingInputs(Document& document, const Scene& scene) {
     }
     for (const auto& [place, loss] : losses) {
         const auto& [material, feature] = place;
+        const std::vector<materials::Feature>& features =
+            scene.materials[static_cast<std::size_t>(material)].model().features;
         const std::string more = loss.count > 1 ? fmt::format(" and {} more", loss.count - 1) : "";
         document.warn(
             "input-missing", fmt::format("/materials/{}", material),
-            fmt::format("{} is left out on {}{}: {}",
-                        scene.materials[static_cast<std::size_t>(material)].model().features[feature].name,
+            fmt::format("{} is left out on {}{}: {}", features[static_cast<std::size_t>(feature)].name,
                         loss.primitive, more, loss.reason),
             "give the mesh what it lacks, or let the material read what the mesh has");
     }

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -266,34 +268,83 @@ Result<bool> readPrimitive(Document& document, const tinygltf::Primitive& file, 
     return true;
 }
 
-Result<Mesh> readMesh(Document& document, std::size_t index, int defaultMaterial) {
-    const tinygltf::Mesh& file = document.model().meshes[index];
-    Mesh mesh;
-    mesh.name = file.name;
-    compareTargets(document, index);
-    for (std::size_t i = 0; i < file.primitives.size(); ++i) {
-        Primitive primitive;
-        primitive.pointer = fmt::format("/meshes/{}/primitives/{}", index, i);
-        primitive.material = file.primitives[i].material < 0 ? defaultMaterial : file.primitives[i].material;
-        const Result<bool> drawn = readPrimitive(document, file.primitives[i], primitive);
-        // A file may leave it to others to provide data (glTF 2.0, section 3.6.1.1), so this is not the
-        // file's fault.
-        if (!drawn && drawn.error().id == kNoData) {
-            document.warn("buffer-external", primitive.pointer,
-                          fmt::format("is left out: {} {}", drawn.error().where, drawn.error().message),
-                          drawn.error().hint);
-        } else if (!drawn) {
-            return drawn.error();
+// Reads meshes one after another. Primitives that differ in their materials alone are read once, and copied.
+class MeshReader {
+public:
+    // `scene` gets each mesh that was read, or an empty one in its place.
+    MeshReader(Document& document, const Scene& scene) : document_(document), scene_(scene) {}
+
+    Result<Mesh> read(std::size_t index) {
+        const tinygltf::Mesh& file = document_.model().meshes[index];
+        Mesh mesh;
+        mesh.name = file.name;
+        compareTargets(document_, index);
+        for (std::size_t i = 0; i < file.primitives.size(); ++i) {
+            Primitive primitive;
+            primitive.pointer = fmt::format("/meshes/{}/primitives/{}", index, i);
+            const Result<bool> drawn = read(file.primitives[i], primitive, {index, mesh.primitives.size()});
+            const int material = file.primitives[i].material;
+            primitive.material = material < 0 ? static_cast<int>(scene_.materials.size()) : material;
+            // A file may leave it to others to provide data (glTF 2.0, section 3.6.1.1), so this is not the
+            // file's fault.
+            if (!drawn && drawn.error().id == kNoData) {
+                document_.warn("buffer-external", primitive.pointer,
+                               fmt::format("is left out: {} {}", drawn.error().where, drawn.error().message),
+                               drawn.error().hint);
+            } else if (!drawn) {
+                return drawn.error();
+            }
+            if (drawn && *drawn) {
+                mesh.primitives.push_back(std::move(primitive));
+            } else {
+                // The last warning says why.
+                mesh.leftOut.push_back(primitive.pointer + ": " + document_.warnings().back().message);
+            }
         }
-        if (drawn && *drawn) {
-            mesh.primitives.push_back(std::move(primitive));
-        } else {
-            // The last warning says why.
-            mesh.leftOut.push_back(primitive.pointer + ": " + document.warnings().back().message);
-        }
+        return mesh;
     }
-    return mesh;
-}
+
+private:
+    struct Place {
+        std::size_t mesh = 0;
+        std::size_t primitive = 0;
+        std::uint64_t elements = 0;  // that reading it took from the budget of vertices
+    };
+    struct BySource {
+        bool operator()(const tinygltf::Primitive* a, const tinygltf::Primitive* b) const {
+            return std::tie(a->attributes, a->indices, a->mode) <
+                   std::tie(b->attributes, b->indices, b->mode);
+        }
+    };
+
+    // Returns whether the primitive has anything to draw. `place` is where it will be.
+    Result<bool> read(const tinygltf::Primitive& file, Primitive& primitive, Place place) {
+        const bool isPlain = file.targets.empty() && file.extensions.empty();
+        const auto known = isPlain ? known_.find(&file) : known_.end();
+        if (known != known_.end()) {
+            const auto& [mesh, number, elements] = known->second;
+            if (mesh < scene_.meshes.size() && number < scene_.meshes[mesh].primitives.size()) {
+                GLINT_TRY_DO(document_.chargeVertices(elements, primitive.pointer));
+                std::string pointer = std::move(primitive.pointer);
+                primitive = scene_.meshes[mesh].primitives[number];
+                primitive.pointer = std::move(pointer);
+                return true;
+            }
+        }
+        const std::size_t warnings = document_.warnings().size();
+        const std::uint64_t before = document_.vertices().left();
+        const Result<bool> drawn = readPrimitive(document_, file, primitive);
+        if (isPlain && drawn && *drawn && document_.warnings().size() == warnings) {
+            place.elements = before - document_.vertices().left();
+            known_.try_emplace(&file, place);
+        }
+        return drawn;
+    }
+
+    Document& document_;
+    const Scene& scene_;
+    std::map<const tinygltf::Primitive*, Place, BySource> known_;  // read without a warning
+};
 
 // Whether nodes show the mesh with different weights, or an animation changes the weights.
 bool weightsVary(const Scene& scene, int mesh, const std::vector<double>& weights) {
@@ -355,9 +406,9 @@ void settleColors(Document& document, Scene& scene) {
 }
 
 Status importMeshes(Document& document, const std::vector<bool>& placed, Scene& scene) {
-    const int defaultMaterial = static_cast<int>(scene.materials.size());
+    MeshReader reader(document, scene);
     for (std::size_t i = 0; i < document.model().meshes.size(); ++i) {
-        Result<Mesh> mesh = readMesh(document, i, defaultMaterial);
+        Result<Mesh> mesh = reader.read(i);
         if (!mesh && placed[i]) {
             return mesh.error();
         }

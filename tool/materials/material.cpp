@@ -223,31 +223,26 @@ std::string missingAttribute(const Material& material, const PrimitiveInputs& pr
     return {};
 }
 
-std::string lostInput(const Material& material, const PrimitiveInputs& primitive, const Feature& feature) {
+std::vector<std::pair<int, std::string>> lostInputs(const Material& material,
+                                                    const PrimitiveInputs& primitive) {
     const MaterialModel& model = material.model();
-    const auto isAsked = [&](const Feature& one) {
-        return one.texture >= 0 ? material.textures[static_cast<std::size_t>(one.texture)].texture >= 0
-                                : one.object >= 0 && material.given.has(one.object);
+    const auto featureAt = [&](int index) -> const Feature& {
+        return model.features[static_cast<std::size_t>(index)];
     };
-    if (!isAsked(feature) || (feature.texture >= 0 && material.readsOf(feature.texture).channels == 0)) {
-        return {};
-    }
     FeatureMask asked = 0;
     for (const auto& [slot, info] : material.textures) {
-        asked |= info.texture >= 0
-                     ? model.features[static_cast<std::size_t>(model.textures[slot].feature)].mask()
-                     : FeatureMask();
+        asked |= info.texture >= 0 ? featureAt(model.textures[slot].feature).mask() : FeatureMask();
     }
     for (const int object : material.given) {
         for (const int one : model.objects[static_cast<std::size_t>(object)].asksFor) {
-            asked |= model.features[static_cast<std::size_t>(one)].mask();
+            asked |= featureAt(one).mask();
         }
     }
-    for (const int by : model.indicesOf(asked)) {
-        for (const int exclusion : model.features[static_cast<std::size_t>(by)].exclusions) {
-            if (model.exclusions[static_cast<std::size_t>(exclusion)].excluded.has(feature.bit)) {
-                return {};
-            }
+    const std::vector<int> candidates = model.indicesOf(asked);
+    FeatureMask excluded = 0;
+    for (const int by : candidates) {
+        for (const int exclusion : featureAt(by).exclusions) {
+            excluded |= model.exclusions[static_cast<std::size_t>(exclusion)].excluded;
         }
     }
     const PrimitiveInputs whole = withEveryAttribute(primitive);
@@ -259,15 +254,28 @@ std::string lostInput(const Material& material, const PrimitiveInputs& primitive
             return reason.countsIn(asked) && reason.when.holds(facts) == Certainty::True;
         });
     };
-    const Feature* const lobe =
-        feature.lobe < 0 ? nullptr : &model.features[static_cast<std::size_t>(feature.lobe)];
-    if (isNeutral(feature, there) != feature.neutral.end() ||
-        (lobe != nullptr && isNeutral(*lobe, there) != lobe->neutral.end())) {
-        return {};
+    std::vector<std::pair<int, std::string>> lost;
+    for (const int index : candidates) {
+        const Feature& feature = featureAt(index);
+        const int texture = feature.texture;
+        const bool isRead =
+            texture < 0 || (material.textures[static_cast<std::size_t>(texture)].texture >= 0 &&
+                            material.readsOf(texture).channels != 0);
+        if (!isRead || excluded.has(feature.bit) || isNeutral(feature, there) != feature.neutral.end() ||
+            (feature.lobe >= 0 &&
+             isNeutral(featureAt(feature.lobe), there) != featureAt(feature.lobe).neutral.end())) {
+            continue;
+        }
+        std::string missing = missingAttribute(material, primitive, feature);
+        const auto reason = isNeutral(feature, here);
+        if (missing.empty() && reason != feature.neutral.end()) {
+            missing = reason->because;
+        }
+        if (!missing.empty()) {
+            lost.emplace_back(index, std::move(missing));
+        }
     }
-    std::string missing = missingAttribute(material, primitive, feature);
-    const auto reason = isNeutral(feature, here);
-    return missing.empty() && reason != feature.neutral.end() ? reason->because : missing;
+    return lost;
 }
 
 const TextureContent& contentOf(const Material& material, const PrimitiveInputs& primitive, int texture) {

@@ -293,9 +293,11 @@ PrimitiveInputs withEveryAttribute(PrimitiveInputs primitive);
 std::string missingAttribute(const Material& material, const PrimitiveInputs& primitive,
                              const Feature& feature);
 
-// Returns the same for a texture or a lobe that the file requests, and that would change something on a
-// primitive with every attribute. Empty if nothing is lost.
-std::string lostInput(const Material& material, const PrimitiveInputs& primitive, const Feature& feature);
+// Returns the textures and lobes that the file requests, that would change something on a primitive with
+// every attribute, and that this primitive can't have, with the same reason: ascending indices into
+// MaterialModel::features.
+std::vector<std::pair<int, std::string>> lostInputs(const Material& material,
+                                                    const PrimitiveInputs& primitive);
 
 // Returns the content that the primitive can see of the texture, whether or not it is readable.
 const TextureContent& contentOf(const Material& material, const PrimitiveInputs& primitive, int texture);

@@ -112,11 +112,7 @@ std::vector<KeySet> caseKeys(std::span<const CaseFeatures> cases, std::span<cons
                 toSet(WeightedKey{cases[i].always | cases[i].sometimes, byCase[i], &model}));
             set.always = cases[i].always;
             // Being unlit is the feature that leaves code out.
-            for (const materials::Feature& feature : model.features) {
-                if (model.unlit.has(feature.bit) && cases[i].sometimes.has(feature.bit)) {
-                    set.shareWith.remove(feature.bit);
-                }
-            }
+            (model.unlit & cases[i].sometimes).forEach([&](int bit) { set.shareWith.remove(bit); });
         }
     }
     return sets;

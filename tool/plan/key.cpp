@@ -269,8 +269,9 @@ materials::FeatureMask makeKey(const materials::Material& material,
     const bool keepsAll = (options.keptLobes & model.lobes) == model.lobes;
     materials::FeatureMask kept = keepsAll ? whole : KeyMaker(material, primitive, options).make(nullptr);
     if (dropped != nullptr) {
-        for (const materials::Feature& feature : model.features) {
-            if (whole.has(feature.bit) && !kept.has(feature.bit)) {
+        for (const int index : model.indicesOf(whole)) {
+            const materials::Feature& feature = model.features[static_cast<std::size_t>(index)];
+            if (!kept.has(feature.bit)) {
                 dropped->emplace_back(feature.name, feature.isLobe
                                                         ? "hits do not keep it (--hit-lobes)"
                                                         : "nothing that hits keep reads it (--hit-lobes)");

@@ -198,10 +198,8 @@ std::string nameCase(const materials::MaterialModel& model, const Case& shaderCa
     }
     std::string lobes;
     std::string inputs;
-    for (const materials::Feature& feature : model.features) {
-        if (!shaderCase.always.has(feature.bit)) {
-            continue;
-        }
+    for (const int index : model.indicesOf(shaderCase.always)) {
+        const materials::Feature& feature = model.features[static_cast<std::size_t>(index)];
         if (feature.isLobe) {
             lobes += feature.shortName;
         } else {

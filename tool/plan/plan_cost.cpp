@@ -12,8 +12,9 @@ using Keys = std::span<const WeightedKey>;
 
 std::vector<BranchCost> branchesOf(const KeySet& set) {
     std::vector<BranchCost> branches;
-    for (const materials::Feature& feature : set.model->features) {
-        if (set.any.has(feature.bit) && !set.always.has(feature.bit)) {
+    for (const int index : set.model->indicesOf(set.any)) {
+        const materials::Feature& feature = set.model->features[static_cast<std::size_t>(index)];
+        if (!set.always.has(feature.bit)) {
             const double with = set.shareWith[feature.bit];
             branches.push_back(
                 {&feature, set.share > 0.0 ? with / set.share : 0.0, branchCost(set, feature)});

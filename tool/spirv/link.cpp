@@ -18,8 +18,8 @@ namespace glint::compiler {
 
 namespace {
 
-// The parts of a module, in the order of the specification (2.4).
-struct Parts {
+// The sections of a module, in the order of the specification (2.4).
+struct Sections {
     SpirvWords capabilities;
     SpirvWords settings;  // extensions, imports of instructions, memory model, entry points
     SpirvWords names;
@@ -89,10 +89,10 @@ bool isSetting(std::uint32_t opcode) {
            opcode == spv::OpSourceContinued || opcode == spv::OpModuleProcessed;
 }
 
-Parts splitModule(std::span<const std::uint32_t> words, const std::map<std::uint32_t, Fate>& fates,
+Sections splitModule(std::span<const std::uint32_t> words, const std::map<std::uint32_t, Fate>& fates,
                   bool keepsEntryPoint, bool keepNames) {
     const std::set<std::uint32_t> removed = removedResults(words, fates);
-    Parts parts;
+    Sections sections;
     Fate fate = Fate::Defined;
     bool inFunction = false;
     for (const SpirvInstruction& it : SpirvInstructions(words)) {
@@ -103,31 +103,31 @@ Parts splitModule(std::span<const std::uint32_t> words, const std::map<std::uint
         }
         if (inFunction) {
             if (stays(fate, opcode)) {
-                appendWords(fate == Fate::Declared ? parts.declarations : parts.definitions, it.words());
+                appendWords(fate == Fate::Declared ? sections.declarations : sections.definitions, it.words());
             }
             inFunction = opcode != spv::OpFunctionEnd;
         } else if (opcode == spv::OpCapability) {
-            appendWords(parts.capabilities, it.words());
+            appendWords(sections.capabilities, it.words());
         } else if (opcode == spv::OpName || opcode == spv::OpMemberName) {
             if (keepNames && !removed.contains(it.operands[0])) {
-                appendWords(parts.names, it.words());
+                appendWords(sections.names, it.words());
             }
         } else if (isSetting(opcode)) {
-            appendWords(parts.settings, it.words());
+            appendWords(sections.settings, it.words());
         } else if (isSpirvDecoration(opcode)) {
             if (!removed.contains(it.operands[0])) {
-                appendWords(parts.decorations, it.words());
+                appendWords(sections.decorations, it.words());
             }
         } else if (opcode == spv::OpEntryPoint || opcode == spv::OpExecutionMode ||
                    opcode == spv::OpExecutionModeId) {
             if (keepsEntryPoint) {
-                appendWords(parts.settings, it.words());
+                appendWords(sections.settings, it.words());
             }
         } else {
-            appendWords(parts.globals, it.words());
+            appendWords(sections.globals, it.words());
         }
     }
-    return parts;
+    return sections;
 }
 
 }  // namespace
@@ -141,19 +141,19 @@ Result<std::vector<std::uint32_t>> makeLinkable(std::span<const std::uint32_t> w
                              "its entry point must call every function that it exports");
         }
     }
-    Parts parts = splitModule(words, fatesOf(words, functions, names), names.keepsEntryPoint, keepNames);
-    appendInstruction(parts.capabilities, spv::OpCapability, {spv::CapabilityLinkage});
+    Sections sections = splitModule(words, fatesOf(words, functions, names), names.keepsEntryPoint, keepNames);
+    appendInstruction(sections.capabilities, spv::OpCapability, {spv::CapabilityLinkage});
     for (const SpirvFunction& function : functions) {
         if (std::ranges::find(names.exported, function.name) != names.exported.end()) {
-            addLinkage(parts.decorations, function.id, function.name, spv::LinkageTypeExport);
+            addLinkage(sections.decorations, function.id, function.name, spv::LinkageTypeExport);
         } else if (std::ranges::find(names.imported, function.name) != names.imported.end()) {
-            addLinkage(parts.decorations, function.id, function.name, spv::LinkageTypeImport);
+            addLinkage(sections.decorations, function.id, function.name, spv::LinkageTypeImport);
         }
     }
     SpirvWords module(words.begin(), words.begin() + kSpirvHeaderWords);
     for (const SpirvWords* const part :
-         {&parts.capabilities, &parts.settings, &parts.names, &parts.decorations, &parts.globals,
-          &parts.declarations, &parts.definitions}) {
+         {&sections.capabilities, &sections.settings, &sections.names, &sections.decorations, &sections.globals,
+          &sections.declarations, &sections.definitions}) {
         appendWords(module, *part);
     }
     return module;

@@ -57,6 +57,25 @@ TEST_F(InputWatching, AnEditWithinOneTickOfTheFileSystemsClockIsSeen) {
     EXPECT_EQ(waitForChange(), std::vector<std::string>{file});
 }
 
+TEST_F(InputWatching, WaitingEndsWithTheNextChange) {
+    const std::string file = path("a.glsl");
+    write(file, "one");
+    InputWatch watch(InputWatch::kMissingMs, 0);
+    watch.watch(std::vector<InputFile>{{file, std::nullopt}});
+    using std::chrono::milliseconds;
+    // Each second it is time to look, and a slow machine may take as long for a call.
+    int waits = 0;
+    while (watch.wait(milliseconds(1)) && waits < 100) {
+        ++waits;
+    }
+    EXPECT_LT(waits, 100) << "it looks although nothing happens";
+    write(file, "two");
+    const auto start = std::chrono::steady_clock::now();
+    EXPECT_TRUE(watch.wait(std::chrono::minutes(1)));
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
+    EXPECT_EQ(watch.changed(), std::vector<std::string>{file});
+}
+
 TEST_F(InputWatching, AFileThatChangedSinceItWasReadHasChanged) {
     const std::string file = path("a.glsl");
     write(file, "as it was read");

@@ -15,7 +15,7 @@
 #include <iterator>
 #include <set>
 #include <system_error>
-#include <thread>
+#include <utility>
 
 namespace glint::cli {
 
@@ -132,7 +132,9 @@ public:
         watchFiles(true);
         compile("first run", {});
         while (interrupted == 0) {
-            std::this_thread::sleep_for(kPause);
+            if (!watch_.wait(kPause)) {
+                continue;
+            }
             std::vector<std::string> changed = watch_.changed();
             if (changed.empty()) {
                 changed = newOrGone();
@@ -157,7 +159,11 @@ private:
         if (failed) {
             add(sceneFolders(arguments_));
         }
-        watch_.watch(inputs);
+        std::set<std::string> folders(arguments_.settings.materials.begin(),
+                                      arguments_.settings.materials.end());
+        folders.insert(arguments_.settings.compile.host);
+        folders.erase("");
+        watch_.watch(inputs, std::move(folders));
     }
 
     // Returns the files of packs and hosts that have come or gone, once that has lasted.

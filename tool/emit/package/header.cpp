@@ -264,7 +264,8 @@ Result<std::string> makeHeader(const gltf::SceneList& scenes, const Plan& plan, 
                                const PlanOptions& options) {
     GLINT_TRY(auto interop, interopDeclarations());
     GLINT_TRY(const auto layouts, interopLayouts(interop));
-    mustache::data context = makeContext(scenes, plan, options);
+    mustache::data context = makeContext(scenes, options);
+    addCases(context, scenes, plan, options);
     context.set("namespace", headerNamespace(scenes.scenes().front().path));
     const MaterialLayout layout = materialLayoutOf(plan);
     context.set("interop", interop);

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <utility>
 #include <vector>
 
@@ -260,10 +261,12 @@ ManifestModule moduleOf(const CompiledModule& module) {
 // passes.
 std::vector<ManifestCase> casesOf(const gltf::SceneList& scenes, const CompiledPackage& package) {
     std::vector<ManifestCase> list;
+    std::map<std::uint32_t, std::size_t> entries;  // in the list, by ID
     for (const Case& shaderCase : package.plan.cases) {
         if (shaderCase.isRetired()) {
             continue;
         }
+        entries.emplace(shaderCase.shaderId, list.size());
         ManifestCase& entry = list.emplace_back();
         entry.id = static_cast<std::uint32_t>(shaderCase.shaderId);
         entry.name = shaderCase.name;
@@ -277,11 +280,10 @@ std::vector<ManifestCase> casesOf(const gltf::SceneList& scenes, const CompiledP
             const auto material = static_cast<std::size_t>(shaderCase.materials[i]);
             entry.materials.push_back({places[i], scenes.materials()[material].name});
         }
-        for (const CompiledModule& module : package.modules) {
-            const bool ofCase = package::findRole(module.key.role)->repeated == package::Repeated::ByCase;
-            if (ofCase && module.key.index == entry.id) {
-                entry.stages.emplace_back(stageName(module.key), moduleOf(module));
-            }
+    }
+    for (const CompiledModule& module : package.modules) {
+        if (package::findRole(module.key.role)->repeated == package::Repeated::ByCase) {
+            list[entries.at(module.key.index)].stages.emplace_back(stageName(module.key), moduleOf(module));
         }
     }
     return list;

@@ -84,10 +84,15 @@ void checkLists(Document& document, const Json& json) {
                           kExport);
         }
     }
-    std::set<std::string> known;
+    std::set<std::string> listed;
+    for (const Json* const list : {&used, &required}) {
+        for (const Json& name : *list) {
+            listed.insert(name.is_string() ? name.get<std::string>() : std::string());
+        }
+    }
     std::string root;
     visitExtensions(json, root, [&](const std::string& name, const std::string& pointer) {
-        if (!isIn(used, name) && !isIn(required, name) && known.insert(name).second) {
+        if (listed.insert(name).second) {
             document.warn("extension-unlisted", pointer,
                           fmt::format("{} is missing in extensionsUsed; it is read all the same", name),
                           kExport);

@@ -34,6 +34,9 @@ public:
         left_ -= isEnough ? amount : 0;
         return isEnough;
     }
+    std::uint64_t left() const {
+        return left_;
+    }
 
 private:
     std::uint64_t left_;
@@ -101,6 +104,9 @@ public:
     // Takes `count` elements from the budget of ImportOptions::maxVertices. The error is "vertex-limit" at
     // `pointer` if the budget is exhausted.
     Status chargeVertices(std::uint64_t count, std::string_view pointer);
+    const Budget& vertices() const {
+        return vertices_;
+    }
     // Takes bytes from the budget of decoded images, which grows with the size of the files that were read.
     // Returns false if it is exhausted.
     bool chargeImage(std::uint64_t bytes);

@@ -151,11 +151,12 @@ public:
                 theSphere().ofChannels[static_cast<std::size_t>(attribute.type->channels - 1)];
         }
         for (const materials::Parameter& parameter : model_.parameters) {
-            parameters_.emplace(parameter.declared, &parameter);
+            parameters_.emplace(std::pair(std::string_view(parameter.declared), parameter.object),
+                                &parameter);
         }
         for (const materials::MaterialTexture& texture : model_.textures) {
             for (const materials::MaterialTexture::Place& place : texture.places) {
-                places_.emplace(place.member, &place);
+                places_.emplace(std::pair(std::string_view(place.member), place.object), &place);
             }
         }
     }
@@ -305,15 +306,21 @@ private:
         return object == base_ && base_ >= 0 ? 2 : isReplaced(object) ? 0 : 1;
     }
 
+    // By name and object; thousands of models may have the same names.
+    template <typename Row>
+    using Rows = std::multimap<std::pair<std::string_view, int>, const Row*>;
+
     // Returns the row of that name that fits best, the first of several, or null. Names of a model stand
     // before those that all models share.
     template <typename Row>
-    const Row* bestOf(const std::multimap<std::string_view, const Row*>& rows,
-                      const std::string& name) const {
+    const Row* bestOf(const Rows<Row>& rows, std::string_view name) const {
+        if (const auto own = rows.lower_bound({name, base_});
+            base_ >= 0 && own != rows.end() && own->first == std::pair(name, base_)) {
+            return own->second;
+        }
         const Row* found = nullptr;
-        const auto [begin, end] = rows.equal_range(name);
-        for (auto row = begin; row != end; ++row) {
-            const bool isBetter = found == nullptr || fitOf(row->second->object) > fitOf(found->object);
+        for (auto row = rows.lower_bound({name, 0}); row != rows.end() && row->first.first == name; ++row) {
+            const bool isBetter = found == nullptr || fitOf(row->first.second) > fitOf(found->object);
             found = isBetter ? row->second : found;
         }
         return found;
@@ -528,8 +535,8 @@ private:
     std::map<std::string, int> accessors_;  // of the sphere, by attribute
     int base_ = -1;                         // the object of the material's model, or -1
     std::string baseName_;
-    std::multimap<std::string_view, const materials::Parameter*> parameters_;           // by declared name
-    std::multimap<std::string_view, const materials::MaterialTexture::Place*> places_;  // by member
+    Rows<materials::Parameter> parameters_;           // by declared name
+    Rows<materials::MaterialTexture::Place> places_;  // by member
     std::set<std::string> extensions_;
     std::map<std::string, std::size_t> images_;  // by file
     Json imageJson_ = Json::array();

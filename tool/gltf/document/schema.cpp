@@ -2,6 +2,7 @@
 
 #include "materials/value_json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -14,7 +15,7 @@ constexpr std::string_view kExpected[] = {
     "an integer",           "a number",  "an array of numbers",
     "true or false",        "a string",  "an integer",
     "an array of integers", "an object", "an object",
-    "an array of objects",  "",
+    "an array of objects",  "an object", "",
 };
 
 std::string_view expectedOf(Kind kind) {
@@ -130,6 +131,24 @@ Status checkParameter(const Json& value, const Rule& rule) {
     return okStatus();
 }
 
+Status checkValue(const Json& root, Json& value, const Rule& rule);
+
+Status checkExtensions(const Json& root, Json& object, const Rule& rule) {
+    if (!object.is_object()) {
+        return typeError(object, expectedOf(rule.kind));
+    }
+    for (auto member = object.begin(); member != object.end(); ++member) {
+        const auto found = std::ranges::lower_bound(rule.rules, member.key(), {}, &Rule::name);
+        if (found == rule.rules.end() || found->name != member.key()) {
+            continue;
+        }
+        if (const Status status = checkValue(root, *member, *found); !status) {
+            return within("/" + member.key(), status);
+        }
+    }
+    return okStatus();
+}
+
 Status checkValue(const Json& root, Json& value, const Rule& rule) {
     const auto expect = [&](bool holds) {
         return holds ? okStatus() : typeError(value, expectedOf(rule.kind));
@@ -157,6 +176,8 @@ Status checkValue(const Json& root, Json& value, const Rule& rule) {
         case Kind::Objects:
             return checkElements(value, expectedOf(rule.kind),
                                  [&](Json& element) { return checkObject(root, element, rule.rules); });
+        case Kind::Extensions:
+            return checkExtensions(root, value, rule);
         case Kind::Value:
             return checkParameter(value, rule);
     }

@@ -34,8 +34,9 @@ enum class Kind : std::uint8_t {
     Indices,   // array of such integers
     Integers,  // object whose members are integers of any names
     Object,
-    Objects,  // array of objects
-    Value,    // of the parameter Rule::parameter; its range is not checked
+    Objects,     // array of objects
+    Extensions,  // object of which few members are there: `rules` are sorted by name, and none is required
+    Value,       // of the parameter Rule::parameter; its range is not checked
 };
 
 // A rule for one member of an object. Members without a rule are not checked.
@@ -49,7 +50,7 @@ struct Rule {
     double max = static_cast<double>(std::numeric_limits<float>::max());
     std::size_t length = 0;
     std::string_view target{};      // JSON pointer of the array into which an index points
-    std::span<const Rule> rules{};  // for Object and Objects
+    std::span<const Rule> rules{};  // for Object, Objects and Extensions
     const materials::Parameter* parameter = nullptr;
 };
 

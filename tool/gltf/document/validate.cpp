@@ -208,8 +208,13 @@ private:
             (object.isExtension ? extensions : material)
                 .push_back(rules::object(object.name, keep(rulesOfObject(static_cast<int>(i)))));
         }
-        material.insert(material.end(), {text("name"), text("alphaMode"), boolean("doubleSided"),
-                                         object("extensions", keep(std::move(extensions)))});
+        std::ranges::sort(extensions, {}, &Rule::name);
+        material.insert(
+            material.end(),
+            {text("name"),
+             text("alphaMode"),
+             boolean("doubleSided"),
+             {.name = "extensions", .kind = Kind::Extensions, .rules = keep(std::move(extensions))}});
         return material;
     }
 

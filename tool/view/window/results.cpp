@@ -49,6 +49,9 @@ void Window::pollFiles() {
             order(0);
         }
     }
+    if (!watch_.wait(std::chrono::milliseconds(0))) {
+        return;
+    }
     const std::vector<std::string> changed = watch_.changed();
     if (!changed.empty()) {
         say(changed.front() + " has changed");
