@@ -26,6 +26,13 @@ struct FileCloser {
 // An open file, which closes itself; it ignores an error of closing, such as a full disk.
 using File = std::unique_ptr<std::FILE, FileCloser>;
 
+// A text file that is compiled into a library (cmake/GlintEmbed.cmake).
+struct BuiltinFile {
+    // Relative to the folder that was embedded: "interop/scene.h", "uber.comp.mustache".
+    std::string_view name;
+    std::string_view text;
+};
+
 // Returns the 64-bit XXH3 hash.
 std::uint64_t hashBytes(std::span<const std::uint8_t> bytes, std::uint64_t seed = 0);
 std::uint64_t hashBytes(std::string_view text);

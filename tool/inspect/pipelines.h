@@ -4,7 +4,7 @@
 // driver's name, and adds facts that mean the same on every device.
 #pragma once
 
-#include "base/builtin_file.h"
+#include "base/files.h"
 #include "base/fields_fwd.h"
 #include "inspect/package.h"
 #include "plan/gpu_costs.h"

@@ -1,7 +1,7 @@
 // The text of declarations: those that are compiled into the library, and those of packs.
 #pragma once
 
-#include "base/builtin_file.h"
+#include "base/files.h"
 
 #include <memory>
 #include <span>

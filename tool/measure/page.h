@@ -1,7 +1,6 @@
 // The page that shows the measurements of `glint bench`.
 #pragma once
 
-#include "base/builtin_file.h"
 #include "base/files.h"
 
 #include <nlohmann/json.hpp>

@@ -1,7 +1,7 @@
 // The shaders that modules are made of: those that are compiled into the tool, and those of a host.
 #pragma once
 
-#include "base/builtin_file.h"
+#include "base/files.h"
 
 #include <glint/result.h>
 
