@@ -4,6 +4,7 @@
 #include "cache/module_cache.h"
 #include "cache/store.h"
 #include "cli/compile/compile.h"
+#include "emit/warm_modules.h"
 #include "fuzz/fuzz_target.h"
 #include "fuzz/scratch_file.h"
 #include "support/temporary_folder.h"
@@ -56,6 +57,12 @@ void readSummary(std::string_view text) {
     }
 }
 
+void readTexts(std::string_view text) {
+    using glint::compiler::WarmModules;
+    const std::string packed = WarmModules::pack(WarmModules::unpack(text));
+    require(WarmModules::pack(WarmModules::unpack(packed)) == packed, "texts read back as they were packed");
+}
+
 void readModule(std::string_view text) {
     const std::optional<glint::compiler::CachedModule> module = glint::compiler::unpackModule(text);
     require(!module || !module->spirv.empty(), "a cached module has words");
@@ -88,5 +95,6 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     readEntry({data, size}, text);
     readAction(text);
     readSummary(text);
+    readTexts(text);
     return 0;
 }

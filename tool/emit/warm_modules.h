@@ -76,6 +76,18 @@ class WarmModules {
 public:
     static constexpr std::uint64_t kRuns = 8;
 
+    // The text that a template becomes with some sources in one state.
+    struct Text {
+        std::vector<std::uint64_t> sources;
+        std::uint64_t state = 0;  // IncludedFiles::stateOf() them
+        TextHash text;
+        std::uint64_t used = 0;  // run
+    };
+    using Texts = std::list<Text>;  // of one template, the latest first
+    // The first few of them as the cache stores them. unpack() finds none in malformed bytes.
+    static std::string pack(const Texts& texts);
+    static Texts unpack(std::string_view bytes);
+
     // Returns the hash that was put for the same template and the same state of its sources, by this object
     // or by another process with the same `cache`, which may be null.
     std::optional<TextHash> findText(const ModuleTemplate& made, const ModuleCache* cache);
@@ -95,17 +107,7 @@ public:
     void endRun();
 
 private:
-    // The text that a template becomes with some sources in one state.
-    struct Text {
-        std::vector<std::uint64_t> sources;
-        std::uint64_t state = 0;  // IncludedFiles::stateOf() them
-        TextHash text;
-        std::uint64_t used = 0;  // run
-    };
-    using Texts = std::list<Text>;  // the latest first
     static TextHash keyOf(const ModuleTemplate& made);
-    static std::string pack(const Texts& texts);
-    static Texts unpack(std::string_view bytes);
 
     struct Module {
         std::shared_ptr<const HashedModule> module;
