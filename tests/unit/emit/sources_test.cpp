@@ -1,11 +1,15 @@
 #include "emit/context.h"
+#include "emit/glsl/passes.h"
 #include "support/features.h"
+#include "support/must.h"
 #include "unit/emit/sample_scene.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <set>
 #include <string>
+#include <string_view>
 
 namespace glint {
 namespace {
@@ -72,6 +76,27 @@ TEST(SceneSource, HoldsTheSettings) {
     EXPECT_TRUE(defines(other, "GLINT_PRECISION", "16"));
     EXPECT_TRUE(defines(other, "GLINT_RELAXED", "mediump"));
     EXPECT_TRUE(defines(other, "GLINT_ALPHA_TESTED", "1"));
+}
+
+// Returns the files that a text of Glint's includes.
+std::set<std::string> includedBy(std::string_view name) {
+    const gltf::Scene scene = makeSampleScene();
+    const compiler::SourceSet sources =
+        must(makeSourceSet(gltf::SceneList({&scene, 1}), {}, compiler::CompileSettings()));
+    std::set<std::string> files;
+    const compiler::SourceLookup lookup = [&](std::string_view file) {
+        files.emplace(file);
+        return sources.find(file);
+    };
+    must(flatten(name, sources.find(name).value_or(""), lookup, compiler::FlattenSide::Glsl));
+    return files;
+}
+
+// An edit of a material's code makes the texts of all modules that include it again.
+TEST(Includes, OfPixelsThatShowTheSkyHaveNoCodeOfMaterials) {
+    constexpr const char* kMaterials = "generated/material_stages.glsl";
+    EXPECT_TRUE(includedBy("generated/surface_layers.glsl").contains(kMaterials));
+    EXPECT_FALSE(includedBy("first/first_miss.comp").contains(kMaterials));
 }
 
 }  // namespace

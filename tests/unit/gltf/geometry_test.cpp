@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -246,6 +247,36 @@ TEST(GltfGeometry, LimitsVertices) {
     // An accessor that takes no bytes of the file must not take memory.
     builder.root["accessors"][0] = {{"componentType", 5126}, {"count", 200000000}, {"type", "VEC3"}};
     expectError(import(builder), "accessor-count", "/accessors/0");
+}
+
+TEST(GltfGeometry, PrimitivesThatShareVerticesHaveMaterialsOfTheirOwn) {
+    GltfBuilder builder;
+    Json first = builder.addTriangle();
+    first["material"] = builder.append("materials", {{"name", "first"}});
+    Json second = first;
+    second["material"] = builder.append("materials", {{"name", "second"}});
+    Json broken = first;
+    broken["attributes"]["NORMAL"] = builder.addAccessor<float>({0, 0, 0, 0, 0, 1, 0, 0, 1}, 3);
+    builder.root["meshes"][0]["primitives"][0] = first;
+    builder.addMesh(second);
+    builder.addMesh(broken);
+    builder.addMesh(broken);
+
+    const gltf::Scene scene = mustImport(builder);
+    ASSERT_EQ(scene.meshes.size(), 4);
+    const gltf::Primitive& one = scene.meshes[0].primitives.at(0);
+    const gltf::Primitive& other = scene.meshes[1].primitives.at(0);
+    EXPECT_EQ(other.positions, one.positions);
+    EXPECT_EQ(other.indices, one.indices);
+    EXPECT_EQ(one.pointer, "/meshes/0/primitives/0");
+    EXPECT_EQ(other.pointer, "/meshes/1/primitives/0");
+    EXPECT_EQ(scene.materials.at(static_cast<std::size_t>(one.material)).name, "first");
+    EXPECT_EQ(scene.materials.at(static_cast<std::size_t>(other.material)).name, "second");
+    // What is wrong with vertices is told of each primitive that has them.
+    EXPECT_EQ(std::ranges::count(scene.warnings, "normal-invalid", &Diagnostic::id), 2);
+    // They take room each.
+    EXPECT_TRUE(import(builder, {.maxVertices = 3 + 3 + 6 + 6}).ok());
+    expectError(import(builder, {.maxVertices = 3 + 2}), "vertex-limit", "/meshes/1/primitives/0");
 }
 
 TEST(GltfGeometry, RefusesAttributesThatDoNotMatch) {
