@@ -42,7 +42,12 @@ protected:
         package_ = compileSample(settings);
     }
     Status write(const fs::path& source) const {
-        return writeEmbeddedSource(gltf::SceneList(std::span(&scene_, 1)), package_, source);
+        GLINT_TRY(auto staged,
+                  stageEmbeddedSource(gltf::SceneList(std::span(&scene_, 1)), package_, source));
+        for (base::StagedFile& file : staged) {
+            GLINT_TRY_DO(file.commit());
+        }
+        return okStatus();
     }
 
     TemporaryFolder folder_;

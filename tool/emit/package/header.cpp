@@ -401,15 +401,4 @@ Result<std::vector<base::StagedFile>> stageEmbeddedSource(const gltf::SceneList&
     return staged;
 }
 
-Status writeEmbeddedSource(const gltf::SceneList& scenes, const CompiledPackage& package,
-                           const fs::path& source) {
-    GLINT_TRY(auto staged, stageEmbeddedSource(scenes, package, source));
-    for (base::StagedFile& file : staged) {
-        if (Status written = file.commit(); !written) {
-            return writeError(source, written.error());
-        }
-    }
-    return okStatus();
-}
-
 }  // namespace glint::compiler

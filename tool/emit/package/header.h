@@ -44,9 +44,6 @@ std::filesystem::path embeddedHeader(const std::filesystem::path& source);
 Result<std::vector<base::StagedFile>> stageEmbeddedSource(const gltf::SceneList& scenes,
                                                           const CompiledPackage& package,
                                                           const std::filesystem::path& source);
-// Writes both files, each as a whole and only if it changed. It creates the folder. Error "output-write".
-Status writeEmbeddedSource(const gltf::SceneList& scenes, const CompiledPackage& package,
-                           const std::filesystem::path& source);
 
 // --- Sizes and offsets of the structures that host and device share, as their declarations give them ---
 
