@@ -144,17 +144,20 @@ protected:
     // The kernel's source with a text in the place of the library.
     static compiler::ShaderSource kernel(const std::string& library, bool product) {
         compiler::ShaderSource source{"library_values.comp", compiler::ShaderStage::Compute, {}, {}};
-        Result<compiler::SourceSet> sources =
-            makeSourceSet(gltf::SceneList({&libraryScene(), 1}), loaded_->compiled().plan, librarySettings());
-        EXPECT_TRUE(sources) << toString(sources.error());
-        sources->add("library.glsl", library);
-        sources->add("library_host.glsl", textAt(kShaders + "library_host.glsl"));
+        const gltf::SceneList scenes({&libraryScene(), 1});
+        const compiler::CompileSettings settings = librarySettings();
+        compiler::SourceSet sources = must(makeSourceSet(scenes, loaded_->compiled().plan, settings));
+        kainjow::mustache::data cases = compiler::makeContext(scenes, settings.plan);
+        addCases(cases, scenes, loaded_->compiled().plan, settings.plan);
+        sources.add("generated/cases.glsl", must(renderTemplate(sources, "cases.glsl.mustache", cases)));
+        sources.add("library.glsl", library);
+        sources.add("library_host.glsl", textAt(kShaders + "library_host.glsl"));
         std::string text = textAt(kShaders + source.name);
         text.insert(text.find('\n') + 1,
                     fmt::format("#define PRODUCT {}\nconst uint kTestMaterials = {}u;\n{}", product ? 1 : 0,
                                 libraryScene().materials.size(), product ? kProduct : ""));
         const Result<compiler::GlslUnit> glsl =
-            flatten(source.name, text, sources->lookup(), compiler::FlattenSide::Glsl);
+            flatten(source.name, text, sources.lookup(), compiler::FlattenSide::Glsl);
         EXPECT_TRUE(glsl) << toString(glsl.error());
         source.glsl = glsl ? glsl->withPlaces() : "";
         source.functionsApart = functionsOfCases(loaded_->compiled().plan);

@@ -1,7 +1,7 @@
 // The control flow of a function, reduced to its events on ray query objects.
 #pragma once
 
-#include "spirv/lint.h"
+#include "spirv/lint_finding.h"
 #include "spirv/reader.h"
 
 #include <glint/result.h>

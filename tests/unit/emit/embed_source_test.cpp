@@ -118,7 +118,7 @@ TEST_F(EmbedSource, AFailureLeavesTheEarlierSource) {
     const fs::path source = folder_.path() / "a.cpp";
     std::ofstream(source) << "earlier";
     fs::create_directories(folder_.path() / "a.h" / "in the way");
-    EXPECT_EQ(mustFail(write(source)).id, "output-write");
+    EXPECT_EQ(mustFail(write(source)).id, "file-write");
     const base::Bytes kept = must(base::readFile(source));
     EXPECT_EQ(std::string(kept.begin(), kept.end()), "earlier");
     EXPECT_EQ(filesOf(folder_.path()), (std::vector<std::string>{"a.cpp", "a.h"}));

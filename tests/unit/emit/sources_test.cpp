@@ -88,7 +88,11 @@ std::set<std::string> includedBy(std::string_view name) {
         files.emplace(file);
         return sources.find(file);
     };
-    must(flatten(name, sources.find(name).value_or(""), lookup, compiler::FlattenSide::Glsl));
+    std::string text(sources.find(name).value_or(""));
+    if (!text.starts_with("#version")) {
+        text.insert(0, "#version 460\n");
+    }
+    must(flatten(name, text, lookup, compiler::FlattenSide::Glsl));
     return files;
 }
 

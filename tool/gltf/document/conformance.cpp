@@ -87,7 +87,9 @@ void checkLists(Document& document, const Json& json) {
     std::set<std::string> listed;
     for (const Json* const list : {&used, &required}) {
         for (const Json& name : *list) {
-            listed.insert(name.is_string() ? name.get<std::string>() : std::string());
+            if (name.is_string()) {
+                listed.insert(name.get<std::string>());
+            }
         }
     }
     std::string root;
