@@ -77,7 +77,7 @@ bool FolderEvents::wait(std::chrono::milliseconds longest) {
     if (poll(&asked, 1, static_cast<int>(longest.count())) <= 0) {
         return false;
     }
-    // What has changed is for others to find out.
+    // Others find out about the changes themselves.
     alignas(inotify_event) char events[1 << 14];
     while (read(queue_, events, sizeof events) > 0) {
     }

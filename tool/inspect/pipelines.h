@@ -4,8 +4,8 @@
 // driver's name, and adds facts that mean the same on every device.
 #pragma once
 
-#include "base/files.h"
 #include "base/fields_fwd.h"
+#include "base/files.h"
 #include "inspect/package.h"
 #include "plan/gpu_costs.h"
 

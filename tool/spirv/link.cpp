@@ -90,7 +90,7 @@ bool isSetting(std::uint32_t opcode) {
 }
 
 Sections splitModule(std::span<const std::uint32_t> words, const std::map<std::uint32_t, Fate>& fates,
-                  bool keepsEntryPoint, bool keepNames) {
+                     bool keepsEntryPoint, bool keepNames) {
     const std::set<std::uint32_t> removed = removedResults(words, fates);
     Sections sections;
     Fate fate = Fate::Defined;
@@ -103,7 +103,8 @@ Sections splitModule(std::span<const std::uint32_t> words, const std::map<std::u
         }
         if (inFunction) {
             if (stays(fate, opcode)) {
-                appendWords(fate == Fate::Declared ? sections.declarations : sections.definitions, it.words());
+                appendWords(fate == Fate::Declared ? sections.declarations : sections.definitions,
+                            it.words());
             }
             inFunction = opcode != spv::OpFunctionEnd;
         } else if (opcode == spv::OpCapability) {
@@ -141,7 +142,8 @@ Result<std::vector<std::uint32_t>> makeLinkable(std::span<const std::uint32_t> w
                              "its entry point must call every function that it exports");
         }
     }
-    Sections sections = splitModule(words, fatesOf(words, functions, names), names.keepsEntryPoint, keepNames);
+    Sections sections =
+        splitModule(words, fatesOf(words, functions, names), names.keepsEntryPoint, keepNames);
     appendInstruction(sections.capabilities, spv::OpCapability, {spv::CapabilityLinkage});
     for (const SpirvFunction& function : functions) {
         if (std::ranges::find(names.exported, function.name) != names.exported.end()) {
@@ -152,8 +154,8 @@ Result<std::vector<std::uint32_t>> makeLinkable(std::span<const std::uint32_t> w
     }
     SpirvWords module(words.begin(), words.begin() + kSpirvHeaderWords);
     for (const SpirvWords* const part :
-         {&sections.capabilities, &sections.settings, &sections.names, &sections.decorations, &sections.globals,
-          &sections.declarations, &sections.definitions}) {
+         {&sections.capabilities, &sections.settings, &sections.names, &sections.decorations,
+          &sections.globals, &sections.declarations, &sections.definitions}) {
         appendWords(module, *part);
     }
     return module;

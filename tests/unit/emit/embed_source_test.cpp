@@ -42,8 +42,7 @@ protected:
         package_ = compileSample(settings);
     }
     Status write(const fs::path& source) const {
-        GLINT_TRY(auto staged,
-                  stageEmbeddedSource(gltf::SceneList(std::span(&scene_, 1)), package_, source));
+        GLINT_TRY(auto staged, stageEmbeddedSource(gltf::SceneList(std::span(&scene_, 1)), package_, source));
         for (base::StagedFile& file : staged) {
             GLINT_TRY_DO(file.commit());
         }
