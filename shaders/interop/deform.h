@@ -29,19 +29,19 @@ struct DeformRecord {
     uint targetCount;     // number of morph targets
     uint influenceCount;  // joints that a vertex follows; 0 for none
     uint flags;           // kDeform*
-    GLINT_ADDRESS(Vec3) positions;  // at rest
-    GLINT_ADDRESS(Vec3) normals;
-    GLINT_ADDRESS(Vec4) tangents;
-    GLINT_ADDRESS(Vec3) targetPositions;  // targetCount * vertexCount, target by target
-    GLINT_ADDRESS(Vec3) targetNormals;
-    GLINT_ADDRESS(Vec3) targetTangents;
-    GLINT_ADDRESS(Float) targetWeights;  // targetCount
-    GLINT_ADDRESS(Uint) joints;          // influenceCount for each vertex: indices into jointRows
-    GLINT_ADDRESS(Float) jointWeights;   // influenceCount for each vertex
-    GLINT_ADDRESS(Vec4) jointRows;       // three rows for each joint: from the mesh's space to the world
-    GLINT_ADDRESS(DeformedVec3) deformedPositions;
-    GLINT_ADDRESS(DeformedVec3) deformedNormals;
-    GLINT_ADDRESS(DeformedVec4) deformedTangents;
+    GLINT_ADDRESS(Vec3Array) positions;  // at rest
+    GLINT_ADDRESS(Vec3Array) normals;
+    GLINT_ADDRESS(Vec4Array) tangents;
+    GLINT_ADDRESS(Vec3Array) targetPositions;  // targetCount * vertexCount, target by target
+    GLINT_ADDRESS(Vec3Array) targetNormals;
+    GLINT_ADDRESS(Vec3Array) targetTangents;
+    GLINT_ADDRESS(FloatArray) targetWeights;  // targetCount
+    GLINT_ADDRESS(UintArray) joints;          // influenceCount for each vertex: indices into jointRows
+    GLINT_ADDRESS(FloatArray) jointWeights;   // influenceCount for each vertex
+    GLINT_ADDRESS(Vec4Array) jointRows;       // three rows for each joint: from the mesh's space to the world
+    GLINT_ADDRESS(DeformedVec3Array) deformedPositions;
+    GLINT_ADDRESS(DeformedVec3Array) deformedNormals;
+    GLINT_ADDRESS(DeformedVec4Array) deformedTangents;
 };
 
 GLINT_INTEROP_END
@@ -53,7 +53,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Def
 GLINT_INTEROP_BEGIN
 
 struct DeformConstants {
-    GLINT_ADDRESS(Deform) records;
+    GLINT_ADDRESS(DeformArray) records;
     uint record;  // the record that this dispatch deforms
     uint pad;
 };

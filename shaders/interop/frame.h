@@ -161,7 +161,7 @@ GLINT_CONSTANT(kSurfaceUnknown, 0xFFFFFFFEu);
 
 // The positions of a geometry in the previous frame, in the form of GeometryRecord::flags.
 struct PreviousVertices {
-    GLINT_ADDRESS(Vec3) positions;
+    GLINT_ADDRESS(Vec3Array) positions;
 };
 
 // The hit of the first ray of a sample, for layers. 32 bytes.
@@ -342,68 +342,68 @@ struct FrameConstants {
     float environmentLevels;  // mip levels of the environment map: roughness 0 to 1
     float environmentTurn;    // added to its u: a rotation over 2π
     float environmentScale;   // radiance of a texel with the value 1
-    GLINT_ADDRESS(Geometry) geometries;
-    GLINT_ADDRESS(Instance) instances;
-    GLINT_ADDRESS(Material) materials;
-    GLINT_ADDRESS(Light) lights;
-    GLINT_ADDRESS(LightNode) lightNodes;  // in packages with --lights K: the tree, then the lights apart from it
-    GLINT_ADDRESS(SampleStart) sampleStarts;  // samples of every pixel of a band, effect by effect
-    GLINT_ADDRESS(SampleAim) sampleAims;
-    GLINT_ADDRESS(SampleWeight) sampleWeights;
-    GLINT_ADDRESS(Radiance) radiance;  // the radiance that rays bring, with paths of several bounces in the order of
+    GLINT_ADDRESS(GeometryArray) geometries;
+    GLINT_ADDRESS(InstanceArray) instances;
+    GLINT_ADDRESS(MaterialArray) materials;
+    GLINT_ADDRESS(LightArray) lights;
+    GLINT_ADDRESS(LightNodeArray) lightNodes;  // in packages with --lights K: the tree, then the lights apart from it
+    GLINT_ADDRESS(SampleStartArray) sampleStarts;  // samples of every pixel of a band, effect by effect
+    GLINT_ADDRESS(SampleAimArray) sampleAims;
+    GLINT_ADDRESS(SampleWeightArray) sampleWeights;
+    GLINT_ADDRESS(RadianceArray) radiance;  // the radiance that rays bring, with paths of several bounces in the order of
                                        // samples, and by slot if the rays are a host's; kPath* as a float
-    GLINT_ADDRESS(Ray) rays;           // the list, if it is a host's
-    GLINT_ADDRESS(Target) listed;      // the list otherwise, and of further bounces: the numbers of the samples that
+    GLINT_ADDRESS(RayArray) rays;           // the list, if it is a host's
+    GLINT_ADDRESS(TargetArray) listed;      // the list otherwise, and of further bounces: the numbers of the samples that
                                        // send the rays
-    GLINT_ADDRESS(Hit) hits;
-    GLINT_ADDRESS(PackedHit) packedHits;  // the same memory as hits
-    GLINT_ADDRESS(Ordered) orderedHits;  // hit indices, bucket by bucket; kNoHit in the gaps of alignment
+    GLINT_ADDRESS(HitArray) hits;
+    GLINT_ADDRESS(PackedHitArray) packedHits;  // the same memory as hits
+    GLINT_ADDRESS(OrderedArray) orderedHits;  // hit indices, bucket by bucket; kNoHit in the gaps of alignment
     // The bucket of a hit is 0 for a miss, 1 + shaderId otherwise. Keys are the buckets of all hits, in 1, 2 or 4
     // bytes of a word, depending on the number of buckets. The next three lists hold for each bucket: its number of hits, its
     // first slot in the ordered list, and how many of its slots have been taken while hits are copied.
-    GLINT_ADDRESS(Key) bucketKeys;
-    GLINT_ADDRESS(Counter) bucketCounts;   // bucketCount
-    GLINT_ADDRESS(Counter) bucketBegins;   // bucketCount
-    GLINT_ADDRESS(Counter) bucketCursors;  // bucketCount
-    GLINT_ADDRESS(Counter) visitedHits;  // one bit for each hit, for the check of the order
-    GLINT_ADDRESS(Dispatch) rayDispatch;     // 1: over the ray list
-    GLINT_ADDRESS(Dispatch) bucketDispatch;  // bucketCount, then one over the ordered list, gaps included
-    GLINT_ADDRESS(Shadow) shadows;           // kCounterShadowRays
-    GLINT_ADDRESS(Dispatch) shadowDispatch;  // 1: over the shadow rays
-    GLINT_ADDRESS(Counter) firstShadowCounts;  // of every pixel of a band: the shadow rays that its surface sends
-    GLINT_ADDRESS(Counter) counters;         // kCounterCount
+    GLINT_ADDRESS(KeyArray) bucketKeys;
+    GLINT_ADDRESS(CounterArray) bucketCounts;   // bucketCount
+    GLINT_ADDRESS(CounterArray) bucketBegins;   // bucketCount
+    GLINT_ADDRESS(CounterArray) bucketCursors;  // bucketCount
+    GLINT_ADDRESS(CounterArray) visitedHits;  // one bit for each hit, for the check of the order
+    GLINT_ADDRESS(DispatchArray) rayDispatch;     // 1: over the ray list
+    GLINT_ADDRESS(DispatchArray) bucketDispatch;  // bucketCount, then one over the ordered list, gaps included
+    GLINT_ADDRESS(ShadowArray) shadows;           // kCounterShadowRays
+    GLINT_ADDRESS(DispatchArray) shadowDispatch;  // 1: over the shadow rays
+    GLINT_ADDRESS(CounterArray) firstShadowCounts;  // of every pixel of a band: the shadow rays that its surface sends
+    GLINT_ADDRESS(CounterArray) counters;         // kCounterCount
     // The members for rays of a host's own:
-    GLINT_ADDRESS(Surface) surfaces;           // the answers, if they are surfaces
-    GLINT_ADDRESS(Instance) previousInstances;  // transforms of the frame before
-    GLINT_ADDRESS(Uint) firstRecords;           // see kRecordsBy*
+    GLINT_ADDRESS(SurfaceArray) surfaces;           // the answers, if they are surfaces
+    GLINT_ADDRESS(InstanceArray) previousInstances;  // transforms of the frame before
+    GLINT_ADDRESS(UintArray) firstRecords;           // see kRecordsBy*
     uint recordsBy;
     uint rayMask;  // instances that share no bit with it are not hit
     uvec2 tlasAddress;  // of the acceleration structure, in packages that have it by address
-    GLINT_ADDRESS(Counter) rayCount;   // the length of the list
-    GLINT_ADDRESS(Hit) givenHits;      // the hits of the rays, if givesHits
-    GLINT_ADDRESS(VisibilityRay) visibilityRays;  // the list, if its rays only ask for visibility
-    GLINT_ADDRESS(Visibility) visibilities;       // their answers: a float each, or three where shadow rays pass glass
-    GLINT_ADDRESS(PrimitiveMaterials) primitiveMaterials;  // see GeometryRecord::primitiveMaterials
+    GLINT_ADDRESS(CounterArray) rayCount;   // the length of the list
+    GLINT_ADDRESS(HitArray) givenHits;      // the hits of the rays, if givesHits
+    GLINT_ADDRESS(VisibilityRayArray) visibilityRays;  // the list, if its rays only ask for visibility
+    GLINT_ADDRESS(VisibilityArray) visibilities;       // their answers: a float each, or three where shadow rays pass glass
+    GLINT_ADDRESS(PrimitiveMaterialsArray) primitiveMaterials;  // see GeometryRecord::primitiveMaterials
     uint givesHits;  // 1: no ray is traced for the first hits
     uint lightTreeNodes;   // nodes of the tree
     uint lightsApart;  // leaves after them
     // The members for packages with paths of several bounces:
-    GLINT_ADDRESS(Target) nextListed;  // the list of the next bounce
-    GLINT_ADDRESS(Path) paths;         // of every sample, in the order of the samples
+    GLINT_ADDRESS(TargetArray) nextListed;  // the list of the next bounce
+    GLINT_ADDRESS(PathArray) paths;         // of every sample, in the order of the samples
     uint bounce;      // of the hits that are being shaded, from 1; 0 on primary surfaces
     float bounceWeight;  // factor of what the rays bring that hits of this bounce send
     uint lastBounce;  // hits of this bounce send no further ray
     // The members for packages with emissive lights:
-    GLINT_ADDRESS(Emitter) emitters;
-    GLINT_ADDRESS(Uint) firstEmitters;  // of every geometry: the emitter of its first triangle, or kNoEmitter
-    GLINT_ADDRESS(LobeRay) lobeRays;    // of every sample, in the order of the samples
+    GLINT_ADDRESS(EmitterArray) emitters;
+    GLINT_ADDRESS(UintArray) firstEmitters;  // of every geometry: the emitter of its first triangle, or kNoEmitter
+    GLINT_ADDRESS(LobeRayArray) lobeRays;    // of every sample, in the order of the samples
     uint emitterCount;
     uint accumulates;  // kPicture*
 #if GLINT_SKY_LIGHT_MEMBERS
     // The members for packages whose sky is a light:
-    GLINT_ADDRESS(SkyShare) skyShares;  // of every sample, in the order of the samples: the share of the sky's light
+    GLINT_ADDRESS(SkyShareArray) skyShares;  // of every sample, in the order of the samples: the share of the sky's light
                                         // that its ray brings if it leaves the scene
-    GLINT_ADDRESS(Uint) skyCounts;      // the distribution of the environment map (runtime/src/sky/sky_counts.h)
+    GLINT_ADDRESS(UintArray) skyCounts;      // the distribution of the environment map (runtime/src/sky/sky_counts.h)
     uint skyColumns;
     uint skyRows;
 #endif
@@ -412,13 +412,13 @@ struct FrameConstants {
     // too.
     vec4 previousView[4];  // the camera of the frame before, rows: clip x and y without jitter, the distance along its
                            // axis, clip w
-    GLINT_ADDRESS(PreviousVertices) previousVertices;  // of every geometry, if hasPreviousVertices
+    GLINT_ADDRESS(PreviousVerticesArray) previousVertices;  // of every geometry, if hasPreviousVertices
     uint hasPreviousVertices;  // 1: some vertices follow joints or morph weights
-    GLINT_ADDRESS(RayHit) rayHits;  // of every sample, in the order of the samples
-    GLINT_ADDRESS(BounceLight) bounceLight;  // of every sample and bounce that has layers
+    GLINT_ADDRESS(RayHitArray) rayHits;  // of every sample, in the order of the samples
+    GLINT_ADDRESS(BounceLightArray) bounceLight;  // of every sample and bounce that has layers
 #if GLINT_LAYER_WALKS
     // The members for packages that also find area lights:
-    GLINT_ADDRESS(BounceLight) walkedLight;  // of every sample, in the order of the samples: what its walk has found,
+    GLINT_ADDRESS(BounceLightArray) walkedLight;  // of every sample, in the order of the samples: what its walk has found,
                                              // as the viewer sees it
 #endif
 #endif
@@ -433,7 +433,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Fra
 GLINT_INTEROP_BEGIN
 
 struct PushConstants {
-    GLINT_ADDRESS(Frame) frame;
+    GLINT_ADDRESS(FrameArray) frame;
     uint bucket;    // shading passes: which bucket this dispatch shades
     uint geometry;  // G-buffer pass: GeometryRecord index of this draw's first instance
     uint geometryStride;  // and from one instance's GeometryRecord to the next one's

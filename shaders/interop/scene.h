@@ -39,7 +39,7 @@ GLINT_CONSTANT(kGeometryHostFlagsShift, 16u);  // the flags from this bit on are
 
 // The materials of a geometry's triangles, for hosts: each number is added to GeometryRecord::materialIndex.
 struct PrimitiveMaterials {
-    GLINT_ADDRESS(Uint) numbers;
+    GLINT_ADDRESS(UintArray) numbers;
 };
 
 // One geometry of one instance. A hit finds it at instanceCustomIndex + geometryIndex. The address of a missing
@@ -54,14 +54,14 @@ struct GeometryRecord {
     uint instanceIndex;  // index into FrameConstants::instances
     uint flags;          // kGeometry*
     uint primitiveMaterials;  // 0: all triangles have materialIndex; else 1 + the index of a PrimitiveMaterials
-    GLINT_ADDRESS(Uint) indices;     // 3 for each triangle
-    GLINT_ADDRESS(Vec3) positions;   // object space
-    GLINT_ADDRESS(Vec3) normals;     // object space, unit vectors
-    GLINT_ADDRESS(Vec4) tangents;    // object space, unit vectors; w = ±1 is the sign of the bitangent
-    GLINT_ADDRESS(Vec2) texCoords0;
-    GLINT_ADDRESS(Vec2) texCoords1;
-    GLINT_ADDRESS(Vec4) colors;  // linear RGBA
-    GLINT_ADDRESS(Float) attributes;  // of packs: the package's, vertex by vertex; 0 if no feature of the key reads any
+    GLINT_ADDRESS(UintArray) indices;     // 3 for each triangle
+    GLINT_ADDRESS(Vec3Array) positions;   // object space
+    GLINT_ADDRESS(Vec3Array) normals;     // object space, unit vectors
+    GLINT_ADDRESS(Vec4Array) tangents;    // object space, unit vectors; w = ±1 is the sign of the bitangent
+    GLINT_ADDRESS(Vec2Array) texCoords0;
+    GLINT_ADDRESS(Vec2Array) texCoords1;
+    GLINT_ADDRESS(Vec4Array) colors;  // linear RGBA
+    GLINT_ADDRESS(FloatArray) attributes;  // of packs: the package's, vertex by vertex; 0 if no feature of the key reads any
 };
 
 GLINT_INTEROP_END

@@ -28,15 +28,15 @@ struct uvec4 {
 // NOLINTEND(readability-identifier-naming)
 }  // namespace glint::gpu
 
-// A pointer on the device: the address of an array of T.
-#define GLINT_ADDRESS(T) std::uint64_t
+// A pointer on the device: a buffer of GLSL, which is a type there.
+#define GLINT_ADDRESS(buffer) std::uint64_t
 #define GLINT_INTEROP_BEGIN namespace glint::gpu {
 #define GLINT_INTEROP_END }
 #define GLINT_CONSTANT(name, value) inline constexpr std::uint32_t name = value
 
 #else
 
-#define GLINT_ADDRESS(T) T##Array
+#define GLINT_ADDRESS(buffer) buffer
 #define GLINT_INTEROP_BEGIN
 #define GLINT_INTEROP_END
 #define GLINT_CONSTANT(name, value) const uint name = value

@@ -35,7 +35,20 @@ Result<CachedModule> measured(Result<std::vector<std::uint32_t>> spirv) {
 
 Result<CachedModule> compileMeasured(const ShaderSource& source, const ShaderCompileOptions& options,
                                      const std::optional<LinkNames>& link) {
-    return measured(link ? compilePart(source, *link, options) : compileShader(source, options));
+    const auto compile = [&](const ShaderSource& shader) {
+        return measured(link ? compilePart(shader, *link, options) : compileShader(shader, options));
+    };
+    // Functions that cross the border of a module have the same type on both sides.
+    std::vector<std::string> fixed = source.functionsApart;
+    if (link) {
+        fixed.insert(fixed.end(), link->exported.begin(), link->exported.end());
+        fixed.insert(fixed.end(), link->imported.begin(), link->imported.end());
+    }
+    ShaderSource shorter = source;
+    shorter.glsl = withConstParameters(source.glsl, fixed);
+    Result<CachedModule> compiled = compile(shorter);
+    // Errors are those of the text as it is.
+    return compiled ? std::move(compiled) : compile(source);
 }
 
 Result<CachedModule> joinMeasured(const ShaderSource& source, const ShaderCompileOptions& options,

@@ -174,6 +174,35 @@ std::set<std::uint32_t> reachableFrom(std::uint32_t root, const std::vector<Spir
     return reached;
 }
 
+SpirvWords withoutUncalled(std::span<const std::uint32_t> words) {
+    const std::vector<SpirvFunction> functions = findFunctions(words);
+    std::set<std::uint32_t> called;
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
+        if (it.opcode == spv::OpEntryPoint) {
+            called.merge(reachableFrom(it.operands[1], functions));
+        }
+    }
+    // Names and decorations of what goes come before it.
+    std::vector<bool> goes(words[kSpirvBoundWord]);
+    std::vector<bool> stays;  // by instruction
+    bool uncalled = false;
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
+        uncalled = it.opcode == spv::OpFunction ? !called.contains(it.result) : uncalled;
+        goes[it.result] = uncalled;
+        stays.push_back(!uncalled);
+        uncalled = uncalled && it.opcode != spv::OpFunctionEnd;
+    }
+    SpirvWords left(words.begin(), words.begin() + kSpirvHeaderWords);
+    auto own = stays.begin();
+    for (const SpirvInstruction& it : SpirvInstructions(words)) {
+        const bool annotates = it.opcode == spv::OpName || isSpirvDecoration(it.opcode);
+        if (*own++ && !(annotates && goes[it.operands[0]])) {
+            appendWords(left, it.words());
+        }
+    }
+    return left;
+}
+
 // --- Parsed modules ---
 
 void Annotations::finish(std::uint32_t bound) {

@@ -116,6 +116,10 @@ void keepApart(SpirvWords& words, const std::vector<SpirvFunction>& functions,
 // Returns a function and those that it calls, also through others.
 std::set<std::uint32_t> reachableFrom(std::uint32_t root, const std::vector<SpirvFunction>& functions);
 
+// Returns a shader without the functions that its entry points do not reach. SPIRV-Tools' own pass removes
+// instruction by instruction, which after inlining takes an eighth of all optimisation.
+SpirvWords withoutUncalled(std::span<const std::uint32_t> words);
+
 // --- A module with the words that are IDs, the annotations of IDs, and the starts of functions ---
 
 // Instructions that say something about an ID, by that ID.

@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -44,6 +45,12 @@ GlslUnit dropUnused(const GlslUnit& unit);
 // Returns a unit's text without comments, blank lines and indentation. This alone decides about its SPIR-V if
 // that has no debug information.
 std::string essentialText(std::string_view glsl);
+
+// Returns a text in which parameters that their functions do not write are const. glslang passes those as
+// values, and makes a variable of each of the others for every call, which the optimiser has to remove. In
+// doubt a parameter stays: if it is an argument of what may write it, an array, or indexed by a variable.
+// Functions named in `fixed`, and those with a prototype, keep their types.
+std::string withConstParameters(std::string_view glsl, std::span<const std::string> fixed);
 
 // --- Names that a text shares with whatever includes it ---
 

@@ -105,6 +105,12 @@ class Shape {
 public:
     void add(std::string_view token) {
         const char first = token.front();
+        if (depth_ == 1 && isLayout() && token == "buffer_reference") {
+            isReference_ = true;
+        } else if (depth_ == 1 && begin_ == "GLINT_CONSTANT" && !isConstant_) {
+            name_ = token;
+            isConstant_ = true;
+        }
         if (first == '(' || first == '[' || first == '{') {
             if (depth_++ == 0) {
                 open(first);
@@ -127,15 +133,25 @@ public:
     bool isLoneWord() const {
         return words_ == 1 && groups_ == 0 && depth_ == 0 && !assigned_;
     }
-    // Returns the name of a declaration that is certainly a function or a constant, else an empty text.
+    // Returns the name of a declaration that GlslItem::name knows, else an empty text.
     std::string_view name() const {
-        const bool known = !pinned_ && ended() && (isFunction_ || isConstant_) && name_ != "main";
-        return known ? name_ : std::string_view();
+        const bool known = isFunction_ || isConstant_ || isType_ || isResource_;
+        return known && !pinned_ && ended() && name_ != "main" ? name_ : std::string_view();
     }
 
 private:
+    bool isLayout() const {
+        return begin_ == "layout";
+    }
     void open(char bracket) {
-        if (bracket == '(' && words_ == 2 && !assigned_ && groups_ == 0) {
+        if (bracket == '{' && begin_ == "struct" && words_ == 2 && groups_ == 0) {
+            name_ = last_;
+            isType_ = true;
+        } else if (bracket == '{' && isLayout() && groups_ == 1) {
+            name_ = last_;
+            isType_ = isReference_;
+            isResource_ = false;
+        } else if (bracket == '(' && words_ == 2 && !assigned_ && groups_ == 0) {
             name_ = last_;
             isHead_ = true;
         } else if (bracket == '{' && isHead_ && groups_ == 1) {
@@ -151,14 +167,18 @@ private:
         }
         ended_ = token == ";";
         if (startsWord(token.front()) && !assigned_) {
-            isConst_ = words_ == 0 ? token == "const" : isConst_;
+            begin_ = words_ == 0 ? token : begin_;
             ++words_;
             last_ = token;
             isHead_ = false;
+            isResource_ = isResource_ || (isLayout() && token == "uniform" && groups_ == 1);
+            name_ = isResource_ ? token : name_;
+            // A variable of the type, or a block's, is declared with it.
+            pinned_ = pinned_ || isType_;
         } else if (token == "=" && !assigned_) {
             assigned_ = true;
             // The words are const, type and name; an array's length may stand between them.
-            isConstant_ = isConst_ && words_ == 3;
+            isConstant_ = begin_ == "const" && words_ == 3;
             name_ = last_;
         } else if (token == ",") {
             pinned_ = true;
@@ -166,15 +186,18 @@ private:
     }
 
     int depth_ = 0;
-    int words_ = 0;   // before a "="
-    int groups_ = 0;  // pairs of brackets
+    int words_ = 0;           // before a "="
+    int groups_ = 0;          // pairs of brackets
+    std::string_view begin_;  // the first word
     std::string_view last_;
     std::string_view name_;
     bool isHead_ = false;  // has seen "type name(…)"
-    bool isConst_ = false;
     bool assigned_ = false;
     bool isFunction_ = false;
     bool isConstant_ = false;
+    bool isReference_ = false;  // a buffer that is only a type
+    bool isType_ = false;
+    bool isResource_ = false;  // without members
     bool ended_ = false;
     bool pinned_ = false;
 };

@@ -70,8 +70,8 @@ enum class GlslItemKind : std::uint8_t {
 struct GlslItem {
     GlslItemKind kind = GlslItemKind::Code;
     std::string_view text;  // whole lines, including the line breaks
-    // The name of a macro, a function's definition or a constant, which can be dropped if nothing uses it. An
-    // item without a name stays.
+    // The name of a macro, a function's definition, a constant, a structure, a buffer that is only a type or
+    // a resource without members, which can be dropped if nothing uses it. An item without a name stays.
     std::string_view name;
     std::vector<std::string_view> words;   // identifiers
     std::vector<std::string_view> pasted;  // in a macro: the words that ## makes names of; "" means any name

@@ -1,0 +1,259 @@
+#include "emit/glsl/passes.h"
+#include "emit/glsl/text.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glint::compiler {
+
+namespace {
+
+// Functions of GLSL that write arguments, by the beginnings of their names.
+constexpr std::string_view kWriting[] = {"frexp",        "modf",         "uaddCarry",       "usubBorrow",
+                                         "umulExtended", "imulExtended", "rayQuery",        "atomic",
+                                         "image",        "traceRay",     "executeCallable", "hitObject"};
+
+// Words and signs, without blanks and comments.
+class GlslTokens {
+public:
+    void add(std::string_view token) {
+        all_.push_back(token);
+    }
+    std::size_t size() const {
+        return all_.size();
+    }
+    std::string_view at(std::size_t index) const {
+        return index < all_.size() ? all_[index] : std::string_view();
+    }
+    bool isWord(std::size_t index) const {
+        return index < all_.size() && startsWord(all_[index].front());
+    }
+    bool touches(std::size_t index) const {
+        return index + 1 < all_.size() && all_[index].data() + 1 == all_[index + 1].data();
+    }
+    // Returns the bracket that closes the one at `open`.
+    std::size_t closing(std::size_t open) const {
+        int depth = 0;
+        for (std::size_t i = open; i < all_.size(); ++i) {
+            const char first = all_[i].front();
+            depth += first == '(' || first == '[' || first == '{' ? 1 : 0;
+            depth -= first == ')' || first == ']' || first == '}' ? 1 : 0;
+            if (depth == 0) {
+                return i;
+            }
+        }
+        return all_.size();
+    }
+
+private:
+    std::vector<std::string_view> all_;
+};
+
+struct SplitText {
+    GlslTokens code;
+    std::vector<GlslTokens> directives;
+};
+
+SplitText splitText(std::string_view glsl) {
+    SplitText split;
+    bool startsLine = true;
+    bool isDirective = false;
+    bool continues = false;
+    forEachPiece(glsl, [&](std::string_view piece) {
+        const char first = piece.front();
+        if (first == '\n') {
+            startsLine = true;
+            isDirective = isDirective && continues;
+        } else if (first != ' ' && commentLength(piece) == 0) {
+            if (startsLine && first == '#' && !isDirective) {
+                isDirective = true;
+                split.directives.emplace_back();
+            }
+            startsLine = false;
+            (isDirective ? split.directives.back() : split.code).add(piece);
+        }
+        continues = first == '\\';
+    });
+    return split;
+}
+
+struct Parameter {
+    std::size_t first = 0;  // token
+    std::string_view name;
+    bool isPlain = false;  // passed by value, and no array
+};
+
+struct Definition {
+    std::string_view name;
+    std::vector<Parameter> parameters;
+    std::size_t body = 0;  // its brackets
+    std::size_t end = 0;
+};
+
+std::vector<Parameter> parametersOf(const GlslTokens& tokens, std::size_t open, std::size_t close) {
+    std::vector<Parameter> parameters;
+    for (std::size_t first = open + 1; first < close;) {
+        Parameter parameter{first, {}, true};
+        std::size_t at = first;
+        for (; at < close && tokens.at(at) != ","; ++at) {
+            const std::string_view token = tokens.at(at);
+            parameter.isPlain = parameter.isPlain && tokens.isWord(at) && token != "out" &&
+                                token != "inout" && token != "const";
+            parameter.name = token;
+        }
+        parameter.isPlain = parameter.isPlain && at >= first + 2;
+        parameters.push_back(parameter);
+        first = at + 1;
+    }
+    return parameters;
+}
+
+// The functions of a text, and the names of those that write arguments or have a prototype.
+struct Functions {
+    std::vector<Definition> definitions;
+    std::set<std::string_view> writing;
+    std::set<std::string_view> declared;
+};
+
+Functions functionsOf(const GlslTokens& tokens) {
+    Functions functions;
+    for (std::size_t at = 0; at < tokens.size(); ++at) {
+        const bool isHead = tokens.at(at) == "(" && at >= 2 && tokens.isWord(at - 1) && tokens.isWord(at - 2);
+        const std::size_t close = isHead ? tokens.closing(at) : at;
+        if (isHead) {
+            const std::string_view name = tokens.at(at - 1);
+            std::vector<Parameter> parameters = parametersOf(tokens, at, close);
+            for (std::size_t i = at + 1; i < close; ++i) {
+                if (tokens.at(i) == "out" || tokens.at(i) == "inout") {
+                    functions.writing.insert(name);
+                }
+            }
+            if (tokens.at(close + 1) == "{") {
+                functions.definitions.push_back(
+                    {name, std::move(parameters), close + 1, tokens.closing(close + 1)});
+            } else {
+                functions.declared.insert(name);
+            }
+        }
+        at = tokens.at(close + (isHead ? 1 : 0)) == "{" ? tokens.closing(close + (isHead ? 1 : 0)) : close;
+    }
+    return functions;
+}
+
+bool mayWrite(std::string_view called, const std::set<std::string_view>& writing) {
+    return writing.contains(called) ||
+           std::ranges::any_of(kWriting, [&](std::string_view begin) { return called.starts_with(begin); });
+}
+
+// Returns whether the tokens from `at` on assign to what is before them.
+bool assigns(const GlslTokens& tokens, std::size_t at) {
+    const std::string_view sign = tokens.at(at);
+    const std::string_view next = tokens.touches(at) ? tokens.at(at + 1) : std::string_view();
+    if (sign == "=") {
+        return next != "=";
+    }
+    const bool isShift = (sign == "<" || sign == ">") && next == sign && tokens.touches(at + 1);
+    constexpr std::string_view kSigns = "+-*/%&|^";
+    return ((sign == "+" || sign == "-") && next == sign) ||
+           (!sign.empty() && kSigns.find(sign) != std::string_view::npos && next == "=") ||
+           (isShift && tokens.at(at + 2) == "=");
+}
+
+// The names among `names` that the body of a function may write, or of which it needs a variable.
+std::set<std::string_view> findWritten(const GlslTokens& tokens, const Definition& function,
+                                       const std::set<std::string_view>& names,
+                                       const std::set<std::string_view>& writing) {
+    std::set<std::string_view> written;
+    std::vector<bool> open;  // whether an argument within these brackets may be written
+    for (std::size_t at = function.body; at < function.end; ++at) {
+        const char first = tokens.at(at).front();
+        if (first == '(' || first == '[' || first == '{') {
+            open.push_back((!open.empty() && open.back()) ||
+                           (tokens.isWord(at - 1) && mayWrite(tokens.at(at - 1), writing)));
+        } else if (first == ')' || first == ']' || first == '}') {
+            open.pop_back();
+        }
+        if (!names.contains(tokens.at(at)) || tokens.at(at - 1) == ".") {
+            continue;
+        }
+        std::size_t next = at + 1;
+        bool byVariable = false;
+        for (bool isMember = true; isMember;) {
+            isMember = tokens.at(next) == "." || tokens.at(next) == "[";
+            if (tokens.at(next) == ".") {
+                next += 2;
+            } else if (tokens.at(next) == "[") {
+                byVariable =
+                    byVariable || startsWord(tokens.at(next + 1).front()) || tokens.at(next + 2) != "]";
+                next = tokens.closing(next) + 1;
+            }
+        }
+        const bool isChangedBefore = (tokens.at(at - 1) == "+" || tokens.at(at - 1) == "-") &&
+                                     tokens.at(at - 2) == tokens.at(at - 1) && tokens.touches(at - 2);
+        if (open.back() || byVariable || isChangedBefore || assigns(tokens, next)) {
+            written.insert(tokens.at(at));
+        }
+    }
+    return written;
+}
+
+// Adds the macros that may write an argument to `writing`. Returns the words of macros that may write
+// anything.
+std::set<std::string_view> addMacros(std::span<const GlslTokens> directives,
+                                     std::set<std::string_view>& writing) {
+    std::set<std::string_view> words;
+    for (const GlslTokens& directive : directives) {
+        bool writes = false;
+        for (std::size_t at = 3; at < directive.size() && directive.at(1) == "define"; ++at) {
+            writes = writes || assigns(directive, at) || mayWrite(directive.at(at), writing);
+        }
+        for (std::size_t at = 2; writes && at < directive.size(); ++at) {
+            words.insert(directive.at(at));
+        }
+        if (writes) {
+            writing.insert(directive.at(2));
+        }
+    }
+    return words;
+}
+
+}  // namespace
+
+std::string withConstParameters(std::string_view glsl, std::span<const std::string> fixed) {
+    const SplitText split = splitText(glsl);
+    const GlslTokens& tokens = split.code;
+    Functions functions = functionsOf(tokens);
+    const std::set<std::string_view> inMacros = addMacros(split.directives, functions.writing);
+    std::string text;
+    const char* copied = glsl.data();
+    for (const Definition& function : functions.definitions) {
+        if (functions.declared.contains(function.name) ||
+            std::ranges::find(fixed, function.name) != fixed.end()) {
+            continue;
+        }
+        std::set<std::string_view> names;
+        for (const Parameter& parameter : function.parameters) {
+            if (parameter.isPlain && !inMacros.contains(parameter.name)) {
+                names.insert(parameter.name);
+            }
+        }
+        const std::set<std::string_view> written = findWritten(tokens, function, names, functions.writing);
+        for (const Parameter& parameter : function.parameters) {
+            if (names.contains(parameter.name) && !written.contains(parameter.name)) {
+                const char* const place = tokens.at(parameter.first).data();
+                text.append(copied, place);
+                text += "const ";
+                copied = place;
+            }
+        }
+    }
+    text.append(copied, glsl.data() + glsl.size());
+    return text;
+}
+
+}  // namespace glint::compiler
