@@ -47,7 +47,7 @@ Result<CachedModule> compileMeasured(const ShaderSource& source, const ShaderCom
     ShaderSource shorter = source;
     shorter.glsl = withConstParameters(source.glsl, fixed);
     Result<CachedModule> compiled = compile(shorter);
-    // Errors are those of the text as it is.
+    // A macro may write a parameter. Other errors are those of the text as it is, too.
     return compiled ? std::move(compiled) : compile(source);
 }
 

@@ -139,9 +139,12 @@ std::string storedKey(const TextHash& key) {
 
 }  // namespace
 
+// The name of a case's module and the comments in it have the number of the case, which one case more changes
+// for those behind it. Files may be included from beside the text.
 TextHash WarmModules::keyOf(const ModuleTemplate& made) {
-    const TextHash hash = hashOfText(made.text);
-    return {hash.first, base::hashBytes(base::asBytes(made.origin), hash.second)};
+    const TextHash hash = hashOfText(essentialText(made.text));
+    const std::string_view folder = std::string_view(made.origin).substr(0, made.origin.rfind('/') + 1);
+    return {hash.first, base::hashBytes(base::asBytes(folder), hash.second)};
 }
 
 std::string WarmModules::pack(const Texts& texts) {

@@ -1,5 +1,6 @@
 #include "emit/compile.h"
 #include "emit/glsl/passes.h"
+#include "emit/module_files.h"
 #include "support/must.h"
 #include "unit/emit/sample_scene.h"
 #include "unit/emit/tiny_module.h"
@@ -7,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace glint {
 namespace {
@@ -49,6 +52,30 @@ TEST(DropUnused, DropsWhatNothingReaches) {
                         "void main() { kept(float(kUsed)); }\n");
 }
 
+TEST(DropUnused, DropsTypesAndResourcesThatNothingReads) {
+    const std::string text =
+        dropUnused(kStart +
+                   "struct Inner { float x; };\n"
+                   "struct Used {\n    Inner inner;\n};\n"
+                   "struct Unused { Used used; };\n"
+                   "GLINT_CONSTANT(kUsed, 1u);\n"
+                   "GLINT_CONSTANT(kUnused, 2u);\n"
+                   "layout(buffer_reference, scalar) readonly buffer A { Used data[]; };\n"
+                   "layout(buffer_reference, scalar) buffer B { Unused data[]; };\n"
+                   "layout(set = 0, binding = 0) uniform texture2D images[];\n"
+                   "layout(set = 0, binding = 1) uniform sampler filters[kUnused];\n"
+                   "layout(push_constant) uniform Push { A a; } push;\n"
+                   "void main() { images[kUsed]; }\n");
+    EXPECT_EQ(text, kStart +
+                        "struct Inner { float x; };\n"
+                        "struct Used {\n    Inner inner;\n};\n"
+                        "GLINT_CONSTANT(kUsed, 1u);\n"
+                        "layout(buffer_reference, scalar) readonly buffer A { Used data[]; };\n"
+                        "layout(set = 0, binding = 0) uniform texture2D images[];\n"
+                        "layout(push_constant) uniform Push { A a; } push;\n"
+                        "void main() { images[kUsed]; }\n");
+}
+
 TEST(DropUnused, KeepsThePlacesOfLines) {
     compiler::GlslUnit unit;
     unit.add("#version 460", "main.comp", 1);
@@ -89,7 +116,7 @@ TEST(DropUnused, SeesThroughPrecision) {
 TEST(DropUnused, KeepsWhatItCantTell) {
     for (const char* const text :
          {"float a(float x);\nvoid main() {}\n", "int a, b;\nvoid main() {}\n",
-          "struct A { float x; };\nvoid main() {}\n",
+          "struct A { float x; } a;\nvoid main() {}\n",
           "layout(set = 0, binding = 0) buffer A { uint x; } a;\nvoid main() {}\n",
           "MACRO void a() {}\nvoid main() {}\n", "void a() {} void b() {}\nvoid main() {}\n",
           "void a() {\n#define INNER 1\n}\nvoid main() {}\n",
@@ -141,6 +168,45 @@ TEST(EssentialText, IsWithoutCommentsPlacesAndBlanks) {
 }
 
 // One case more changes only those modules that contain the number of cases, or all cases.
+TEST(ConstParameters, AreThoseThatTheirFunctionsDoNotWrite) {
+    const auto of = [](const std::string& parameters, const std::string& body) {
+        const std::string rest = ") { " + body + " }\n";
+        const std::string before = "void out1(out float x) {}\nfloat read(const float x) { return x; }\n";
+        const std::string text = compiler::withConstParameters(before + "void f(" + parameters + rest, {});
+        return text.substr(before.size() + 7, text.size() - before.size() - 7 - rest.size());
+    };
+    EXPECT_EQ(of("vec3 a, in float b", "a.x + b; read(a.y);"), "const vec3 a, const in float b");
+    EXPECT_EQ(of("highp float a, out float b", "b = a;"), "const highp float a, out float b");
+    EXPECT_EQ(of("float a, float b", "if (a == b || a <= b || a != b || a >= b) { b.a = 1.0; }"),
+              "const float a, float b");
+    for (const char* const body :
+         {"a = b;", "a.x[0].y += b;", "a <<= b;", "++a;", "a--;", "out1(a.x);", "out1(read(a));",
+          "atomicAdd(a, 1u) + b;", "b + a[i];", "b + a.x[i + 1];"}) {
+        EXPECT_EQ(of("uvec4 a, uint b", body), "uvec4 a, const uint b") << body;
+    }
+    EXPECT_EQ(of("float a[2], uint b", "a[1] + b;"), "float a[2], const uint b");
+    EXPECT_EQ(of("", ""), "");
+}
+
+TEST(ConstParameters, LeaveFunctionsWhoseTypesOthersKnow) {
+    const std::string text =
+        "float a(float x);\nfloat a(float x) { return x; }\nfloat b(float x) { return x; }\n";
+    EXPECT_EQ(compiler::withConstParameters(text, std::vector<std::string>{"b"}), text);
+    for (const char* const broken :
+         {"void a(int x", "void a(int x) { x[", "void a(int x) { x.", "}}) {", ""}) {
+        EXPECT_GE(compiler::withConstParameters(broken, {}).size(), std::string_view(broken).size());
+    }
+}
+
+TEST(ConstParameters, AMacroMayWriteOne) {
+    const std::string text =
+        "#version 460\n#define DOUBLE(value) value *= 2u\nlayout(local_size_x = 1) in;\n"
+        "layout(set = 0, binding = 0) buffer Data { uint x; } data;\n"
+        "uint doubled(uint x) { DOUBLE(x); return x; }\nvoid main() { data.x = doubled(data.x); }\n";
+    EXPECT_NE(compiler::withConstParameters(text, {}), text);
+    EXPECT_TRUE(compiler::compileMeasured({"double.comp", compiler::ShaderStage::Compute, text, {}}, {}));
+}
+
 TEST(ModuleTexts, DependOnNothingThatTheModuleDoesNotUse) {
     compiler::CompileSettings settings;
     settings.plan.merge = compiler::MergePolicy::None;

@@ -66,11 +66,16 @@ TEST_F(KnownTexts, DependOnFilesAndTheTextThatTheyStartWith) {
     const std::optional<compiler::TextHash> hash = put(warm_);
     EXPECT_EQ(warm_.findText(makeTemplate(kItems, "int one() { return 2; }\n"), nullptr), std::nullopt);
     compiler::ModuleTemplate other = makeTemplate();
-    other.text += "\n";
+    other.text += "int more;\n";
     EXPECT_EQ(warm_.findText(other, nullptr), std::nullopt);
     other = makeTemplate();
-    other.origin = "other.comp";
+    other.origin = "other/module.comp";
     EXPECT_EQ(warm_.findText(other, nullptr), std::nullopt);
+    // What a text is called and says to people changes when there is one case more.
+    other = makeTemplate();
+    other.origin = "other.comp";
+    other.text += "// Shader 7.\n";
+    EXPECT_EQ(warm_.findText(other, nullptr), hash);
     EXPECT_EQ(warm_.findText(makeTemplate(), nullptr), hash);
 }
 

@@ -1,11 +1,14 @@
 #include "spirv/compiler.h"
+#include "spirv/optimize.h"
 #include "spirv/reader.h"
 #include "spirv/statistics.h"
 #include "support/must.h"
 
+#include <glslang/SPIRV/spirv.hpp>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -50,6 +53,27 @@ const compiler::SpirvFunction* find(const std::vector<compiler::SpirvFunction>& 
                                     const std::string& name) {
     const auto place = std::ranges::find(functions, name, &compiler::SpirvFunction::name);
     return place == functions.end() ? nullptr : &*place;
+}
+
+TEST(CallGraph, LosesWhatNothingCalls) {
+    auto words = must(compileShader(source({"shadeFirst", "shadeSecond"}), {.debugInfo = true}));
+    EXPECT_EQ(compiler::withoutUncalled(words), words);
+    // main() calls shadeFirst() twice.
+    const std::vector<compiler::SpirvFunction> functions = compiler::findFunctions(words);
+    const std::uint32_t first = find(functions, "shadeFirst")->id;
+    const std::uint32_t second = find(functions, "shadeSecond")->id;
+    for (const compiler::SpirvInstruction& it : compiler::SpirvInstructions(words)) {
+        if (it.opcode == spv::OpFunctionCall && it.operands[2] == second) {
+            words[it.at + 3] = first;
+        }
+    }
+    const auto left = compiler::withoutUncalled(words);
+    EXPECT_TRUE(compiler::validateSpirv(left, "two.comp"));
+    EXPECT_EQ(compiler::findFunctions(left).size(), 2U);
+    EXPECT_LT(left.size(), words.size());
+    for (const compiler::SpirvInstruction& it : compiler::SpirvInstructions(left)) {
+        EXPECT_FALSE(it.opcode == spv::OpName && it.operands[0] == second);
+    }
 }
 
 TEST(CallGraph, NamesFunctionsAndWhatTheyCall) {

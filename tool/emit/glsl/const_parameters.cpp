@@ -54,13 +54,9 @@ private:
     std::vector<std::string_view> all_;
 };
 
-struct SplitText {
-    GlslTokens code;
-    std::vector<GlslTokens> directives;
-};
-
-SplitText splitText(std::string_view glsl) {
-    SplitText split;
+// The tokens of a text, without those of directives.
+GlslTokens tokensOf(std::string_view glsl) {
+    GlslTokens tokens;
     bool startsLine = true;
     bool isDirective = false;
     bool continues = false;
@@ -70,16 +66,15 @@ SplitText splitText(std::string_view glsl) {
             startsLine = true;
             isDirective = isDirective && continues;
         } else if (first != ' ' && commentLength(piece) == 0) {
-            if (startsLine && first == '#' && !isDirective) {
-                isDirective = true;
-                split.directives.emplace_back();
-            }
+            isDirective = isDirective || (startsLine && first == '#');
             startsLine = false;
-            (isDirective ? split.directives.back() : split.code).add(piece);
+            if (!isDirective) {
+                tokens.add(piece);
+            }
         }
         continues = first == '\\';
     });
-    return split;
+    return tokens;
 }
 
 struct Parameter {
@@ -123,24 +118,26 @@ struct Functions {
 Functions functionsOf(const GlslTokens& tokens) {
     Functions functions;
     for (std::size_t at = 0; at < tokens.size(); ++at) {
-        const bool isHead = tokens.at(at) == "(" && at >= 2 && tokens.isWord(at - 1) && tokens.isWord(at - 2);
-        const std::size_t close = isHead ? tokens.closing(at) : at;
-        if (isHead) {
-            const std::string_view name = tokens.at(at - 1);
-            std::vector<Parameter> parameters = parametersOf(tokens, at, close);
-            for (std::size_t i = at + 1; i < close; ++i) {
-                if (tokens.at(i) == "out" || tokens.at(i) == "inout") {
-                    functions.writing.insert(name);
-                }
-            }
-            if (tokens.at(close + 1) == "{") {
-                functions.definitions.push_back(
-                    {name, std::move(parameters), close + 1, tokens.closing(close + 1)});
-            } else {
-                functions.declared.insert(name);
+        if (tokens.at(at) == "{") {
+            at = tokens.closing(at);
+        }
+        if (tokens.at(at) != "(" || at < 2 || !tokens.isWord(at - 1) || !tokens.isWord(at - 2)) {
+            continue;
+        }
+        const std::string_view name = tokens.at(at - 1);
+        const std::size_t close = tokens.closing(at);
+        for (std::size_t i = at + 1; i < close; ++i) {
+            if (tokens.at(i) == "out" || tokens.at(i) == "inout") {
+                functions.writing.insert(name);
             }
         }
-        at = tokens.at(close + (isHead ? 1 : 0)) == "{" ? tokens.closing(close + (isHead ? 1 : 0)) : close;
+        if (tokens.at(close + 1) == "{") {
+            const std::size_t end = tokens.closing(close + 1);
+            functions.definitions.push_back({name, parametersOf(tokens, at, close), close + 1, end});
+        } else {
+            functions.declared.insert(name);
+        }
+        at = close;
     }
     return functions;
 }
@@ -188,8 +185,7 @@ std::set<std::string_view> findWritten(const GlslTokens& tokens, const Definitio
             if (tokens.at(next) == ".") {
                 next += 2;
             } else if (tokens.at(next) == "[") {
-                byVariable =
-                    byVariable || startsWord(tokens.at(next + 1).front()) || tokens.at(next + 2) != "]";
+                byVariable = byVariable || tokens.isWord(next + 1) || tokens.at(next + 2) != "]";
                 next = tokens.closing(next) + 1;
             }
         }
@@ -202,33 +198,11 @@ std::set<std::string_view> findWritten(const GlslTokens& tokens, const Definitio
     return written;
 }
 
-// Adds the macros that may write an argument to `writing`. Returns the words of macros that may write
-// anything.
-std::set<std::string_view> addMacros(std::span<const GlslTokens> directives,
-                                     std::set<std::string_view>& writing) {
-    std::set<std::string_view> words;
-    for (const GlslTokens& directive : directives) {
-        bool writes = false;
-        for (std::size_t at = 3; at < directive.size() && directive.at(1) == "define"; ++at) {
-            writes = writes || assigns(directive, at) || mayWrite(directive.at(at), writing);
-        }
-        for (std::size_t at = 2; writes && at < directive.size(); ++at) {
-            words.insert(directive.at(at));
-        }
-        if (writes) {
-            writing.insert(directive.at(2));
-        }
-    }
-    return words;
-}
-
 }  // namespace
 
 std::string withConstParameters(std::string_view glsl, std::span<const std::string> fixed) {
-    const SplitText split = splitText(glsl);
-    const GlslTokens& tokens = split.code;
-    Functions functions = functionsOf(tokens);
-    const std::set<std::string_view> inMacros = addMacros(split.directives, functions.writing);
+    const GlslTokens tokens = tokensOf(glsl);
+    const Functions functions = functionsOf(tokens);
     std::string text;
     const char* copied = glsl.data();
     for (const Definition& function : functions.definitions) {
@@ -238,7 +212,7 @@ std::string withConstParameters(std::string_view glsl, std::span<const std::stri
         }
         std::set<std::string_view> names;
         for (const Parameter& parameter : function.parameters) {
-            if (parameter.isPlain && !inMacros.contains(parameter.name)) {
+            if (parameter.isPlain) {
                 names.insert(parameter.name);
             }
         }

@@ -47,9 +47,10 @@ GlslUnit dropUnused(const GlslUnit& unit);
 std::string essentialText(std::string_view glsl);
 
 // Returns a text in which parameters that their functions do not write are const. glslang passes those as
-// values, and makes a variable of each of the others for every call, which the optimiser has to remove. In
-// doubt a parameter stays: if it is an argument of what may write it, an array, or indexed by a variable.
-// Functions named in `fixed`, and those with a prototype, keep their types.
+// values, and makes a variable of each of the others for every call, which the optimiser has to remove. A
+// parameter stays if it is an argument of a function that may write it, an array, or indexed by a variable,
+// and so do those of functions named in `fixed` and of functions with a prototype. Macros are not followed:
+// if one writes a parameter, the result does not compile.
 std::string withConstParameters(std::string_view glsl, std::span<const std::string> fixed);
 
 // --- Names that a text shares with whatever includes it ---
