@@ -134,14 +134,6 @@ void registerLevel(spvtools::Optimizer& optimizer) {
         .RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
 }
 
-void registerFirstFolding(spvtools::Optimizer& optimizer, bool keepNames) {
-    if (!keepNames) {
-        optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
-    }
-    registerFolding(optimizer);
-    optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass());
-}
-
 // Folds and shortens functions, one at a time, and inlines them. A function that is short before it is
 // inlined is short wherever it is inlined: inlining every lobe of the BSDF and removing it afterwards takes
 // several times as long.
@@ -377,8 +369,12 @@ Result<std::vector<std::uint32_t>> foldSpirv(const std::vector<std::uint32_t>& w
                                              bool keepNames) {
     std::vector<std::uint32_t> folded = words;
     GLINT_TRY_DO(runPasses(folded, name, [&](spvtools::Optimizer& optimizer) {
-        registerFirstFolding(optimizer, keepNames);
-        optimizer.RegisterPass(spvtools::CreateCompactIdsPass());
+        if (!keepNames) {
+            optimizer.RegisterPass(spvtools::CreateStripDebugInfoPass());
+        }
+        registerFolding(optimizer);
+        optimizer.RegisterPass(spvtools::CreateEliminateDeadFunctionsPass())
+            .RegisterPass(spvtools::CreateCompactIdsPass());
     }));
     GLINT_TRY_DO(finishSpirv(folded, name));
     return folded;

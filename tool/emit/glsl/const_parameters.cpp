@@ -18,64 +18,32 @@ constexpr std::string_view kWriting[] = {"frexp",        "modf",         "uaddCa
                                          "umulExtended", "imulExtended", "rayQuery",        "atomic",
                                          "image",        "traceRay",     "executeCallable", "hitObject"};
 
-// Words and signs, without blanks and comments.
+// The tokens of a text, without those of directives.
 class GlslTokens {
 public:
-    void add(std::string_view token) {
-        all_.push_back(token);
-    }
+    explicit GlslTokens(std::string_view glsl) : all_(splitTokens(glsl)) {}
+
     std::size_t size() const {
         return all_.size();
     }
     std::string_view at(std::size_t index) const {
-        return index < all_.size() ? all_[index] : std::string_view();
+        return index < all_.size() && !all_[index].isDirective ? all_[index].text : std::string_view();
     }
     bool isWord(std::size_t index) const {
-        return index < all_.size() && startsWord(all_[index].front());
+        return !at(index).empty() && startsWord(at(index).front());
     }
     bool touches(std::size_t index) const {
-        return index + 1 < all_.size() && all_[index].data() + 1 == all_[index + 1].data();
+        return !at(index + 1).empty() && at(index).data() + 1 == at(index + 1).data();
     }
-    // Returns the bracket that closes the one at `open`.
+    // Returns the bracket that closes the one at `open`; size() if there is none.
     std::size_t closing(std::size_t open) const {
-        int depth = 0;
-        for (std::size_t i = open; i < all_.size(); ++i) {
-            const char first = all_[i].front();
-            depth += first == '(' || first == '[' || first == '{' ? 1 : 0;
-            depth -= first == ')' || first == ']' || first == '}' ? 1 : 0;
-            if (depth == 0) {
-                return i;
-            }
-        }
-        return all_.size();
+        const std::size_t match = all_[open].match;
+        return match == GlslToken::kNone || match < open ? all_.size() : match;
     }
 
 private:
-    std::vector<std::string_view> all_;
+    std::vector<GlslToken> all_;
 };
-
-// The tokens of a text, without those of directives.
-GlslTokens tokensOf(std::string_view glsl) {
-    GlslTokens tokens;
-    bool startsLine = true;
-    bool isDirective = false;
-    bool continues = false;
-    forEachPiece(glsl, [&](std::string_view piece) {
-        const char first = piece.front();
-        if (first == '\n') {
-            startsLine = true;
-            isDirective = isDirective && continues;
-        } else if (first != ' ' && commentLength(piece) == 0) {
-            isDirective = isDirective || (startsLine && first == '#');
-            startsLine = false;
-            if (!isDirective) {
-                tokens.add(piece);
-            }
-        }
-        continues = first == '\\';
-    });
-    return tokens;
-}
 
 struct Parameter {
     std::size_t first = 0;  // token
@@ -168,14 +136,14 @@ std::set<std::string_view> findWritten(const GlslTokens& tokens, const Definitio
     std::set<std::string_view> written;
     std::vector<bool> open;  // whether an argument within these brackets may be written
     for (std::size_t at = function.body; at < function.end; ++at) {
-        const char first = tokens.at(at).front();
-        if (first == '(' || first == '[' || first == '{') {
+        const std::string_view token = tokens.at(at);
+        if (token == "(" || token == "[" || token == "{") {
             open.push_back((!open.empty() && open.back()) ||
                            (tokens.isWord(at - 1) && mayWrite(tokens.at(at - 1), writing)));
-        } else if (first == ')' || first == ']' || first == '}') {
+        } else if (token == ")" || token == "]" || token == "}") {
             open.pop_back();
         }
-        if (!names.contains(tokens.at(at)) || tokens.at(at - 1) == ".") {
+        if (!names.contains(token) || tokens.at(at - 1) == ".") {
             continue;
         }
         std::size_t next = at + 1;
@@ -192,7 +160,7 @@ std::set<std::string_view> findWritten(const GlslTokens& tokens, const Definitio
         const bool isChangedBefore = (tokens.at(at - 1) == "+" || tokens.at(at - 1) == "-") &&
                                      tokens.at(at - 2) == tokens.at(at - 1) && tokens.touches(at - 2);
         if (open.back() || byVariable || isChangedBefore || assigns(tokens, next)) {
-            written.insert(tokens.at(at));
+            written.insert(token);
         }
     }
     return written;
@@ -201,7 +169,7 @@ std::set<std::string_view> findWritten(const GlslTokens& tokens, const Definitio
 }  // namespace
 
 std::string withConstParameters(std::string_view glsl, std::span<const std::string> fixed) {
-    const GlslTokens tokens = tokensOf(glsl);
+    const GlslTokens tokens(glsl);
     const Functions functions = functionsOf(tokens);
     std::string text;
     const char* copied = glsl.data();

@@ -20,7 +20,7 @@ namespace glint::compiler {
 namespace {
 
 constexpr std::string_view kOwnPrefix = "GLINT_";
-constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+constexpr std::size_t kNone = GlslToken::kNone;
 
 // Returns whether a condition holds. Returns nothing if the text alone does not decide it.
 std::optional<bool> evaluate(const Macros& macros, std::string_view condition) {
@@ -165,11 +165,8 @@ struct Cut {
 // Finds the statements of a text that conditions decide against.
 class Statements {
 public:
-    Statements(std::string_view text, const Macros& macros) : macros_(macros) {
-        split(text);
-        matchBrackets();
-        skip_.resize(tokens_.size() + 1);
-    }
+    Statements(std::string_view text, const Macros& macros)
+        : macros_(macros), tokens_(splitTokens(text)), skip_(tokens_.size() + 1) {}
     // Returns ranges that do not overlap, in order.
     std::vector<Cut> findCuts() {
         std::vector<std::size_t> blocks;  // the closing brackets of those that are open
@@ -207,40 +204,6 @@ public:
     }
 
 private:
-    struct Token {
-        std::string_view text;
-        bool isDirective = false;
-        std::size_t match = kNone;  // of a bracket
-    };
-    void split(std::string_view text) {
-        bool startsLine = true;
-        bool isDirective = false;
-        bool continues = false;
-        forEachPiece(text, [&](std::string_view piece) {
-            const char first = piece.front();
-            if (first == '\n') {
-                startsLine = true;
-                isDirective = isDirective && continues;
-            } else if (first != ' ' && (first != '/' || piece.size() == 1)) {
-                isDirective = isDirective || (startsLine && first == '#');
-                startsLine = false;
-                tokens_.push_back({piece, isDirective});
-            }
-            continues = first == '\\';
-        });
-    }
-    void matchBrackets() {
-        std::vector<std::size_t> open;
-        for (std::size_t i = 0; i < tokens_.size(); ++i) {
-            if (is(i, "(") || is(i, "{") || is(i, "[")) {
-                open.push_back(i);
-            } else if ((is(i, ")") || is(i, "}") || is(i, "]")) && !open.empty()) {
-                tokens_[i].match = open.back();
-                tokens_[open.back()].match = i;
-                open.pop_back();
-            }
-        }
-    }
     bool is(std::size_t at, std::string_view text) const {
         return at < tokens_.size() && tokens_[at].text == text && !tokens_[at].isDirective;
     }
@@ -261,7 +224,7 @@ private:
         return is(at, ";") ? at + 1 : kNone;
     }
     bool hasDirective(std::size_t begin, std::size_t end) const {
-        return std::ranges::any_of(std::span(tokens_).subspan(begin, end - begin), &Token::isDirective);
+        return std::ranges::any_of(std::span(tokens_).subspan(begin, end - begin), &GlslToken::isDirective);
     }
     const char* endOfToken(std::size_t at) const {
         return tokens_[at].text.data() + tokens_[at].text.size();
@@ -385,7 +348,7 @@ private:
     }
 
     const Macros& macros_;
-    std::vector<Token> tokens_;
+    std::vector<GlslToken> tokens_;
     std::vector<std::size_t> skip_;  // by token, where one is that goes: the end of the range
     std::unordered_map<std::string_view, std::optional<bool>> decided_;
     std::vector<Cut> cuts_;

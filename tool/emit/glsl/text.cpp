@@ -69,6 +69,37 @@ std::size_t commentLength(std::string_view text) {
     return 0;
 }
 
+std::vector<GlslToken> splitTokens(std::string_view glsl) {
+    std::vector<GlslToken> tokens;
+    std::vector<std::size_t> open;
+    bool startsLine = true;
+    bool isDirective = false;
+    bool continues = false;
+    forEachPiece(glsl, [&](std::string_view piece) {
+        const char first = piece.front();
+        if (first == '\n') {
+            startsLine = true;
+            isDirective = isDirective && continues;
+        } else if (first != ' ' && commentLength(piece) == 0) {
+            isDirective = isDirective || (startsLine && first == '#');
+            startsLine = false;
+            const bool opens = first == '(' || first == '{' || first == '[';
+            const bool closes = first == ')' || first == '}' || first == ']';
+            if (opens && !isDirective) {
+                open.push_back(tokens.size());
+            }
+            tokens.push_back({piece, isDirective});
+            if (closes && !isDirective && !open.empty()) {
+                tokens.back().match = open.back();
+                tokens[open.back()].match = tokens.size() - 1;
+                open.pop_back();
+            }
+        }
+        continues = first == '\\';
+    });
+    return tokens;
+}
+
 std::vector<std::string_view> identifiersOf(std::string_view line) {
     std::vector<std::string_view> words;
     forEachPiece(line, [&](std::string_view piece) {

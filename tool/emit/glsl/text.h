@@ -58,6 +58,18 @@ void forEachPiece(std::string_view text, const Visit& visit) {
 // Returns the identifiers of a line in order, without those in comments.
 std::vector<std::string_view> identifiersOf(std::string_view line);
 
+// A word, a number or one other character of code.
+struct GlslToken {
+    static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+    std::string_view text;
+    bool isDirective = false;
+    std::size_t match = kNone;  // of a bracket outside of directives: its partner
+};
+
+// Returns the tokens of a text in order, without blanks and comments.
+std::vector<GlslToken> splitTokens(std::string_view glsl);
+
 // --- Splits GLSL into the items at its top level ---
 
 enum class GlslItemKind : std::uint8_t {

@@ -42,7 +42,7 @@ struct CompiledModule {
 };
 
 struct PackageFile {
-    PackageFile(std::string fileName, base::SharedArray<std::uint8_t> contents)
+    PackageFile(std::string fileName, const base::SharedArray<std::uint8_t>& contents)
         : PackageFile(std::move(fileName), contents, base::hashBytes(contents)) {}
     PackageFile(std::string fileName, base::SharedArray<std::uint8_t> contents, std::uint64_t hashOfBytes)
         : name(std::move(fileName)), bytes(std::move(contents)), hash(hashOfBytes) {}
