@@ -192,8 +192,8 @@ TEST(ConstParameters, LeaveFunctionsWhoseTypesOthersKnow) {
     const std::string text =
         "float a(float x);\nfloat a(float x) { return x; }\nfloat b(float x) { return x; }\n";
     EXPECT_EQ(compiler::withConstParameters(text, std::vector<std::string>{"b"}), text);
-    for (const char* const broken :
-         {"void a(int x", "void a(int x) { x[", "void a(int x) { x.", "}}) {", ""}) {
+    for (const char* const broken : {"void a(int x", "void a(int x) { x[", "void a(int x) { x.",
+                                     "void a(int x,\n#if A\nint x) {}", "}}) {", ""}) {
         EXPECT_GE(compiler::withConstParameters(broken, {}).size(), std::string_view(broken).size());
     }
 }

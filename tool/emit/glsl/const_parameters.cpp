@@ -186,7 +186,7 @@ std::string withConstParameters(std::string_view glsl, std::span<const std::stri
         }
         const std::set<std::string_view> written = findWritten(tokens, function, names, functions.writing);
         for (const Parameter& parameter : function.parameters) {
-            if (names.contains(parameter.name) && !written.contains(parameter.name)) {
+            if (parameter.isPlain && !written.contains(parameter.name)) {
                 const char* const place = tokens.at(parameter.first).data();
                 text.append(copied, place);
                 text += "const ";
