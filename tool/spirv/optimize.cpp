@@ -154,7 +154,7 @@ void registerInlining(spvtools::Optimizer& optimizer, bool keepNames) {
         .RegisterPass(spvtools::CreateInlineExhaustivePass());
 }
 
-// Replaces variables that one load or store follows by values.
+// Replaces loads by what the same block, or the only store of a variable, has stored.
 void registerPlainValues(spvtools::Optimizer& optimizer) {
     optimizer.RegisterPass(spvtools::CreateLocalSingleBlockLoadStoreElimPass())
         .RegisterPass(spvtools::CreateLocalSingleStoreElimPass())
@@ -267,7 +267,7 @@ std::set<std::uint32_t> callsOf(const std::vector<SpirvFunction>& functions,
 // Inlines calls into the functions named in `apart`, one level at a time, until those call nothing.
 Status inlineByLevel(std::vector<std::uint32_t>& words, const std::string& name,
                      const std::vector<std::string>& apart) {
-    // This is deeper than any chain of calls; the performance passes inline the rest.
+    // This is deeper than any chain of calls; registerInlining() inlines the rest.
     constexpr int kMaxLevels = 24;
     for (int level = 0; level < kMaxLevels; ++level) {
         const std::vector<SpirvFunction> functions = findFunctions(words);

@@ -1,10 +1,14 @@
-# Usage: cmake -DFOLDER=… -DOUTPUT=file.h -P source_hash.cmake. Writes a header with one hash of the folder's
-# C++ files.
-file(GLOB_RECURSE files RELATIVE "${FOLDER}" "${FOLDER}/*.h" "${FOLDER}/*.cpp")
+# Usage: cmake -DROOT=… -DFOLDERS=… -DOUTPUT=file.h -P source_hash.cmake. Writes a header with one hash of the C++
+# files of folders below the root.
+set(patterns "")
+foreach(folder IN LISTS FOLDERS)
+  list(APPEND patterns "${ROOT}/${folder}/*.h" "${ROOT}/${folder}/*.cpp")
+endforeach()
+file(GLOB_RECURSE files RELATIVE "${ROOT}" ${patterns})
 list(SORT files)
 set(all "")
 foreach(name IN LISTS files)
-  file(SHA256 "${FOLDER}/${name}" hash)
+  file(SHA256 "${ROOT}/${name}" hash)
   string(APPEND all "${name} ${hash}\n")
 endforeach()
 string(SHA256 hash "${all}")

@@ -167,7 +167,6 @@ TEST(EssentialText, IsWithoutCommentsPlacesAndBlanks) {
         "#version 460\nint a;\nint e = 1 / 2;\n");
 }
 
-// One case more changes only those modules that contain the number of cases, or all cases.
 TEST(ConstParameters, AreThoseThatTheirFunctionsDoNotWrite) {
     const auto of = [](const std::string& parameters, const std::string& body) {
         const std::string rest = ") { " + body + " }\n";
@@ -207,6 +206,7 @@ TEST(ConstParameters, AMacroMayWriteOne) {
     EXPECT_TRUE(compiler::compileMeasured({"double.comp", compiler::ShaderStage::Compute, text, {}}, {}));
 }
 
+// One case more changes only those modules that contain the number of cases, or all cases.
 TEST(ModuleTexts, DependOnNothingThatTheModuleDoesNotUse) {
     compiler::CompileSettings settings;
     settings.plan.merge = compiler::MergePolicy::None;
