@@ -23,7 +23,7 @@ so that the runs of all machines add up. Its head says what it counts.
 TEXT
 }
 
-all=(lock declaration material_list package image ktx2 lint profile manifest cache gltf_json gltf_glb)
+all=(lock declaration glsl material_list package image ktx2 lint profile manifest cache gltf_json gltf_glb)
 executions=0
 seconds=
 report=false
@@ -82,7 +82,7 @@ trap 'rm -rf "$scratch"' EXIT
 longest() {
     case $1 in
         lock) echo 1024 ;;
-        declaration | material_list | image | profile | cache) echo 4096 ;;
+        declaration | glsl | material_list | image | profile | cache) echo 4096 ;;
         manifest | gltf_*) echo 8192 ;;
         *) echo 16384 ;;
     esac

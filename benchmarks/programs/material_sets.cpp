@@ -30,6 +30,7 @@ struct Arguments {
     bool fallback = false;
     bool steps = false;
     bool noOptimize = false;
+    bool fold = false;
 };
 
 // Returns the material of a case: eight switches, which are mixed so that any few cases have each of them.
@@ -74,10 +75,11 @@ struct Times {
     std::size_t modules = 0;  // that were compiled
 };
 
-Result<Times> measure(compiler::MaterialCompiler& compiler, const gltf::MaterialSet& set) {
+Result<Times> measure(compiler::MaterialCompiler& compiler, const gltf::MaterialSet& set,
+                      compiler::NewShaders newShaders = compiler::NewShaders::Optimized) {
     const std::clock_t clock = std::clock();
     const base::Clock::time_point start = base::Clock::now();
-    GLINT_TRY(const auto compiled, compiler.compile(set));
+    GLINT_TRY(const auto compiled, compiler.compile(set, newShaders));
     Times times;
     times.whole = base::millisecondsSince(start);
     times.processor = 1e3 * static_cast<double>(std::clock() - clock) / CLOCKS_PER_SEC;
@@ -114,6 +116,14 @@ Status measure(const Arguments& arguments) {
     GLINT_TRY(auto compiler, compiler::MaterialCompiler::create(settings, arguments.cache));
     GLINT_TRY(const auto cold, measure(compiler, set));
     std::map<std::string, std::vector<Times>> rows;
+    const auto newShaders = arguments.fold ? compiler::NewShaders::Folded : compiler::NewShaders::Optimized;
+    const auto add = [&](const char* row) -> Status {
+        GLINT_TRY(rows[row].emplace_back(), measure(compiler, set, newShaders));
+        if (arguments.fold) {
+            GLINT_TRY(rows["optimized"].emplace_back(), measure(compiler, set));
+        }
+        return okStatus();
+    };
     std::size_t cases = arguments.cases;
     for (int round = 0; round < arguments.rounds && cases < kMostCases; ++round) {
         GLINT_TRY(rows["same"].emplace_back(), measure(compiler, set));
@@ -122,9 +132,9 @@ Status measure(const Arguments& arguments) {
         set.materials.push_back(materialOf(set.materials.size(), 0));
         GLINT_TRY(rows["known"].emplace_back(), measure(compiler, set));
         set.materials.push_back(materialOf(set.materials.size(), cases++));
-        GLINT_TRY(rows["added"].emplace_back(), measure(compiler, set));
+        GLINT_TRY_DO(add("added"));
         set.materials.back() = materialOf(set.materials.size() - 1, kMostCases - 1 - cases);
-        GLINT_TRY(rows["changed"].emplace_back(), measure(compiler, set));
+        GLINT_TRY_DO(add("changed"));
     }
     fmt::print("{} materials, strategy {}, {} rounds; milliseconds\n\n", arguments.materials,
                arguments.strategy, arguments.rounds);
@@ -137,6 +147,9 @@ Status measure(const Arguments& arguments) {
     printRow("a material more, of a known case", rows["known"]);
     printRow("a material more, of a new case", rows["added"]);
     printRow("a material changed to a new case", rows["changed"]);
+    if (arguments.fold) {
+        printRow("the same, optimised by another call", rows["optimized"]);
+    }
     return okStatus();
 }
 
@@ -156,6 +169,7 @@ int main(int count, char** words) {
          {"--jobs", &arguments.jobs, "threads; 0: one for each core"},
          {"--steps", &arguments.steps, "for rays of an engine's own, without a frame"},
          {"--fallback", &arguments.fallback, "compile a fallback, too"},
-         {"--no-optimize", &arguments.noOptimize, "as of glint compile"}},
+         {"--no-optimize", &arguments.noOptimize, "as of glint compile"},
+         {"--fold", &arguments.fold, "new shaders are folded first, then optimised by another call"}},
         count, words, [&] { return glint::measure(arguments); });
 }

@@ -95,7 +95,7 @@ Result<CompiledPackage> compile(const Build& build, ModuleCache* cache, WarmModu
             header = makeHeader(scenes, build.plan, *prepared.sources, settings.plan);
         } else if (settings.modules.empty()) {
             compiled = compileModules(std::move(prepared.modules), settings.jobs, options, cache, warm,
-                                      settings.progress);
+                                      settings.newShaders, settings.progress);
         } else {
             compiled = takeModules(std::move(prepared.modules), options, settings.modules);
         }

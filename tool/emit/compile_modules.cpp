@@ -26,6 +26,7 @@ namespace {
 struct CompiledText {
     std::shared_ptr<const HashedModule> module;
     bool compiled = false;
+    bool folded = false;  // and not optimised, though the settings ask for it
 };
 
 CompiledText textOf(CachedModule module, bool compiled) {
@@ -65,6 +66,7 @@ CompiledModule makeCompiled(ModuleSource& source, const CompiledText& text, bool
     module.statistics = text.module->module.statistics;
     module.hash = text.module->hash;
     module.compiled = text.compiled && isFirst;
+    module.folded = text.folded;
     return module;
 }
 
@@ -136,10 +138,11 @@ private:
 class TextCompiler {
 public:
     TextCompiler(const std::vector<DistinctTexts::Text>& texts, const ShaderCompileOptions& options,
-                 ModuleCache* cache, WarmModules* warm,
+                 ModuleCache* cache, WarmModules* warm, NewShaders newShaders,
                  const std::function<void(std::size_t, std::size_t)>& progress)
         : texts_(texts),
           options_(options),
+          foldsNew_(options.optimize && newShaders == NewShaders::Folded),
           cache_(cache),
           warm_(warm),
           progress_(progress),
@@ -199,7 +202,7 @@ private:
             if (texts_[i].source->link) {
                 needed[i] = false;
             } else if (!texts_[i].parts.empty()) {
-                if (std::optional<CompiledText> found = find(texts_[i])) {
+                if (std::optional<CompiledText> found = find(texts_[i].hash)) {
                     results_[i] = std::move(*found);
                 }
             }
@@ -223,17 +226,17 @@ private:
     }
 
     // Returns the compiled form that an earlier run has left, if there is one.
-    std::optional<CompiledText> find(const DistinctTexts::Text& text) const {
-        if (auto found = warm_ != nullptr ? warm_->findModule(text.hash) : nullptr) {
-            return CompiledText{std::move(found), false};
+    std::optional<CompiledText> find(const TextHash& hash) const {
+        if (auto found = warm_ != nullptr ? warm_->findModule(hash) : nullptr) {
+            return CompiledText{std::move(found)};
         }
-        std::optional<CachedModule> module = cache_ != nullptr ? cache_->find(text.hash) : std::nullopt;
+        std::optional<CachedModule> module = cache_ != nullptr ? cache_->find(hash) : std::nullopt;
         if (!module) {
             return std::nullopt;
         }
         CompiledText found = textOf(std::move(*module), false);
         if (warm_ != nullptr) {
-            warm_->putModule(text.hash, found.module);
+            warm_->putModule(hash, found.module);
         }
         return found;
     }
@@ -243,11 +246,26 @@ private:
         if (!text.parts.empty()) {
             return join(text);
         }
-        if (std::optional<CompiledText> found = find(text)) {
+        if (std::optional<CompiledText> found = find(text.hash)) {
             return std::move(*found);
         }
-        GLINT_TRY(const auto shader, shaderOf(*text.source));
-        return keep(text, compileMeasured(shader, options_, text.source->link));
+        if (!foldsNew_ || text.source->link) {
+            return compile(*text.source, text.hash, options_);
+        }
+        ShaderCompileOptions folding = options_;
+        folding.optimize = false;
+        const TextHash hash = hashOfModuleText(*text.source, folding);
+        std::optional<CompiledText> found = find(hash);
+        GLINT_TRY(auto folded,
+                  found ? Result<CompiledText>(std::move(*found)) : compile(*text.source, hash, folding));
+        folded.folded = true;
+        return folded;
+    }
+
+    Result<CompiledText> compile(const ModuleSource& source, const TextHash& hash,
+                                 const ShaderCompileOptions& options) {
+        GLINT_TRY(const auto shader, shaderOf(source));
+        return keep(hash, compileMeasured(shader, options, source.link));
     }
 
     Result<CompiledText> join(const DistinctTexts::Text& text) {
@@ -269,25 +287,26 @@ private:
     Result<CompiledText> joinOf(const DistinctTexts::Text& text, std::span<const CachedModule* const> parts,
                                 int jobs) {
         GLINT_TRY(const auto shader, shaderOf(*text.source));
-        return keep(text, joinMeasured(shader, options_, parts, jobs));
+        return keep(text.hash, joinMeasured(shader, options_, parts, jobs));
     }
 
-    Result<CompiledText> keep(const DistinctTexts::Text& text, Result<CachedModule> module) {
+    Result<CompiledText> keep(const TextHash& hash, Result<CachedModule> module) {
         if (!module) {
             return module.error();
         }
         if (cache_ != nullptr) {
-            cache_->put(text.hash, *module);
+            cache_->put(hash, *module);
         }
         CompiledText compiled = textOf(std::move(*module), true);
         if (warm_ != nullptr) {
-            warm_->putModule(text.hash, compiled.module);
+            warm_->putModule(hash, compiled.module);
         }
         return compiled;
     }
 
     const std::vector<DistinctTexts::Text>& texts_;
     ShaderCompileOptions options_;
+    bool foldsNew_;
     ModuleCache* cache_;
     WarmModules* warm_;
     const std::function<void(std::size_t, std::size_t)>& progress_;
@@ -331,9 +350,10 @@ std::vector<CompiledModule> makeModules(std::vector<ModuleSource>& sources, cons
 
 Result<std::vector<CompiledModule>> compileModules(
     std::vector<ModuleSource> sources, int jobs, const ShaderCompileOptions& options, ModuleCache* cache,
-    WarmModules* warm, const std::function<void(std::size_t, std::size_t)>& progress) {
+    WarmModules* warm, NewShaders newShaders, const std::function<void(std::size_t, std::size_t)>& progress) {
     const DistinctTexts distinct(sources, options);
-    GLINT_TRY(auto compiled, TextCompiler(distinct.texts(), options, cache, warm, progress).run(jobs));
+    GLINT_TRY(auto compiled,
+              TextCompiler(distinct.texts(), options, cache, warm, newShaders, progress).run(jobs));
     return makeModules(sources, distinct, compiled);
 }
 

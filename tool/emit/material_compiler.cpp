@@ -26,7 +26,7 @@ struct MaterialCompiler::State {
     gltf::ImportOptions import{};
     std::optional<CacheStore> store{};
     std::optional<ModuleCache> modules{};
-    std::mutex compiling{};  // guards `warm`
+    std::mutex compiling{};  // guards all of this
     WarmModules warm{};
 };
 
@@ -54,8 +54,9 @@ Result<MaterialCompiler> MaterialCompiler::create(Settings settings, const std::
     return MaterialCompiler(std::move(state));
 }
 
-Result<CompiledMaterials> MaterialCompiler::compile(const gltf::MaterialSet& set) {
+Result<CompiledMaterials> MaterialCompiler::compile(const gltf::MaterialSet& set, NewShaders newShaders) {
     const std::lock_guard lock(state_->compiling);
+    state_->settings.compile.newShaders = newShaders;
     CompiledMaterials compiled;
     GLINT_TRY(compiled.scene, gltf::importMaterials(set, state_->import));
     GLINT_TRY(auto build, resolve(std::span(&compiled.scene, 1), state_->settings));
@@ -66,6 +67,8 @@ Result<CompiledMaterials> MaterialCompiler::compile(const gltf::MaterialSet& set
         return package.error();
     }
     compiled.package = std::move(*package);
+    compiled.folded =
+        static_cast<std::size_t>(std::ranges::count_if(compiled.package.modules, &CompiledModule::folded));
     compiled.messages = compiled.scene.warnings;
     std::ranges::move(build.messages, std::back_inserter(compiled.messages));
     if (state_->store && state_->store->trouble()) {

@@ -39,10 +39,11 @@ Result<std::vector<ModuleSource>> makeModuleSources(const gltf::SceneList& scene
 // Compiles on `jobs` threads (0: one for each core). Equal texts are compiled once, those of parts too, and
 // texts that `cache` or `warm` has are not compiled; both may be null. Neither the result nor the reported
 // error depends on `jobs`: if there are several errors, it is that of the first module. Modules with equal
-// SPIR-V get the same `file`, that of the first of them. `progress` is CompileSettings::progress.
+// SPIR-V get the same `file`, that of the first of them. `newShaders` and `progress` are those of
+// CompileSettings.
 Result<std::vector<CompiledModule>> compileModules(
     std::vector<ModuleSource> sources, int jobs, const ShaderCompileOptions& options,
-    ModuleCache* cache = nullptr, WarmModules* warm = nullptr,
+    ModuleCache* cache = nullptr, WarmModules* warm = nullptr, NewShaders newShaders = NewShaders::Optimized,
     const std::function<void(std::size_t, std::size_t)>& progress = {});
 
 // Takes every module from `folder`, where `glint compile-module` left them. Errors are those of

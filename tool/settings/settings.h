@@ -84,6 +84,14 @@ constexpr std::span<const Named<DiskLights>> namesOf(DiskLights /*type*/) {
     return kDiskLightsNames;
 }
 
+// What becomes of shaders that neither the cache nor the memory of the process has.
+enum class NewShaders : std::uint8_t {
+    Optimized,
+    // They are compiled as without CompileSettings::optimize, in a third of the time, unless they are joined
+    // from parts.
+    Folded,
+};
+
 struct CompileSettings {
     std::uint32_t strategies = package::kDefaultStrategies;
     std::uint32_t tracers = package::kTracerRayQuery;
@@ -134,6 +142,7 @@ struct CompileSettings {
     bool emitLinkable = false;  // writes the same functions as a SPIR-V module that can be linked, there
     bool debugInfo = false;     // keeps names in the SPIR-V
     bool optimize = true;       // as in ShaderCompileOptions
+    NewShaders newShaders = NewShaders::Optimized;
     // A folder with files that stand in for those of shaders/host; empty: none (resolve/host.h).
     std::string host{};
     // The choice that led to `strategies`, for the manifest. Empty if the user named the strategies.

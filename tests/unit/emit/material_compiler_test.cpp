@@ -44,16 +44,17 @@ std::ptrdiff_t countCompiled(const compiler::CompiledMaterials& compiled) {
     return count;
 }
 
+std::map<std::string, base::Bytes> filesOf(const compiler::CompiledMaterials& compiled) {
+    std::map<std::string, base::Bytes> files;
+    for (const compiler::PackageFile& file : compiled.package.files) {
+        files[file.name].assign(file.bytes.begin(), file.bytes.end());
+    }
+    return files;
+}
+
 TEST(MaterialCompiler, CompilesOnlyWhatIsNew) {
     const test::TemporaryFolder folder;
     gltf::MaterialSet set = smallSet();
-    const auto filesOf = [](const compiler::CompiledMaterials& compiled) {
-        std::map<std::string, base::Bytes> files;
-        for (const compiler::PackageFile& file : compiled.package.files) {
-            files[file.name].assign(file.bytes.begin(), file.bytes.end());
-        }
-        return files;
-    };
     std::map<std::string, base::Bytes> last;
     {
         Result<compiler::MaterialCompiler> compiler =
@@ -107,6 +108,37 @@ TEST(MaterialCompiler, CompilesOnlyWhatIsNew) {
     for (std::thread& thread : threads) {
         thread.join();
     }
+}
+
+TEST(MaterialCompiler, FoldsNewShadersUntilTheyAreOptimized) {
+    compiler::Settings settings = smallSettings();
+    settings.compile.strategies = package::kStrategyVisibility;
+    compiler::MaterialCompiler compiler = must(compiler::MaterialCompiler::create(settings));
+    const auto compile = [&](const gltf::MaterialSet& set, compiler::NewShaders newShaders) {
+        return must(compiler.compile(set, newShaders));
+    };
+    gltf::MaterialSet set = smallSet();
+    const compiler::CompiledMaterials before = compile(set, compiler::NewShaders::Optimized);
+    EXPECT_EQ(before.folded, 0U);
+
+    set.materials.push_back(
+        {.name = "coat", .values = {{"clearcoatFactor", {1}}, {"sheenColorFactor", {1, 1, 1}}}});
+    const compiler::CompiledMaterials soon = compile(set, compiler::NewShaders::Folded);
+    EXPECT_EQ(countCompiled(soon), 1);
+    EXPECT_EQ(soon.folded, 1U);
+    // The same again comes from memory, and is still not optimised.
+    const compiler::CompiledMaterials same = compile(set, compiler::NewShaders::Folded);
+    EXPECT_EQ(countCompiled(same), 0);
+    EXPECT_EQ(same.folded, 1U);
+
+    const compiler::CompiledMaterials whole = compile(set, compiler::NewShaders::Optimized);
+    EXPECT_EQ(countCompiled(whole), 1);
+    EXPECT_EQ(whole.folded, 0U);
+    EXPECT_LT(whole.package.spirvBytes, soon.package.spirvBytes);
+    compiler::MaterialCompiler other = must(compiler::MaterialCompiler::create(settings));
+    EXPECT_TRUE(filesOf(whole) == filesOf(must(other.compile(set))));
+    // What was optimised once is taken.
+    EXPECT_TRUE(filesOf(compile(set, compiler::NewShaders::Folded)) == filesOf(whole));
 }
 
 TEST(MaterialCompiler, RefusesPacksThatAreNotThere) {

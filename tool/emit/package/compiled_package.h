@@ -35,6 +35,7 @@ struct CompiledModule {
     SpirvStatistics statistics;
     std::uint64_t hash = 0;  // of the bytes of `spirv`
     bool compiled = true;    // in this run; false if it was cached or has the text of another module
+    bool folded = false;     // by NewShaders::Folded
     // How many of the parts that it was joined from in this run were compiled, and how many were cached.
     // Parts of several modules count for the first of them.
     int partsCompiled = 0;
