@@ -36,7 +36,7 @@ void addOnce(std::vector<AttributeMask>& masks, AttributeMask mask) {
 }  // namespace
 
 void makeEditable(const Package& package, SceneViewData& data) {
-    data.moves = data.editable = true;
+    data.moves = data.editable = data.sealed = true;
     // Room for the textures of all scenes of the package, in both uses, and for some more.
     for (std::uint32_t i = 0; i < package.sceneCount(); ++i) {
         data.textureRoom += static_cast<std::uint32_t>(package.scene(i).textures.size());

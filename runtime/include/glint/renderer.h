@@ -101,7 +101,8 @@ public:
     // prepare images and tables for all that follow, so they must be submitted. FrameOptions::environment may
     // change and the one before may be destroyed while frames are in flight; finished() frees it. With an
     // error nothing is recorded. Errors: "camera", "sky", "frame-options", "environment-missing",
-    // "environment-unread", and those of memory and Vulkan's calls.
+    // "environment-unread", "scene-package" (the scene has sealed parts that SceneEditor::record() has to
+    // part for this strategy), and those of memory and Vulkan's calls.
     Status record(VkCommandBuffer commands, const FrameOptions& frame);
 
     // The accumulated linear image. After the first recording its layout is GENERAL; a compute shader writes

@@ -211,6 +211,12 @@ Status takeEnvironment(Renderer::State& state, const std::shared_ptr<const Envir
 // All that can fail comes before the first command is recorded.
 Status Renderer::record(VkCommandBuffer commands, const FrameOptions& frame) try {
     GLINT_TRY_DO(checkFrame(frame, state_->options));
+    if (state_->drawn.joinedBlases > 0 && package::infoOf(state_->choice.strategy).ownPipeline) {
+        return makeError("scene-package", "",
+                         "the scene has BLASes of several primitives, whose shaders this strategy can't tell "
+                         "apart",
+                         "call SceneEditor::record() before, which builds others in their place");
+    }
     GLINT_TRY_DO(checkOutside(state_->size, outsideOf(frame)));
     if (state_->pipelines.background) {
         orderByHits(*state_);

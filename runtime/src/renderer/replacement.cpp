@@ -321,24 +321,9 @@ void PipelineDisposal::destroyOne() {
     }
 }
 
-namespace {
-
-bool readsTables(const Package& package) {
-    return (package.shape().strategies & package::pipelineStrategies()) != 0;
-}
-
-}  // namespace
-
 Status checkUse(package::Passes passes, const Package& package, const DrawnScene& scene) {
     GLINT_TRY_DO(checkPasses(passes, package));
     GLINT_TRY_DO(checkRecords(package, scene.records));
-    if (readsTables(package) && scene.joinedBlases > 0) {
-        return makeError(
-            "scene-package", "",
-            "the package has a strategy with a ray tracing pipeline of its own, and parts of the "
-            "scene are sealed",
-            "seal them after this, or upload the scene with this package");
-    }
     return package.lightSamples() == 0 || scene.hasLightTree()
                ? okStatus()
                : makeError("scene-package", "",
@@ -351,9 +336,15 @@ void enter(PackageUser& state, const Package& package) {
     state.package = std::shared_ptr<const Package>(std::shared_ptr<void>(), &package);
     state.records = state.drawn.records;
     state.shaderIdsVersion = state.drawn.shaderIdsVersion;
-    const std::lock_guard lock(state.users->mutex);
-    state.users->all.push_back(&state);
-    state.users->readTables = state.users->readTables || readsTables(package);
+    const bool readsTables = package::infoOf(state.choice.strategy).ownPipeline;
+    {
+        const std::lock_guard lock(state.users->mutex);
+        state.users->all.push_back(&state);
+        state.users->readTables = state.users->readTables || readsTables;
+    }
+    if (readsTables) {
+        state.drawn.partBlases();
+    }
 }
 
 void leave(PackageUser& state) {

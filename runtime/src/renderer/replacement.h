@@ -110,7 +110,8 @@ struct PackageUser : PassState {
 // Checks that the package has the passes, and that the scene's records are its own. Errors: "package-passes",
 // "scene-package".
 Status checkUse(package::Passes passes, const Package& package, const DrawnScene& scene);
-// These begin and end the use of the scene with a package.
+// These begin and end the use of the scene with a package. A strategy with a pipeline of its own finds the
+// shader of a hit by the instance of the TLAS, so DrawnScene::joinedBlases must be 0 before its recordings.
 void enter(PackageUser& user, const Package& package);
 void leave(PackageUser& user);
 

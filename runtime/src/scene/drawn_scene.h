@@ -46,6 +46,9 @@ struct DrawnScene {
     virtual Result<RetiredLot> recordReplacement(const std::shared_ptr<const Package>& package,
                                                  std::uint32_t index, VkCommandBuffer commands) = 0;
 
+    // Lets the next recording of edits build other BLASes in the place of those that joinedBlases counts.
+    virtual void partBlases() {}
+
     // Returns whether there is a hierarchy of lights, for packages with Package::lightSamples().
     virtual bool hasLightTree() const = 0;
 
@@ -61,7 +64,7 @@ struct DrawnScene {
     struct Users {
         std::mutex mutex;
         std::vector<PackageUser*> all;
-        bool readTables = false;  // some may read the shader binding table
+        bool readTables = false;  // some have read the shader binding table, or will
     };
     std::shared_ptr<Users> users = std::make_shared<Users>();
 };

@@ -236,6 +236,10 @@ const Buffer& instanceRecords(const GpuScene::State& state) {
     return state.store->instances.device;
 }
 
+void GpuScene::State::partBlases() {
+    glint::partBlases(*store);
+}
+
 bool GpuScene::State::hasLightTree() const {
     return store->buildsTree;
 }

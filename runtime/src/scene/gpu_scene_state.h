@@ -91,6 +91,7 @@ struct GpuScene::State final : DrawnScene {
     Result<PackageFit> fit(const std::shared_ptr<const Package>& other) const override;
     Result<RetiredLot> recordReplacement(const std::shared_ptr<const Package>& other, std::uint32_t index,
                                          VkCommandBuffer commands) override;
+    void partBlases() override;
     bool hasLightTree() const override;
 
     MemoryPool pool;

@@ -427,6 +427,8 @@ void checkSeal(SceneStore& store, StoredInstance& instance);
 void leaveForm(SceneStore& store, StoredInstance& instance);
 // Retires the BLASes of a form that no instance has.
 void retireForm(SceneStore& store, SealedForm& form);
+// Unseals instances whose BLASes have several primitives, and seals them again as they can be.
+void partBlases(SceneStore& store);
 // Gives instances that are to be sealed their forms, makes the BLASes that others lack, and retires those
 // that no instance has. Errors: those of memory; another call goes on from there.
 Status settleBlases(SceneStore& store);

@@ -409,6 +409,16 @@ void forgetDecisions(SceneStore& store, std::uint32_t material) {
     }
 }
 
+void partBlases(SceneStore& store) {
+    store.instanceSlots.forEach([&](InstanceHandle handle, StoredInstance& instance) {
+        if (instance.form != nullptr && joinedIn(*instance.form) > 0) {
+            unplace(store, instance);
+            leaveForm(store, instance);
+            store.sealing.insert(handle.index);
+        }
+    });
+}
+
 Status settleBlases(SceneStore& store) {
     for (; !store.sealing.empty(); store.sealing.erase(store.sealing.begin())) {
         GLINT_TRY_DO(takeForm(store, store.instanceSlots.handleAt(*store.sealing.begin())));
