@@ -81,8 +81,8 @@ trap 'rm -rf "$scratch"' EXIT
 # readers, which the corpora and the tests reach. Shorter ones run several times as fast.
 longest() {
     case $1 in
-        lock) echo 1024 ;;
-        declaration | glsl | material_list | image | profile | cache) echo 4096 ;;
+        lock | glsl) echo 1024 ;;
+        declaration | material_list | image | profile | cache) echo 4096 ;;
         manifest | gltf_*) echo 8192 ;;
         *) echo 16384 ;;
     esac

@@ -123,9 +123,15 @@ TEST(DropUnused, KeepsWhatItCantTell) {
           "#if A\nvoid a(int x) {\n#else\nvoid a() {\n#endif\n}\nvoid main() {}\n",
           "#define JOIN(T) T##Array\nvoid uintArray() {}\nvoid main() { JOIN(uint)(); }\n",
           "#define JOIN(a, b) a##b\nvoid join() {}\nvoid main() { JOIN(jo, in)(); }\n",
-          "#ifndef X\n#define X 1\n#endif\nvoid main() {}\n", "void never() {\n"}) {
+          "#ifndef X\n#define X 1\n#endif\nvoid main() {}\n", "void never() {\n",
+          "void main() {}\n/* never ends\n"}) {
         EXPECT_EQ(dropUnused(text), text);
     }
+}
+
+TEST(DropUnused, DropsWhatOnlyAnUnusedMacroPastes) {
+    EXPECT_EQ(dropUnused("#define JOIN(T) T##Array\nvoid uintArray() {}\nvoid main() {}\n"),
+              "void main() {}\n");
 }
 
 TEST(DropUnused, TakesCommentsWithTheirListOfMacros) {
@@ -167,6 +173,18 @@ TEST(EssentialText, IsWithoutCommentsPlacesAndBlanks) {
         "#version 460\nint a;\nint e = 1 / 2;\n");
 }
 
+TEST(GlslTokens, PairsOfBracketsNest) {
+    const std::vector<compiler::GlslToken> tokens = compiler::splitTokens("{ ( } [ )");
+    ASSERT_EQ(tokens.size(), 5U);
+    for (const compiler::GlslToken& token : tokens) {
+        EXPECT_EQ(token.match, compiler::GlslToken::kNone) << token.text;
+    }
+    const std::vector<compiler::GlslToken> nested = compiler::splitTokens("{ ( } ) }");
+    EXPECT_EQ(nested[1].match, 3U);
+    EXPECT_EQ(nested[0].match, 4U);
+    EXPECT_EQ(nested[2].match, compiler::GlslToken::kNone);
+}
+
 TEST(ConstParameters, AreThoseThatTheirFunctionsDoNotWrite) {
     const auto of = [](const std::string& parameters, const std::string& body) {
         const std::string rest = ") { " + body + " }\n";
@@ -191,8 +209,9 @@ TEST(ConstParameters, LeaveFunctionsWhoseTypesOthersKnow) {
     const std::string text =
         "float a(float x);\nfloat a(float x) { return x; }\nfloat b(float x) { return x; }\n";
     EXPECT_EQ(compiler::withConstParameters(text, std::vector<std::string>{"b"}), text);
-    for (const char* const broken : {"void a(int x", "void a(int x) { x[", "void a(int x) { x.",
-                                     "void a(int x,\n#if A\nint x) {}", "}}) {", ""}) {
+    for (const char* const broken :
+         {"void a(int x", "void a(int x) { x[", "void a(int x) { x.", "void a(int x,\n#if A\nint x) {}",
+          "}}) {", "void a(int x) { ) x; }", "void a(int x) { b(x; }", ""}) {
         EXPECT_GE(compiler::withConstParameters(broken, {}).size(), std::string_view(broken).size());
     }
 }

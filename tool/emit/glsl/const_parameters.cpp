@@ -35,10 +35,16 @@ public:
     bool touches(std::size_t index) const {
         return !at(index + 1).empty() && at(index).data() + 1 == at(index + 1).data();
     }
+    // Returns whether the token is a bracket that another one closes, or that closes another one.
+    bool opens(std::size_t index) const {
+        return index < all_.size() && all_[index].match != GlslToken::kNone && all_[index].match > index;
+    }
+    bool closes(std::size_t index) const {
+        return all_[index].match < index;
+    }
     // Returns the bracket that closes the one at `open`; size() if there is none.
     std::size_t closing(std::size_t open) const {
-        const std::size_t match = all_[open].match;
-        return match == GlslToken::kNone || match < open ? all_.size() : match;
+        return opens(open) ? all_[open].match : all_.size();
     }
 
 private:
@@ -99,8 +105,8 @@ Functions functionsOf(const GlslTokens& tokens) {
                 functions.writing.insert(name);
             }
         }
-        if (tokens.at(close + 1) == "{") {
-            const std::size_t end = tokens.closing(close + 1);
+        const std::size_t end = tokens.closing(close + 1);
+        if (tokens.at(close + 1) == "{" && end < tokens.size()) {
             functions.definitions.push_back({name, parametersOf(tokens, at, close), close + 1, end});
         } else {
             functions.declared.insert(name);
@@ -137,10 +143,10 @@ std::set<std::string_view> findWritten(const GlslTokens& tokens, const Definitio
     std::vector<bool> open;  // whether an argument within these brackets may be written
     for (std::size_t at = function.body; at < function.end; ++at) {
         const std::string_view token = tokens.at(at);
-        if (token == "(" || token == "[" || token == "{") {
+        if (tokens.opens(at)) {
             open.push_back((!open.empty() && open.back()) ||
                            (tokens.isWord(at - 1) && mayWrite(tokens.at(at - 1), writing)));
-        } else if (token == ")" || token == "]" || token == "}") {
+        } else if (tokens.closes(at)) {
             open.pop_back();
         }
         if (!names.contains(token) || tokens.at(at - 1) == ".") {

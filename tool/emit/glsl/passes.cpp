@@ -214,29 +214,22 @@ namespace {
 
 using Items = std::vector<GlslItem>;
 
-// Returns whether ## can form the item's name from one of `fragments`.
-bool mayBePasted(const GlslItem& item, const std::vector<std::string_view>& fragments) {
-    return std::ranges::any_of(fragments, [&](std::string_view fragment) {
-        return item.name.starts_with(fragment) || item.name.ends_with(fragment);
-    });
-}
-
 // Marks the items that are reached from those that must stay.
 std::vector<bool> findReached(const Items& items) {
     std::unordered_multimap<std::string_view, std::size_t> byName;
-    std::vector<std::string_view> fragments;
-    for (std::size_t i = 0; i < items.size(); ++i) {
-        if (!items[i].name.empty()) {
-            byName.emplace(items[i].name, i);
-        }
-        fragments.insert(fragments.end(), items[i].pasted.begin(), items[i].pasted.end());
-    }
     std::vector<bool> reached(items.size());
     std::vector<std::size_t> open;
+    const auto reach = [&](std::size_t item) {
+        if (!reached[item]) {
+            reached[item] = true;
+            open.push_back(item);
+        }
+    };
     for (std::size_t i = 0; i < items.size(); ++i) {
-        if (items[i].name.empty() || mayBePasted(items[i], fragments)) {
-            reached[i] = true;
-            open.push_back(i);
+        if (items[i].name.empty()) {
+            reach(i);
+        } else {
+            byName.emplace(items[i].name, i);
         }
     }
     while (!open.empty()) {
@@ -244,10 +237,12 @@ std::vector<bool> findReached(const Items& items) {
         open.pop_back();
         for (const std::string_view word : item.words) {
             const auto [begin, end] = byName.equal_range(word);
-            for (auto entry = begin; entry != end; ++entry) {
-                if (!reached[entry->second]) {
-                    reached[entry->second] = true;
-                    open.push_back(entry->second);
+            std::for_each(begin, end, [&](const auto& entry) { reach(entry.second); });
+        }
+        for (const std::string_view fragment : item.pasted) {
+            for (std::size_t i = 0; i < items.size(); ++i) {
+                if (items[i].name.starts_with(fragment) || items[i].name.ends_with(fragment)) {
+                    reach(i);
                 }
             }
         }

@@ -83,13 +83,15 @@ std::vector<GlslToken> splitTokens(std::string_view glsl) {
         } else if (first != ' ' && commentLength(piece) == 0) {
             isDirective = isDirective || (startsLine && first == '#');
             startsLine = false;
-            const bool opens = first == '(' || first == '{' || first == '[';
-            const bool closes = first == ')' || first == '}' || first == ']';
-            if (opens && !isDirective) {
+            constexpr std::string_view kOpening = "({[";
+            constexpr std::string_view kClosing = ")}]";
+            const std::size_t closes = kClosing.find(first);
+            if (kOpening.find(first) != std::string_view::npos && !isDirective) {
                 open.push_back(tokens.size());
             }
             tokens.push_back({piece, isDirective});
-            if (closes && !isDirective && !open.empty()) {
+            if (closes != std::string_view::npos && !isDirective && !open.empty() &&
+                tokens[open.back()].text.front() == kOpening[closes]) {
                 tokens.back().match = open.back();
                 tokens[open.back()].match = tokens.size() - 1;
                 open.pop_back();
@@ -293,10 +295,12 @@ private:
         }
         return rest_.substr(0, end);
     }
-    // Takes `text` and the line break after it.
+    // Takes `text`, with which the rest begins, and the line break after it. A comment without an end has the
+    // last line break itself.
     void take(std::string_view text) {
-        line_ += 1 + static_cast<std::size_t>(std::ranges::count(text, '\n'));
-        rest_.remove_prefix(std::min(text.size() + 1, rest_.size()));
+        const std::string_view taken = rest_.substr(0, text.size() + 1);
+        line_ += static_cast<std::size_t>(std::ranges::count(taken, '\n')) + (taken.ends_with('\n') ? 0 : 1);
+        rest_.remove_prefix(taken.size());
     }
     void addItem(std::string_view line) {
         GlslItem item;

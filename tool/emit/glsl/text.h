@@ -64,7 +64,9 @@ struct GlslToken {
 
     std::string_view text;
     bool isDirective = false;
-    std::size_t match = kNone;  // of a bracket outside of directives: its partner
+    // Of a bracket outside of directives: its partner. Pairs of partners nest; a bracket that would break this
+    // has none.
+    std::size_t match = kNone;
 };
 
 // Returns the tokens of a text in order, without blanks and comments.
