@@ -167,6 +167,9 @@ void ModelBuilder::collect(File& file) {
     file.object = members.has("extension") ? addObject(members.text("extension"), true)
                   : members.has("object")  ? addObject(members.text("object"), false)
                                            : 0;
+    if (members.has("object") && !isOfPack_) {
+        model_.plainBase = name;
+    }
     if (members.has("neutral") || members.has("extension")) {
         Feature feature;
         feature.name = name;

@@ -499,6 +499,7 @@ public:
     std::vector<FeatureCode> code;           // in the order in which it runs
     std::vector<ModelSource> sources;        // GLSL of packs; that of Glint's own features is embedded
     std::vector<PackFile> files;             // all files of packs, sorted by name
+    std::string plainBase;                   // the declaration of the base of materials that name none
     FeatureMask unlit = 0;                   // features without light
     FeatureMask bothSides = 0;               // features that let light through to the far side
     FeatureMask ownModels = 0;               // models whose GLSL stands in place of glTF's base

@@ -134,5 +134,12 @@ TEST(DecidedGlsl, LinesKeepTheirPlaces) {
     EXPECT_EQ(unit.number(2), 6);
 }
 
+TEST(DecidedGlsl, TextsThatEndEarlyStay) {
+    for (const char* const text :
+         {"a ? b =\n", "= a ? b : c\n", "if (true\n", "if (false) f( else\n", "? :\n"}) {
+        EXPECT_EQ(cutDecided(text), text);
+    }
+}
+
 }  // namespace
 }  // namespace glint::compiler

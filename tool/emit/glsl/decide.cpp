@@ -301,10 +301,12 @@ private:
     bool bounds(std::size_t at) const {
         if (is(at, "=")) {
             const auto touches = [&](std::size_t first) {
-                return tokens_[first].text.data() + 1 == tokens_[first + 1].text.data();
+                return first + 1 < tokens_.size() &&
+                       tokens_[first].text.data() + 1 == tokens_[first + 1].text.data();
             };
             const bool endsComparison =
-                touches(at - 1) && (is(at - 1, "=") || is(at - 1, "!") || is(at - 1, "<") || is(at - 1, ">"));
+                at > 0 && touches(at - 1) &&
+                (is(at - 1, "=") || is(at - 1, "!") || is(at - 1, "<") || is(at - 1, ">"));
             return !endsComparison && !(touches(at) && is(at + 1, "="));
         }
         constexpr std::string_view kBounds = ";,?:{}()[]";

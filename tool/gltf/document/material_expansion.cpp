@@ -22,7 +22,6 @@ using materials::MaterialModel;
 
 namespace {
 
-constexpr std::string_view kCoreModel = "metallicRoughness";
 constexpr std::uint32_t kSegments = 24;
 constexpr std::uint32_t kRings = 12;
 constexpr double kGap = 2.3;  // of the centres of spheres, in largest radii
@@ -251,8 +250,8 @@ private:
 
     void readModel(const MaterialDescription& listed, std::size_t index, Json& material) {
         base_ = -1;
-        baseName_ = listed.model.empty() ? std::string(kCoreModel) : listed.model;
-        if (baseName_ == kCoreModel) {
+        baseName_ = listed.model.empty() ? model_.plainBase : listed.model;
+        if (baseName_ == model_.plainBase) {
             return;
         }
         const auto isBase = [](const materials::Feature& feature) {
@@ -260,7 +259,7 @@ private:
         };
         const int found = model_.findFeature(baseName_);
         if (found < 0 || !isBase(model_.features[static_cast<std::size_t>(found)])) {
-            std::vector<std::string> names{std::string(kCoreModel)};
+            std::vector<std::string> names{model_.plainBase};
             for (const materials::Feature& feature : model_.features) {
                 if (isBase(feature)) {
                     names.push_back(feature.name);

@@ -120,7 +120,6 @@ Ingredients ingredientsOf(const materials::MaterialModel& model, const materials
 }
 
 // The bases that layers of packs lie over, and Glint's own that is checked beside models, are glTF's.
-constexpr const char* kBaseDeclaration = "metallicRoughness";
 constexpr const char* kMetallic = "metallicFactor";
 constexpr const char* kRoughness = "roughnessFactor";
 
@@ -360,7 +359,7 @@ Result<CheckedScene> makeCheckedScene(const materials::MaterialModel& model, std
         material.doubleSided = true;  // It is also seen from behind.
         made.bases.push_back(addSquare(made.scene, material));
     }
-    const auto base = std::ranges::find(model.code, kBaseDeclaration, &materials::FeatureCode::name);
+    const auto base = std::ranges::find(model.code, model.plainBase, &materials::FeatureCode::name);
     if (base != model.code.end()) {
         made.features.push_back({&*base, addBases(model, *base, combinations, made.scene)});
     }
