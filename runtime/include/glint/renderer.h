@@ -44,7 +44,8 @@ public:
     // "package-tracer" and "package-bounces" (the package lacks it), "package-fallback" (see
     // RendererOptions::backgroundPipelines), "device-tracer" and "device-ordering" (the device lacks it),
     // "pipeline-statistics", "render-size" (no pixels, or more than the device supports), and those of memory
-    // and Vulkan's calls.
+    // and Vulkan's calls. With a strategy that has a pipeline of its own, this is also an edit of a scene
+    // with sealed parts: the next SceneEditor::record() parts their BLASes.
     static Result<std::unique_ptr<Renderer>> create(Context& context, const Package& package, GpuScene& scene,
                                                     const RendererOptions& options);
     ~Renderer();
