@@ -64,8 +64,8 @@ struct GlslToken {
 
     std::string_view text;
     bool isDirective = false;
-    // Of a bracket outside of directives: its partner. Pairs of partners nest; a bracket that would break this
-    // has none.
+    // Of a bracket outside of directives: its partner. Pairs of partners nest; a bracket that would break
+    // this has none.
     std::size_t match = kNone;
 };
 
