@@ -84,7 +84,7 @@ constexpr std::span<const Named<DiskLights>> namesOf(DiskLights /*type*/) {
     return kDiskLightsNames;
 }
 
-// What becomes of shaders that neither the cache nor the memory of the process has.
+// The way in which shaders are compiled that neither the cache nor the memory of the process has.
 enum class NewShaders : std::uint8_t {
     Optimized,
     // They are compiled as without CompileSettings::optimize, in a third of the time, unless they are joined
