@@ -866,10 +866,6 @@ TEST(RaySteps, RefuseWhatTheyCannotDo) {
         idOf(Renderer::create(sharedContext(), stepPackage.package(), stepPackage.gpuScene(), renderer)),
         "package-passes");
     EXPECT_EQ(idOf((*shared)->update(VK_NULL_HANDLE, {}, {}, 0)), "engine-scene");
-    settings.lightSamples = 1;
-    const LoadedScene choosing(scene, settings);
-    EXPECT_EQ(idOf(RaySteps::create(sharedContext(), choosing.package(), **shared, options)), "scene-package")
-        << "the scene has no hierarchy of lights";
 }
 
 // A scene of a host's own is checked before anything is made of it.

@@ -426,6 +426,30 @@ TEST_F(ReplacePackageScene, AllRenderersOfTheSceneSwitch) {
     expectEqualImage(draw(*anew), image, "made anew");
 }
 
+// The hierarchy of lights is part of a scene, whichever package it was uploaded with.
+TEST_F(ReplacePackageScene, RenderersOfASceneChooseLightsDifferently) {
+    gltf::Scene room = before_;
+    for (const float x : {-0.5F, 0.7F}) {
+        gltf::Light light;
+        light.type = gltf::LightType::Point;
+        light.position = {x, 0.5F, -1.5F};
+        room.lights.push_back(light);
+    }
+    compiler::CompileSettings settings = roomSettings(package::kStrategyUber);
+    settings.lightSamples = 0;
+    const std::shared_ptr<const Package> all = packageOf(room, settings);
+    settings.lightSamples = 1;
+    const std::shared_ptr<const Package> one = packageOf(room, settings);
+    const std::unique_ptr<GpuScene> scene = uploadScene(*all, room);
+    const RendererOptions options = optionsOf(package::kStrategyUber);
+    const std::unique_ptr<Renderer> weighing = makeRenderer(*all, *scene, options);
+    const std::unique_ptr<Renderer> choosing = makeRenderer(*one, *scene, options);
+    ASSERT_NE(choosing, nullptr);
+    const LinearImage before = draw(*weighing);
+    expectEqualImage(draw(*choosing), fresh(room, *one, options), "chosen by the hierarchy");
+    expectEqualImage(draw(*weighing), before, "all of them");
+}
+
 // Values that the host has given stay, also in longer records, and the material's other values are the new
 // package's.
 TEST_F(ReplacePackageScene, ValuesOfTheHostStay) {

@@ -110,8 +110,7 @@ public:
     // With ShadingPrecision::Half shaders also compute in 16-bit float. The device then needs
     // DeviceHandles::shaderFloat16.
     package::ShadingPrecision precision() const;
-    // Returns how many lights a surface chooses by a hierarchy, which GpuScene then builds; 0 if it takes
-    // all.
+    // Returns how many lights a surface chooses by the scene's hierarchy; 0 if it takes all.
     std::uint32_t lightSamples() const;
     // Returns whether surfaces sample the sky as a light. An environment map then needs
     // Environment::Options::sampled.

@@ -230,8 +230,8 @@ public:
     // decided only for instances of an upload with SceneView::sealed.
     Status seal(std::span<const InstanceHandle> instances);
 
-    // Lights keep their order when one is removed. In packages with a light hierarchy, record() builds it
-    // anew if a light or an emissive triangle that is one has changed. Error "scene-light".
+    // Lights keep their order when one is removed. record() builds the hierarchy of lights anew if a light,
+    // or an emissive triangle that is one, has changed. Error "scene-light".
     Result<LightHandle> addLight(const LightView& light);
     Status setLight(LightHandle light, const LightView& view);
     Status removeLight(LightHandle light);

@@ -345,35 +345,28 @@ bool Emitters::takeMaterials(std::span<const ChangingMaterial> changing) {
     return changes;
 }
 
-void Emitters::setLeaves(const LightTree& tree) {
+void Emitters::setLeaves(const LightTree& tree, std::span<const EmitterBounds> bounds) {
     for (gpu::EmitterRecord& record : records) {
         record.leaf = gpu::kNoEmitter;
     }
     for (std::uint32_t node = 0; node < tree.treeNodes; ++node) {
         const std::uint32_t next = tree.nodes[node].next;
         if ((next & gpu::kLightLeaf) != 0 && (next & gpu::kLightEmitter) != 0) {
-            records[next & ~(gpu::kLightLeaf | gpu::kLightEmitter)].leaf = node;
+            const std::uint32_t emitter = next & ~(gpu::kLightLeaf | gpu::kLightEmitter);
+            records[emitter].leaf = bounds[emitter].intensity > 0.0 ? node : gpu::kNoEmitter;
         }
-    }
-}
-
-void Emitters::setLeaves(std::span<const EmitterBounds> bounds) {
-    for (std::size_t i = 0; i < records.size(); ++i) {
-        records[i].leaf = bounds[i].intensity > 0.0 ? 0 : gpu::kNoEmitter;
     }
 }
 
 void followLights(std::span<const gpu::LightRecord> lights, std::span<const InstanceView> instances,
                   TreeChange change, Emitters& emitters, LightTree& tree) {
     const std::vector<EmitterBounds> bounds = emitters.boundsAt(instances);
-    if (change == TreeChange::None) {
-        emitters.setLeaves(bounds);
-    } else if (change == TreeChange::Refit) {
+    if (change == TreeChange::Refit) {
         refitLightTree(tree, lights, bounds);
     } else {
         tree = buildLightTree(lights, bounds, change == TreeChange::BuildWithDark);
-        emitters.setLeaves(tree);
     }
+    emitters.setLeaves(tree, bounds);
 }
 
 }  // namespace glint

@@ -143,18 +143,17 @@ public:
     // Takes the values of materials that have changed. They are sorted by their numbers. Returns whether a
     // triangle got darker or brighter.
     bool takeMaterials(std::span<const ChangingMaterial> changing);
-    // Stores where the tree has each triangle; without a tree, only whether it shines.
-    void setLeaves(const LightTree& tree);
-    void setLeaves(std::span<const EmitterBounds> bounds);
+    // Stores where the tree has each triangle that shines.
+    void setLeaves(const LightTree& tree, std::span<const EmitterBounds> bounds);
 
 private:
     package::EmissionEntry emission_{};
     std::vector<EmitterPart> parts_;  // in the order of `records`
 };
 
-// How a hierarchy of lights follows them: there is none, it gets new bounds, or it is built anew. A new one
-// may have leaves for triangles that are dark and may shine later.
-enum class TreeChange { None, Refit, Build, BuildWithDark };
+// How a hierarchy of lights follows them: it gets new bounds, or it is built anew. A new one may have leaves
+// for triangles that are dark and may shine later.
+enum class TreeChange { Refit, Build, BuildWithDark };
 
 // Brings the hierarchy, and the places of the triangles in it, to the lights and triangles as they are now.
 // TreeChange::Refit needs the triangles, and the types of the lights, of the last build.

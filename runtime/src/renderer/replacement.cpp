@@ -323,13 +323,7 @@ void PipelineDisposal::destroyOne() {
 
 Status checkUse(package::Passes passes, const Package& package, const DrawnScene& scene) {
     GLINT_TRY_DO(checkPasses(passes, package));
-    GLINT_TRY_DO(checkRecords(package, scene.records));
-    return package.lightSamples() == 0 || scene.hasLightTree()
-               ? okStatus()
-               : makeError("scene-package", "",
-                           "the package chooses lights by a hierarchy, and the scene was made with a package "
-                           "that takes all",
-                           "make the scene with this package, or compile both with the same --lights");
+    return checkRecords(package, scene.records);
 }
 
 void enter(PackageUser& state, const Package& package) {
@@ -424,11 +418,10 @@ bool joinReplacement(PackageUser& state) {
 void switchPackage(PackageUser& state, VkCommandBuffer commands) {
     std::vector<PackageUser*> users = usersWith(state);
     std::erase_if(users, [](const PackageUser* user) { return !user->next; });
-    // The scene gets the package that needs most of it: emissive triangles, or a hierarchy of lights.
+    // The scene gets the package that needs most of it: emissive triangles.
     const auto needs = [](const PackageUser* user) {
         const Package& next = *user->next->package;
-        return std::tuple(next.emission() != nullptr, next.lightSamples() > 0,
-                          user->passes() == package::Passes::Frame);
+        return std::pair(next.emission() != nullptr, user->passes() == package::Passes::Frame);
     };
     const NextPackage& leading = *(*std::ranges::max_element(users, {}, needs))->next;
     for (PackageUser* const user : users) {
@@ -455,8 +448,7 @@ void switchPackage(PackageUser& state, VkCommandBuffer commands) {
 }
 
 Status checkReplaced(const PackageUser& state) {
-    const bool lacksTree = state.package->lightSamples() > 0 && !state.drawn.hasLightTree();
-    if (state.drawn.records != state.records || lacksTree) {
+    if (state.drawn.records != state.records) {
         return makeError("package-replaced", "",
                          "EngineScene::update() has given the scene the content of another package",
                          "give that package to replacePackage()");

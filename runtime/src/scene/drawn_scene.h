@@ -49,9 +49,6 @@ struct DrawnScene {
     // Lets the next recording of edits build other BLASes in the place of those that joinedBlases counts.
     virtual void partBlases() {}
 
-    // Returns whether there is a hierarchy of lights, for packages with Package::lightSamples().
-    virtual bool hasLightTree() const = 0;
-
     Context::State& context;
     std::uint64_t records = 0;  // recordsHash()
     // The shader IDs of the shader binding table. Its number changes when they do without another package.

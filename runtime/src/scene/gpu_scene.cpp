@@ -240,10 +240,6 @@ void GpuScene::State::partBlases() {
     glint::partBlases(*store);
 }
 
-bool GpuScene::State::hasLightTree() const {
-    return store->buildsTree;
-}
-
 bool isChanging(const GpuScene::State& state) {
     return state.store->keeps();
 }

@@ -78,7 +78,6 @@ struct ScenePackage {
     std::vector<package::SamplerEntry> samplers;
     std::vector<Attribute> attributes;
     bool positionFetch = false;
-    bool lightTree = false;
     std::optional<package::EmissionEntry> emission{};
     std::vector<Emission> emissions;  // by material
     std::vector<Decided> decided;
@@ -92,7 +91,6 @@ struct GpuScene::State final : DrawnScene {
     Result<RetiredLot> recordReplacement(const std::shared_ptr<const Package>& other, std::uint32_t index,
                                          VkCommandBuffer commands) override;
     void partBlases() override;
-    bool hasLightTree() const override;
 
     MemoryPool pool;
     std::unique_ptr<SceneUpload> upload;                // null when the device has completed it

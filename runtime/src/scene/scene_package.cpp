@@ -168,9 +168,6 @@ Status checkEmission(const GpuScene::State& scene, const Package& package, const
         (!isReadAlike(*now.emission, *emission) || now.emissions != emissionsOf(package, known))) {
         return needsEditable(now.scene, "a material's emission changed, and emissive triangles are lights");
     }
-    if (package.lightSamples() > 0 && !now.lightTree && !scene.store->keeps()) {
-        return needsEditable(now.scene, "the package chooses lights by a hierarchy, which was not built");
-    }
     return okStatus();
 }
 
@@ -253,21 +250,18 @@ struct OtherPackage {
     MaterialTable layout;  // without records
     std::vector<ChangingMaterial> changing{};
     std::optional<package::EmissionEntry> emission{};
-    bool buildsTree = false;
     std::optional<EditedTables> edited{};    // of a scene that is edited
     std::optional<RecordStore> materials{};  // of a sealed one
 };
 
 void exchange(SceneStore& store, OtherPackage& other) {
     GpuScene::State& scene = store.scene;
-    store.lightsDirty = store.lightsDirty || store.buildsTree != other.buildsTree;
     std::swap(scene.package, other.package);
     std::swap(scene.records, other.records);
     std::swap(scene.shaderIds, other.shaderIds);
     std::swap(scene.materialLayout, other.layout);
     std::swap(scene.changing, other.changing);
     std::swap(store.emission, other.emission);
-    std::swap(store.buildsTree, other.buildsTree);
     if (!store.emission && other.emission) {
         forgetEmitters(store);
     }
@@ -312,7 +306,6 @@ Result<OtherPackage> otherPackage(const GpuScene::State& scene, const std::share
     if (package->emission() != nullptr) {
         other.emission = *package->emission();
     }
-    other.buildsTree = store.keeps() ? package->lightSamples() > 0 : store.buildsTree;
     if (store.editable) {
         GLINT_TRY(other.edited, editedTables(store, package, known));
         other.shaderIds = other.edited->cases.shaderIds();
@@ -341,7 +334,6 @@ ScenePackage describePackage(const Package& package, const PackageScene& known, 
     described.samplers.assign(known.samplers.begin(), known.samplers.end());
     described.attributes = attributesOf(package);
     described.positionFetch = package.positionFetch();
-    described.lightTree = package.lightSamples() > 0;
     takeTables(package, known, described);
     return described;
 }

@@ -36,7 +36,7 @@ struct SceneRecords {
     // The triangles that are lights, in packages with emissive lights. In a scene that neither moves nor is
     // edited they are on the device alone.
     Emitters emitters;
-    LightTree lightTree;  // in packages that choose lights by a hierarchy
+    LightTree lightTree;
     struct Counts {
         std::uint32_t lights = 0;
         std::uint32_t emitters = 0;

@@ -210,7 +210,6 @@ struct SceneStore : SceneRecords {
     LeafOrder leafOrder = nullptr;  // null: structures get their input as it is
     SceneView::VertexForm vertices = SceneView::VertexForm::Compact;
     bool dataAccess = false;                         // BLASes let shaders read positions
-    bool buildsTree = false;                         // the package chooses lights by a hierarchy
     std::optional<package::EmissionEntry> emission;  // none without emissive lights
     std::vector<package::SamplerEntry> samplers;     // of GpuScene::State::samplers
     DeviceImage white;                               // for places without a texture

@@ -295,10 +295,9 @@ void settleLights(SceneStore& store) {
     }
     std::vector<InstanceView> views;
     forEachEmissive(store, [&](const StoredInstance& instance) { views.push_back(poseOf(store, instance)); });
-    const TreeChange change = !store.buildsTree ? TreeChange::None
-                              : !store.moves    ? TreeChange::Build
-                              : restructured    ? TreeChange::BuildWithDark
-                                                : TreeChange::Refit;
+    const TreeChange change = !store.moves   ? TreeChange::Build
+                              : restructured ? TreeChange::BuildWithDark
+                                             : TreeChange::Refit;
     store.followLights(records, views, change);
 }
 

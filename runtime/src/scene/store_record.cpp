@@ -94,10 +94,9 @@ private:
         };
         std::array<ArrayTarget, kArrays> all{
             {target(store_.geometries), target(store_.instances), target(store_.materials),
-             target(store_.lights), target(store_.lightNodes, store_.buildsTree),
-             target(store_.emitterRecords, isLit), target(store_.firstEmitters, isLit),
-             target(store_.poses, isPosed), target(store_.deforms, isPosed),
-             target(store_.topLevel.records(), isPlaced)}};
+             target(store_.lights), target(store_.lightNodes), target(store_.emitterRecords, isLit),
+             target(store_.firstEmitters, isLit), target(store_.poses, isPosed),
+             target(store_.deforms, isPosed), target(store_.topLevel.records(), isPlaced)}};
         all.back().usage = VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
         for (std::size_t i = kPoseArray; i < kArrays && !keeps; ++i) {
             all[i].pool = &prepared_.brief;

@@ -21,7 +21,6 @@ SceneStore::SceneStore(GpuScene::State& owner, const Package& package, const Sce
       leafOrder(leafOrderFor(owner.context, view.traversalOrder)),
       vertices(view.vertices),
       dataAccess(package.positionFetch()),
-      buildsTree(package.lightSamples() > 0),
       topLevel(view.moves, leafOrder),
       emittersDirty(package.emission() != nullptr),
       building(owner.context) {

@@ -371,7 +371,6 @@ void takeLayout(const Package& package, const PackageScene& known, Host& host) {
     host.trustsTextures = package.trustTextures();
     host.ofPackage = static_cast<std::uint32_t>(known.materials.size());
     host.emission = package.emission() != nullptr ? std::optional(*package.emission()) : std::nullopt;
-    host.buildsTree = package.lightSamples() > 0;
     host.knowsDisks = package.diskLights();
 }
 
@@ -457,22 +456,12 @@ void gatherEmitters(EngineScene::State& state) {
 
 // Brings the hierarchy of lights to their present places. `refits`: there are the same lights.
 void settleLights(EngineScene::State& state, bool refits) {
-    if (!state.host.buildsTree) {
-        state.lightTree = {};
+    std::vector<InstanceView> instances(state.emitters.records.empty() ? 0 : state.placed.size());
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+        instances[i].objectToWorld = state.placed[i];
     }
-    if (state.host.buildsTree || state.host.emission) {
-        std::vector<InstanceView> instances(state.emitters.records.empty() ? 0 : state.placed.size());
-        for (std::size_t i = 0; i < instances.size(); ++i) {
-            instances[i].objectToWorld = state.placed[i];
-        }
-        const TreeChange change = !state.host.buildsTree ? TreeChange::None
-                                  : refits               ? TreeChange::Refit
-                                                         : TreeChange::BuildWithDark;
-        state.followLights(makeLightRecords(state.lightViews), instances, change);
-    } else {
-        state.lightNodes.shrink(0);
-        state.emitterRecords.shrink(0);
-    }
+    state.followLights(makeLightRecords(state.lightViews), instances,
+                       refits ? TreeChange::Refit : TreeChange::BuildWithDark);
 }
 
 // Brings triangles and lights to another content.

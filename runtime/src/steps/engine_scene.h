@@ -32,9 +32,6 @@ struct EngineScene::State final : DrawnScene, SceneRecords {
     Result<PackageFit> fit(const std::shared_ptr<const Package>& package) const override;
     Result<RetiredLot> recordReplacement(const std::shared_ptr<const Package>& package, std::uint32_t index,
                                          VkCommandBuffer commands) override;
-    bool hasLightTree() const override {
-        return host.buildsTree;
-    }
 
     // Records the changes of the stores, for a frame that is at or after the last one. `leftovers`, if given,
     // gets the resources that are no longer needed when the recording is complete; else complete() for the
@@ -87,7 +84,6 @@ struct EngineScene::State final : DrawnScene, SceneRecords {
         bool trustsTextures = false;  // Package::trustTextures()
         std::uint32_t ofPackage = 0;  // materials of the package, whose records come first
         std::optional<package::EmissionEntry> emission{};  // Package::emission()
-        bool buildsTree = false;                           // Package::lightSamples() is not 0
         bool knowsDisks = false;                           // Package::diskLights()
     };
     Host host;
