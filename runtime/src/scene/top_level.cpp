@@ -2,6 +2,7 @@
 
 #include "context/parallel.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace glint {
@@ -22,19 +23,27 @@ bool isMoved(const Instance& before, Instance after) {
 
 }  // namespace
 
+void TopLevel::setBox(std::uint32_t place, const Box& box) {
+    if (!keepsBoxes()) {
+        return;
+    }
+    boxes_.resize(std::max<std::size_t>(boxes_.size(), place + std::size_t{1}));
+    boxes_[place] = box;
+    // With one place more than there are boxes all of them are taken over.
+    if (updatable_ && touched_.size() <= boxes_.size()) {
+        touched_.push_back(place);
+    }
+}
+
 void TopLevel::set(const Instance& instance, const Box& box) {
     const auto [place, added] = places_.try_emplace(instance.instanceCustomIndex, records_.count());
     if (added) {
         records_.write(place->second, instance);
-        if (keepsBoxes()) {
-            boxes_.push_back(box);
-        }
+        setBox(place->second, box);
         restructured_ = true;
         return;
     }
-    if (keepsBoxes()) {
-        boxes_[place->second] = box;
-    }
+    setBox(place->second, box);
     const auto before = records_.read<Instance>(place->second);
     if (isSame(before, instance)) {
         return;
@@ -56,7 +65,7 @@ void TopLevel::remove(std::uint32_t geometry) {
         records_.write(place->second, moved);
         places_[moved.instanceCustomIndex] = place->second;
         if (keepsBoxes()) {
-            boxes_[place->second] = boxes_[last];
+            setBox(place->second, boxes_[last]);
         }
     }
     if (keepsBoxes()) {
@@ -80,11 +89,26 @@ BuildAction TopLevel::next(bool blasChanged, MotionView::Builds builds) const {
     return builtAnew ? BuildAction::Build : BuildAction::Refit;
 }
 
+void TopLevel::takeBoxes() {
+    if (!updatable_) {
+        return;
+    }
+    if (touched_.size() > boxes_.size()) {
+        built_ = boxes_;
+    } else {
+        built_.resize(boxes_.size());
+        for (const std::uint32_t place : touched_) {
+            if (place < boxes_.size()) {
+                built_[place] = boxes_[place];
+            }
+        }
+    }
+    touched_.clear();
+}
+
 void TopLevel::apply(BuildAction action) {
     if (action == BuildAction::Build) {
-        if (updatable_) {
-            built_ = boxes_;
-        }
+        takeBoxes();
         updates_ = 0;
         left_ = false;
     } else if (action == BuildAction::Refit) {
@@ -108,6 +132,7 @@ void TopLevel::prepare(BuildAction action) {
     }
     records_.replace(instances);
     boxes_ = permuted<Box>(boxes_, order);
+    touched_.assign(boxes_.size() + 1, 0);  // all
 }
 
 }  // namespace glint

@@ -54,13 +54,16 @@ private:
     bool keepsBoxes() const {
         return updatable_ || order_ != nullptr;
     }
+    void setBox(std::uint32_t place, const Box& box);
+    void takeBoxes();  // into built_
 
     bool updatable_;
     LeafOrder order_;
     RecordArray records_;
     std::unordered_map<std::uint32_t, std::uint32_t> places_;  // by custom index
     std::vector<Box> boxes_;                                   // by place; empty unless keepsBoxes()
-    std::vector<Box> built_;  // the same at the last build; empty unless the TLAS is updatable
+    std::vector<Box> built_;              // the same at the last build; empty unless the TLAS is updatable
+    std::vector<std::uint32_t> touched_;  // places whose boxes may differ from `built_`
     std::uint32_t updates_ = 0;
     bool restructured_ = true;
     bool changed_ = false;

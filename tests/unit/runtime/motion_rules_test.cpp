@@ -136,6 +136,12 @@ TEST(MotionRules, InstancesThatComeOrGoNeedABuild) {
     placed.move(7, box(9.5, 0, 0, 1));
     EXPECT_EQ(placed.top.records().count(), 2U);
     EXPECT_EQ(placed.next(), BuildAction::Refit);
+    placed.top.apply(BuildAction::Refit);
+    placed.move(7, box(11, 0, 0, 1));
+    EXPECT_EQ(placed.next(), BuildAction::Build) << "it is far from its place at the last build";
+    placed.build();
+    placed.move(7, box(12, 0, 0, 1));
+    EXPECT_EQ(placed.next(), BuildAction::Refit) << "of which only its own box was new";
     TopLevel fixed(false, nullptr);
     fixed.set({}, box(0, 0, 0, 1));
     fixed.apply(BuildAction::Build);
