@@ -13,6 +13,8 @@ namespace {
 // 256 GiB. Blocks of a memory type double up to it, so that small scenes take little memory.
 constexpr VkDeviceSize kBlockBytes = VkDeviceSize{64} << 20;
 constexpr VkDeviceSize kFirstBlockBytes = VkDeviceSize{1} << 20;
+// The most that a block without resources has.
+constexpr VkDeviceSize kSpareBytes = VkDeviceSize{4} << 20;
 
 VkMemoryPropertyFlags requiredFlags(MemoryUse use) {
     return use == MemoryUse::Device
@@ -113,7 +115,9 @@ Result<MemoryBlocks::Block*> MemoryPool::askHost(const VkMemoryRequirements& req
         .name = name.c_str()};
     HostServices::MemoryRange range;
     GLINT_TRY_DO(statusOf("HostServices::allocateMemory", context_->services.allocateMemory(request, range)));
-    return addBlock(range, tiling, requirements.size, use);
+    GLINT_TRY(Block* const block, addBlock(range, tiling, requirements.size, use));
+    block->isOfHost = true;
+    return block;
 }
 
 Result<MemoryBlocks::Block*> MemoryPool::makeBlock(std::uint32_t type, Tiling tiling, VkDeviceSize bytes,
@@ -247,8 +251,17 @@ void MemoryBlocks::release(const Allocation& place, const Range& range) {
         (added - 1)->end = added->end;
         free.erase(added);
     }
-    if (free.front().begin == 0 && free.front().end == block->bytes) {
+    if (!block->isEmpty()) {
+        return;
+    }
+    const auto spare = std::ranges::find_if(all, [&](const Block& other) {
+        return &other != &*block && other.isEmpty() && other.tiling == block->tiling &&
+               other.memory.range().type == block->memory.range().type;
+    });
+    if (!keepsSpare || block->isOfHost || block->bytes > kSpareBytes) {
         all.erase(block);
+    } else if (spare != all.end()) {
+        all.erase(spare->bytes < block->bytes ? spare : block);
     }
 }
 

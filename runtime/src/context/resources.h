@@ -89,13 +89,19 @@ struct MemoryBlocks {
         VkDeviceSize bytes = 0;
         std::vector<Range> free;  // by ascending offset; no two of them touch
         std::uint8_t* mapped = nullptr;
+        bool isOfHost = false;  // HostServices gave the memory
 
+        bool isEmpty() const {
+            return free.size() == 1 && free.front().end - free.front().begin == bytes;
+        }
         // Returns the first free range that has room, or none.
         std::vector<Range>::iterator findRoom(const VkMemoryRequirements& requirements);
     };
     std::vector<Block> all;
+    bool keepsSpare = false;  // MemoryPool::Use::EachFrame
 
-    // Takes back a range of the block that holds `place`. A block without a resource is freed.
+    // Takes back a range of the block that holds `place`. A block without a resource is freed, or kept as a
+    // spare one.
     void release(const Allocation& place, const Range& range);
     // Returns the size of all blocks, including memory that was not handed out.
     VkDeviceSize bytes() const;
@@ -105,9 +111,13 @@ struct MemoryBlocks {
 // that uses the pool.
 class MemoryPool {
 public:
+    // Memory that each frame takes and gives back stays allocated, up to 4 MiB of each kind.
+    enum class Use { Lasting, EachFrame };
     // `name` is that of its resources for debuggers, and must outlive it.
-    explicit MemoryPool(Context::State& context, const char* name = "scene")
-        : context_(&context), name_(name) {}
+    explicit MemoryPool(Context::State& context, const char* name = "scene", Use use = Use::Lasting)
+        : context_(&context), name_(name), blocks_(std::make_shared<MemoryBlocks>()) {
+        blocks_->keepsSpare = use == Use::EachFrame;
+    }
 
     // Takes memory of the preferred kind, or if there is none left, of any kind that fits. Errors:
     // "memory-type", "memory-size" (above the device's limit), "memory-count", "vulkan-call"; nothing has
@@ -138,7 +148,7 @@ private:
 
     Context::State* context_;
     const char* name_;
-    std::shared_ptr<MemoryBlocks> blocks_ = std::make_shared<MemoryBlocks>();
+    std::shared_ptr<MemoryBlocks> blocks_;
 };
 
 struct Buffer {

@@ -95,7 +95,10 @@ Result<std::unique_ptr<GpuScene>> GpuScene::upload(Context& context, const Packa
 }
 GLINT_CATCH
 
-GpuScene::State::State(Context::State& contextState) : DrawnScene(contextState), pool(contextState) {}
+GpuScene::State::State(Context::State& contextState)
+    : DrawnScene(contextState),
+      pool(contextState),
+      brief(contextState, "scene", MemoryPool::Use::EachFrame) {}
 GpuScene::State::~State() = default;
 
 GpuScene::GpuScene(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -223,7 +226,7 @@ std::vector<MemoryItem> GpuScene::memory() const {
 }
 
 std::uint64_t GpuScene::allocatedBytes() const {
-    std::uint64_t bytes = state_->pool.bytes() + state_->store->building.bytes();
+    std::uint64_t bytes = state_->pool.bytes() + state_->brief.bytes() + state_->store->building.bytes();
     bytes += state_->upload != nullptr ? state_->upload->pool.bytes() : 0;
     return bytes;
 }

@@ -93,6 +93,7 @@ struct GpuScene::State final : DrawnScene {
     void partBlases() override;
 
     MemoryPool pool;
+    MemoryPool brief;                                   // of what only one recording needs
     std::unique_ptr<SceneUpload> upload;                // null when the device has completed it
     ScenePackage package;                               // the package that draws the scene
     std::array<double, 3> origin{};                     // SceneView::origin, or that of the last MotionView

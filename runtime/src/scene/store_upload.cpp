@@ -372,7 +372,7 @@ private:
                 }
             });
         }
-        store_.ownUploader = std::make_unique<Uploader>(scene_.context, scene_.pool);
+        store_.ownUploader = std::make_unique<Uploader>(scene_.context, scene_.brief);
         store_.uploader = store_.ownUploader.get();
         store_.upload = nullptr;
     }

@@ -30,7 +30,7 @@ struct TextureStream::State {
     State(GpuScene::State& owner, std::uint32_t firstTexels)
         : scene(owner),
           firstSize(firstTexels),
-          uploader(std::make_unique<Uploader>(owner.context, owner.pool)) {}
+          uploader(std::make_unique<Uploader>(owner.context, owner.brief)) {}
 
     GpuScene::State& scene;
     std::uint32_t firstSize;                            // texels a side of the finest level that uploads take

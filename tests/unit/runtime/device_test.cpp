@@ -68,6 +68,22 @@ TEST_F(ContextTest, MemoryReturnsWithItsResourceAndOutlivesItsPool) {
     EXPECT_GT(kept.memory->pool->bytes(), 0U);
 }
 
+TEST_F(ContextTest, MemoryOfEachFrameStaysUnlessItIsLarge) {
+    Context::State& state = context().state();
+    MemoryPool pool(state, "scene", MemoryPool::Use::EachFrame);
+    const auto bytesAfter = [&](VkDeviceSize bytes) {
+        must(createBuffer(state, pool, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload));
+        return pool.bytes();
+    };
+    const VkDeviceSize small = bytesAfter(256);
+    EXPECT_GT(small, 0U);
+    EXPECT_EQ(bytesAfter(512), small) << "the same block";
+    const VkDeviceSize larger = bytesAfter(2 * small);
+    EXPECT_GE(larger, 2 * small);
+    EXPECT_LT(larger, 3 * small) << "of two the larger one stays";
+    EXPECT_EQ(bytesAfter(VkDeviceSize{5} << 20U), larger);
+}
+
 // Each pipeline of a renderer is made with these functions in the place of the device's.
 struct SeenPipelines {
     DeviceTable real;
