@@ -45,7 +45,7 @@ GLINT_CONSTANT(kSkyCounts, 16777216u);
 struct EmitterRecord {
     uint geometry;   // GeometryRecord index
     uint primitive;  // triangle within the geometry
-    uint leaf;       // its node of the hierarchy, 0 if there is none; kNoEmitter if the triangle is dark
+    uint leaf;       // its node of the hierarchy; kNoEmitter if the triangle is dark
 };
 
 // The choice of a ray by an effect or a path, for the light of emissive triangles that it finds. 8 bytes.

@@ -230,8 +230,9 @@ public:
     // decided only for instances of an upload with SceneView::sealed.
     Status seal(std::span<const InstanceHandle> instances);
 
-    // Lights keep their order when one is removed. record() builds the hierarchy of lights anew if a light,
-    // or an emissive triangle that is one, has changed. Error "scene-light".
+    // Lights keep their order when one is removed. If lights or emissive triangles come or go, record()
+    // builds the hierarchy of lights anew. If they move or get brighter, it gives them other bounds in the
+    // one that is there, of which trim() makes a new one. Error "scene-light".
     Result<LightHandle> addLight(const LightView& light);
     Status setLight(LightHandle light, const LightView& view);
     Status removeLight(LightHandle light);
@@ -249,7 +250,8 @@ public:
     // they alone used. Command buffers of these frames may not be submitted again.
     void complete(std::uint64_t frame);
     // Lets the next record() shrink the buffers of records and the TLAS to their contents, but not below
-    // their size at the upload. Without it they only grow.
+    // their size at the upload, and build a hierarchy of lights anew that lights have moved in. Without it
+    // buffers only grow.
     void trim();
 
     // Returns how many bytes wait for complete(): staging, scratch, and everything that was removed or

@@ -288,7 +288,8 @@ Emitters::Emitters(const EmissionEntry& emission, std::vector<EmitterPart> parts
     std::ranges::sort(parts_, {}, [](const EmitterPart& part) {
         return std::tuple(part.instance, part.primitive, part.first);
     });
-    for (const EmitterPart& part : parts_) {
+    for (EmitterPart& part : parts_) {
+        part.record = static_cast<std::uint32_t>(records.size());
         for (std::uint32_t i = 0; i < part.count; ++i) {
             records.push_back({part.geometry, i, gpu::kNoEmitter});
         }
@@ -297,52 +298,76 @@ Emitters::Emitters(const EmissionEntry& emission, std::vector<EmitterPart> parts
 
 std::vector<std::uint32_t> Emitters::firstsOf(std::size_t geometries) const {
     std::vector<std::uint32_t> firsts(geometries, gpu::kNoEmitter);
-    std::uint32_t next = 0;
     for (const EmitterPart& part : parts_) {
-        firsts[part.geometry] = next;
-        next += part.count;
+        firsts[part.geometry] = part.record;
     }
     return firsts;
 }
 
-std::vector<EmitterBounds> Emitters::boundsAt(std::span<const InstanceView> instances) const {
+namespace {
+
+// Calls visit(record, bounds) for the triangles of a part.
+template <typename Visit>
+void forEachBounds(const EmitterPart& part, const InstancePoses& poses, const Visit& visit) {
+    const InstanceView instance = poses(part.instance);
+    const std::array<float, 12>& rows = instance.objectToWorld;
+    const bool shown = instance.visible && isInvertible(rows);
+    const bool mirrored = (makeInstanceRecord(rows).flags & gpu::kInstanceMirrored) != 0;
+    const Box box = part.motion != nullptr ? part.motion->at(instance) : Box::nothing();
+    for (std::uint32_t triangle = 0; triangle < part.count; ++triangle) {
+        const std::size_t i = std::size_t{part.first} + triangle;
+        std::array<glm::dvec3, 3> corners{};
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            corners[corner] = pointAt(rows, part.shape->positions[part.shape->indices[3 * i + corner]]);
+        }
+        const double texels = part.texels != nullptr ? (*part.texels)[i] : 1.0;
+        EmitterBounds bounds =
+            boundsOf(corners, part.twoSided, mirrored, shown ? part.luminance * texels : 0.0);
+        if (part.motion != nullptr) {
+            // Only the device knows where in the box the triangle is, and where it faces.
+            bounds.lower = box.min;
+            bounds.upper = box.max;
+            bounds.normal = {};
+        }
+        visit(part.record + triangle, bounds);
+    }
+}
+
+}  // namespace
+
+std::vector<EmitterBounds> Emitters::boundsAt(const InstancePoses& poses) const {
     std::vector<EmitterBounds> all;
     all.reserve(records.size());
     for (const EmitterPart& part : parts_) {
-        const InstanceView& instance = instances[part.instance];
-        const std::array<float, 12>& rows = instance.objectToWorld;
-        const bool shown = instance.visible && isInvertible(rows);
-        const bool mirrored = (makeInstanceRecord(rows).flags & gpu::kInstanceMirrored) != 0;
-        const Box box = part.motion != nullptr ? part.motion->at(instance) : Box::nothing();
-        for (std::size_t i = part.first; i < std::size_t{part.first} + part.count; ++i) {
-            std::array<glm::dvec3, 3> corners{};
-            for (std::size_t corner = 0; corner < 3; ++corner) {
-                corners[corner] = pointAt(rows, part.shape->positions[part.shape->indices[3 * i + corner]]);
-            }
-            const double texels = part.texels != nullptr ? (*part.texels)[i] : 1.0;
-            const double luminance = shown ? part.luminance * texels : 0.0;
-            all.push_back(boundsOf(corners, part.twoSided, mirrored, luminance));
-            if (part.motion != nullptr) {
-                // Only the device knows where in the box the triangle is, and where it faces.
-                all.back().lower = box.min;
-                all.back().upper = box.max;
-                all.back().normal = {};
-            }
-        }
+        forEachBounds(part, poses,
+                      [&](std::uint32_t /*record*/, const EmitterBounds& bounds) { all.push_back(bounds); });
     }
     return all;
 }
 
-bool Emitters::takeMaterials(std::span<const ChangingMaterial> changing) {
-    bool changes = false;
-    for (EmitterPart& part : parts_) {
-        const auto found = std::ranges::lower_bound(changing, part.material, {}, &ChangingMaterial::material);
-        if (found != changing.end() && found->material == part.material) {
-            const double before = std::exchange(part.luminance, emittedLuminance(found->record, emission_));
-            changes = changes || before != part.luminance;
+std::vector<std::pair<std::uint32_t, EmitterBounds>> Emitters::boundsOf(
+    std::span<const std::uint32_t> instances, const InstancePoses& poses) const {
+    std::vector<std::pair<std::uint32_t, EmitterBounds>> some;
+    for (const std::uint32_t instance : instances) {
+        for (auto part = std::ranges::lower_bound(parts_, instance, {}, &EmitterPart::instance);
+             part != parts_.end() && part->instance == instance; ++part) {
+            forEachBounds(*part, poses, [&](std::uint32_t record, const EmitterBounds& bounds) {
+                some.emplace_back(record, bounds);
+            });
         }
     }
-    return changes;
+    return some;
+}
+
+std::vector<std::uint32_t> Emitters::takeMaterial(const ChangingMaterial& material) {
+    const double luminance = emittedLuminance(material.record, emission_);
+    std::vector<std::uint32_t> instances;
+    for (EmitterPart& part : parts_) {
+        if (part.material == material.material && std::exchange(part.luminance, luminance) != luminance) {
+            instances.push_back(part.instance);
+        }
+    }
+    return instances;
 }
 
 void Emitters::setLeaves(const LightTree& tree, std::span<const EmitterBounds> bounds) {
@@ -356,17 +381,6 @@ void Emitters::setLeaves(const LightTree& tree, std::span<const EmitterBounds> b
             records[emitter].leaf = bounds[emitter].intensity > 0.0 ? node : gpu::kNoEmitter;
         }
     }
-}
-
-void followLights(std::span<const gpu::LightRecord> lights, std::span<const InstanceView> instances,
-                  TreeChange change, Emitters& emitters, LightTree& tree) {
-    const std::vector<EmitterBounds> bounds = emitters.boundsAt(instances);
-    if (change == TreeChange::Refit) {
-        refitLightTree(tree, lights, bounds);
-    } else {
-        tree = buildLightTree(lights, bounds, change == TreeChange::BuildWithDark);
-    }
-    emitters.setLeaves(tree, bounds);
 }
 
 }  // namespace glint

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -108,11 +109,12 @@ private:
 // Triangles of one geometry record.
 struct EmitterPart {
     std::uint32_t geometry = 0;   // GeometryRecord index
-    std::uint32_t instance = 0;   // index into the instances of Emitters::boundsAt()
+    std::uint32_t instance = 0;   // its number, by which InstancePoses knows it
     std::uint32_t primitive = 0;  // of the mesh
     std::uint32_t material = 0;
     std::uint32_t first = 0;  // triangle of the shape
     std::uint32_t count = 0;
+    std::uint32_t record = 0;  // the first one in Emitters::records, which sets it
     bool twoSided = false;
     double luminance = 0.0;  // of the material, without its texture; cd/m²
     std::shared_ptr<const EmitterShape> shape;
@@ -123,6 +125,9 @@ struct EmitterPart {
 // Returns the luminance of the emission in a material's record, in linear Rec. 709, as in
 // bsdf/constants.glsl.
 double emittedLuminance(std::span<const std::uint8_t> record, const package::EmissionEntry& emission);
+
+// Returns the pose of an instance by its number.
+using InstancePoses = std::function<InstanceView(std::uint32_t)>;
 
 class Emitters {
 public:
@@ -139,10 +144,13 @@ public:
     std::vector<std::uint32_t> firstsOf(std::size_t geometries) const;
     // Returns the bounds of each at a pose. Triangles of instances that change their shape have the
     // instance's box. Hidden ones are dark.
-    std::vector<EmitterBounds> boundsAt(std::span<const InstanceView> instances) const;
-    // Takes the values of materials that have changed. They are sorted by their numbers. Returns whether a
-    // triangle got darker or brighter.
-    bool takeMaterials(std::span<const ChangingMaterial> changing);
+    std::vector<EmitterBounds> boundsAt(const InstancePoses& poses) const;
+    // The same for the triangles of some instances, with the numbers of their records.
+    std::vector<std::pair<std::uint32_t, EmitterBounds>> boundsOf(std::span<const std::uint32_t> instances,
+                                                                  const InstancePoses& poses) const;
+    // Takes the values of a material that has changed. Returns the instances with triangles that got darker
+    // or brighter.
+    std::vector<std::uint32_t> takeMaterial(const ChangingMaterial& material);
     // Stores where the tree has each triangle that shines.
     void setLeaves(const LightTree& tree, std::span<const EmitterBounds> bounds);
 
@@ -150,14 +158,5 @@ private:
     package::EmissionEntry emission_{};
     std::vector<EmitterPart> parts_;  // in the order of `records`
 };
-
-// How a hierarchy of lights follows them: it gets new bounds, or it is built anew. A new one may have leaves
-// for triangles that are dark and may shine later.
-enum class TreeChange { Refit, Build, BuildWithDark };
-
-// Brings the hierarchy, and the places of the triangles in it, to the lights and triangles as they are now.
-// TreeChange::Refit needs the triangles, and the types of the lights, of the last build.
-void followLights(std::span<const gpu::LightRecord> lights, std::span<const InstanceView> instances,
-                  TreeChange change, Emitters& emitters, LightTree& tree);
 
 }  // namespace glint

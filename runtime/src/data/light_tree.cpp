@@ -5,13 +5,13 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/gtc/type_ptr.hpp>
-#include <glm/vec3.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <numbers>
+#include <set>
 #include <utility>
 
 namespace glint {
@@ -32,32 +32,8 @@ Double3 doublesOf(const gpu::vec3& v) {
     return {v.x, v.y, v.z};
 }
 
-// Directions within an angle of an axis.
-struct Cone {
-    Double3 axis{0.0, 0.0, 1.0};
-    double angle = kLightPi;
-};
-
-// The properties that the cost of a set of lights depends on.
-struct LightExtent {
-    Double3 lower{};
-    Double3 upper{};
-    Cone axes;               // holds the axes of all
-    double emission = 0.0;   // the most angle between a light's axis and a direction in which it shines
-    double intensity = 0.0;  // sum, candela
-    bool isEmpty = true;
-};
-
-// The properties of a set of lights.
-struct LightBounds : LightExtent {
-    Double3 mean{};         // of the positions, weighted by intensity
-    Double3 variance{};     // of the positions, by axis
-    double reach = 0.0;     // metres; infinite if a light has no range
-    bool twoSided = false;  // a light shines along its axis and against it
-};
-
 // Returns a cone that holds both: pbrt-v4, "Direction Cone" (DirectionCone::Union).
-Cone unite(const Cone& a, const Cone& b) {
+LightCone unite(const LightCone& a, const LightCone& b) {
     if (a.angle < b.angle) {
         return unite(b, a);
     }
@@ -373,18 +349,58 @@ LightTree buildLightTree(std::span<const gpu::LightRecord> lights, std::span<con
 
 void refitLightTree(LightTree& tree, std::span<const gpu::LightRecord> lights,
                     std::span<const EmitterBounds> emitters) {
-    const auto boundsOfLeaf = [&](std::uint32_t number) {
-        return (number & gpu::kLightEmitter) != 0 ? boundsOfEmitter(emitters[number & ~gpu::kLightEmitter])
-                                                  : boundsOfLight(lights[number]);
-    };
-    std::vector<LightBounds> bounds(tree.treeNodes);
+    constexpr std::uint32_t kNoLeaf = LightTree::Refits::kNoLeaf;
+    LightTree::Refits refits{std::vector<LightBounds>(tree.treeNodes),
+                             std::vector<std::uint32_t>(tree.treeNodes),
+                             std::vector<std::uint32_t>(lights.size(), kNoLeaf),
+                             std::vector<std::uint32_t>(emitters.size(), kNoLeaf)};
     // Children come after their parent.
     for (std::uint32_t i = tree.treeNodes; i-- > 0;) {
         const std::uint32_t next = tree.nodes[i].next;
-        const bool leaf = (next & gpu::kLightLeaf) != 0;
-        bounds[i] = leaf ? boundsOfLeaf(next & ~gpu::kLightLeaf) : unite(bounds[i + 1], bounds[next]);
-        tree.nodes[i] = makeLightNode(bounds[i], next);
+        const std::uint32_t number = next & ~(gpu::kLightLeaf | gpu::kLightEmitter);
+        if ((next & gpu::kLightLeaf) == 0) {
+            refits.parents[i + 1] = refits.parents[next] = i;
+            refits.bounds[i] = unite(refits.bounds[i + 1], refits.bounds[next]);
+        } else if ((next & gpu::kLightEmitter) != 0) {
+            refits.emitterLeaves[number] = i;
+            refits.bounds[i] = boundsOfEmitter(emitters[number]);
+        } else {
+            refits.lightLeaves[number] = i;
+            refits.bounds[i] = boundsOfLight(lights[number]);
+        }
+        tree.nodes[i] = makeLightNode(refits.bounds[i], next);
     }
+    tree.refits = std::move(refits);
+}
+
+std::vector<std::uint32_t> refitLightTree(LightTree& tree,
+                                          std::span<const std::pair<std::uint32_t, gpu::LightRecord>> lights,
+                                          std::span<const std::pair<std::uint32_t, EmitterBounds>> emitters) {
+    LightTree::Refits& refits = *tree.refits;
+    std::set<std::uint32_t, std::greater<>> changed;  // children before their parent
+    const auto change = [&](std::uint32_t leaf, const LightBounds& bounds) {
+        refits.bounds[leaf] = bounds;
+        for (std::uint32_t node = leaf; changed.insert(node).second; node = refits.parents[node]) {
+        }
+    };
+    for (const auto& [number, light] : lights) {
+        if (const std::uint32_t leaf = refits.lightLeaves[number]; leaf != LightTree::Refits::kNoLeaf) {
+            change(leaf, boundsOfLight(light));
+        }
+    }
+    for (const auto& [number, emitter] : emitters) {
+        if (const std::uint32_t leaf = refits.emitterLeaves[number]; leaf != LightTree::Refits::kNoLeaf) {
+            change(leaf, boundsOfEmitter(emitter));
+        }
+    }
+    for (const std::uint32_t node : changed) {
+        const std::uint32_t next = tree.nodes[node].next;
+        if ((next & gpu::kLightLeaf) == 0) {
+            refits.bounds[node] = unite(refits.bounds[node + 1], refits.bounds[next]);
+        }
+        tree.nodes[node] = makeLightNode(refits.bounds[node], next);
+    }
+    return {changed.begin(), changed.end()};
 }
 
 }  // namespace glint

@@ -10,17 +10,31 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <vector>
 
 namespace glint {
+
+// Lights and instances, by number, that have changed since the hierarchy of lights last followed them: other
+// places, other brightness. A number may be there twice.
+struct LightMoves {
+    std::vector<std::uint32_t> lights;
+    std::vector<std::uint32_t> instances;
+
+    bool isEmpty() const {
+        return lights.empty() && instances.empty();
+    }
+};
 
 struct SceneRecords {
     explicit SceneRecords(std::size_t materialBytes) : materials(materialBytes) {}
 
-    // Brings the hierarchy of lights and the emissive triangles to these lights, and to the poses of the
-    // instances that the triangles name.
-    void followLights(std::span<const gpu::LightRecord> records, std::span<const InstanceView> poses,
-                      TreeChange change);
+    // Builds the hierarchy of `lights` and emissive triangles, at these poses of the instances that the
+    // triangles name. With `keepsDark` it has leaves for triangles that are dark and may shine later.
+    void buildLights(const InstancePoses& poses, bool keepsDark);
+    // Gives the hierarchy the bounds of lights and triangles that have moved. Requires the triangles, and the
+    // types of the lights, of the last build. Few moves take O(k log n) time, but for the first after a
+    // build.
+    void refitLights(const LightMoves& moves, const InstancePoses& poses);
     // Notes how many lights there are, when their records have been recorded.
     void countLights();
     // Sets the addresses of the records, and the numbers that countLights() has noted.

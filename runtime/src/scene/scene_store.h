@@ -193,6 +193,11 @@ struct StoredInstance {
     }
 };
 
+struct EmissiveInstance {
+    InstanceHandle handle;
+    std::uint32_t number = 0;  // EmitterPart::instance, of those that were lights at the last recording
+};
+
 struct QueuedBuild {
     BlasBuild build;
     PartPlace place;
@@ -251,7 +256,9 @@ struct SceneStore : SceneRecords {
     std::uint64_t shapeVersion = 0;  // changes when geometry records do, if some instance has its own shape
 
     // Instances with a material that is a light, by generation: in the order in which they were added.
-    std::map<std::uint32_t, InstanceHandle> emissiveInstances;
+    std::map<std::uint32_t, EmissiveInstance> emissiveInstances;
+    std::vector<InstanceHandle> numberedEmitters;  // by EmissiveInstance::number
+    bool keepsDark = false;  // the hierarchy of lights has leaves for triangles that are hidden or dark
     std::set<std::uint32_t> emissiveMaterials;  // of those that were shown at the last recording
     EmitterMeans emitterMeans;
     // Returns the texels of a texture of a sealed scene by its number. It exists during the upload.
@@ -269,9 +276,8 @@ struct SceneStore : SceneRecords {
     std::set<std::uint32_t> decidedMaterials;
     bool drawsDirty = false;
     bool lightsDirty = true;     // other lights
-    bool lightsMoved = false;    // the same lights with other values
+    LightMoves lightMoves;       // the same lights and emissive triangles with other values
     bool emittersDirty = false;  // other emissive triangles
-    bool emittersMoved = false;  // the same at other places, or brighter
     bool setDirty = true;
     bool trims = false;
 

@@ -10,11 +10,59 @@
 
 namespace glint {
 
-void SceneRecords::followLights(std::span<const gpu::LightRecord> records,
-                                std::span<const InstanceView> poses, TreeChange change) {
-    glint::followLights(records, poses, change, emitters, lightTree);
-    lightNodes.replace(lightTree.nodes);
-    emitterRecords.replace(emitters.records);
+namespace {
+
+std::vector<gpu::LightRecord> lightsOf(const RecordStore& lights) {
+    std::vector<gpu::LightRecord> records;
+    for (std::uint32_t i = 0; i < lights.count(); ++i) {
+        records.push_back(lights.read<gpu::LightRecord>(i));
+    }
+    return records;
+}
+
+// Brings the records to the hierarchy.
+void takeTree(SceneRecords& records, std::span<const EmitterBounds> bounds) {
+    records.emitters.setLeaves(records.lightTree, bounds);
+    records.lightNodes.replace(records.lightTree.nodes);
+    records.emitterRecords.replace(records.emitters.records);
+}
+
+}  // namespace
+
+void SceneRecords::buildLights(const InstancePoses& poses, bool keepsDark) {
+    const std::vector<EmitterBounds> bounds = emitters.boundsAt(poses);
+    lightTree = buildLightTree(lightsOf(lights), bounds, keepsDark);
+    takeTree(*this, bounds);
+}
+
+void SceneRecords::refitLights(const LightMoves& moves, const InstancePoses& poses) {
+    std::vector<std::pair<std::uint32_t, EmitterBounds>> triangles;
+    if (lightTree.refits) {
+        triangles = emitters.boundsOf(moves.instances, poses);
+    }
+    // A refit of all nodes does less for each of them.
+    const bool isFew = 8 * (triangles.size() + moves.lights.size()) < lightTree.nodes.size();
+    if (!lightTree.refits || !isFew) {
+        const std::vector<EmitterBounds> bounds = emitters.boundsAt(poses);
+        refitLightTree(lightTree, lightsOf(lights), bounds);
+        takeTree(*this, bounds);
+        return;
+    }
+    std::vector<std::pair<std::uint32_t, gpu::LightRecord>> moved;
+    for (const std::uint32_t light : moves.lights) {
+        moved.emplace_back(light, lights.read<gpu::LightRecord>(light));
+    }
+    for (const std::uint32_t node : refitLightTree(lightTree, moved, triangles)) {
+        lightNodes.write(node, lightTree.nodes[node]);
+    }
+    for (const auto& [triangle, bounds] : triangles) {
+        gpu::EmitterRecord& record = emitters.records[triangle];
+        const std::uint32_t leaf =
+            bounds.intensity > 0.0 ? lightTree.refits->emitterLeaves[triangle] : gpu::kNoEmitter;
+        if (std::exchange(record.leaf, leaf) != leaf) {
+            emitterRecords.write(triangle, record);
+        }
+    }
 }
 
 void SceneRecords::countLights() {
@@ -115,24 +163,27 @@ void addParts(SceneStore& store, const StoredInstance& instance, std::uint32_t n
         });
 }
 
-// Calls visit(instance) for the instances that are lights. Those that are hidden are left out, unless they
-// may be shown without other changes.
+// Calls visit(instance, entry) for the instances that are lights. Those that are hidden are left out, unless
+// they may be shown without other changes.
 template <typename Visit>
-void forEachEmissive(const SceneStore& store, const Visit& visit) {
-    for (const auto& [generation, handle] : store.emissiveInstances) {
-        const StoredInstance& instance = *store.instanceSlots.find(handle);
-        if (store.moves || instance.isShown()) {
-            visit(instance);
+void forEachEmissive(SceneStore& store, const Visit& visit) {
+    for (auto& [generation, emissive] : store.emissiveInstances) {
+        const StoredInstance& instance = *store.instanceSlots.find(emissive.handle);
+        if (store.keepsDark || instance.isShown()) {
+            visit(instance, emissive);
         }
     }
 }
 
 void gatherEmitters(SceneStore& store) {
     std::vector<EmitterPart> parts;
-    std::uint32_t number = 0;
     store.emissiveMaterials.clear();
-    forEachEmissive(store,
-                    [&](const StoredInstance& instance) { addParts(store, instance, number++, parts); });
+    store.numberedEmitters.clear();
+    forEachEmissive(store, [&](const StoredInstance& instance, EmissiveInstance& emissive) {
+        emissive.number = static_cast<std::uint32_t>(store.numberedEmitters.size());
+        store.numberedEmitters.push_back(emissive.handle);
+        addParts(store, instance, emissive.number, parts);
+    });
     store.emitterMeans.forgetUnused();
     store.emitters = Emitters(*store.emission, std::move(parts));
     store.firstEmitters.replace(store.emitters.firstsOf(store.geometries.count()));
@@ -169,9 +220,11 @@ LightHandle addLight(SceneStore& store, const LightView& light) {
 
 void setLight(SceneStore& store, LightHandle handle, const LightView& light) {
     LightView& entry = store.lightSlots.at(handle.index);
-    (entry.type == light.type ? store.lightsMoved : store.lightsDirty) = true;
+    const std::uint32_t place = placeOfLight(store, handle);
+    store.lightsDirty = store.lightsDirty || entry.type != light.type;
+    store.lightMoves.lights.push_back(place);
     entry = light;
-    store.lights.write(placeOfLight(store, handle), makeLightRecord(light));
+    store.lights.write(place, makeLightRecord(light));
 }
 
 void removeLight(SceneStore& store, LightHandle handle) {
@@ -192,7 +245,7 @@ void noteEmitters(SceneStore& store, InstanceHandle handle, const StoredInstance
     const bool was = store.emissiveInstances.contains(handle.generation);
     const bool is = emitsLight(store, instance);
     if (is) {
-        store.emissiveInstances[handle.generation] = handle;
+        store.emissiveInstances[handle.generation].handle = handle;
     } else if (was) {
         store.emissiveInstances.erase(handle.generation);
     }
@@ -209,9 +262,9 @@ void moveEmitters(SceneStore& store, InstanceHandle handle, bool changes, bool r
     if (found == store.emissiveInstances.end()) {
         return;
     }
-    store.emittersMoved = true;
-    // Hidden triangles of a scene that moves stay lights, which are dark.
-    store.emittersDirty = store.emittersDirty || removed || (changes && !store.moves);
+    // Hidden triangles stay lights, which are dark.
+    store.lightMoves.instances.push_back(found->second.number);
+    store.emittersDirty = store.emittersDirty || removed || (changes && !store.keepsDark);
     if (removed) {
         store.emissiveInstances.erase(found);
     }
@@ -233,11 +286,13 @@ void replaceEmission(SceneStore& store, const StoredTexture& texture) {
 void forgetEmitters(SceneStore& store) {
     store.emissiveInstances.clear();
     store.emissiveMaterials.clear();
+    store.numberedEmitters.clear();
     store.emitterMeans = {};
     store.emitters = {};
     store.emitterRecords.shrink(0);
     store.firstEmitters.shrink(0);
-    store.emittersDirty = store.emittersMoved = false;
+    store.emittersDirty = false;
+    store.lightMoves.instances.clear();
     store.lightsDirty = true;
 }
 
@@ -250,26 +305,26 @@ std::vector<std::uint8_t> alphaOf(const SceneStore& store, std::span<const std::
     return alphaInputs(*store.cases->package().opacity(), tableWith(store.scene.materialLayout, record), any);
 }
 
+bool sameRecord(const gpu::TextureRecord& a, const gpu::TextureRecord& b) {
+    return std::ranges::equal(std::as_bytes(std::span(&a, 1)), std::as_bytes(std::span(&b, 1)));
+}
+
 }  // namespace
 
 void writeMaterial(SceneStore& store, std::uint32_t material, std::span<const std::uint8_t> record) {
     if (store.emissiveMaterials.contains(material)) {
         const std::span<const std::uint8_t> old = store.materials.at(material);
-        const bool brightens =
-            emittedLuminance(old, *store.emission) != emittedLuminance(record, *store.emission);
-        if (store.editable) {
-            bool changes = brightens;
-            if (hasEmissionTexture(store)) {
-                const gpu::TextureRecord before = emissionRecord(store, old);
-                const gpu::TextureRecord after = emissionRecord(store, record);
-                changes = changes || !std::ranges::equal(std::as_bytes(std::span(&before, 1)),
-                                                         std::as_bytes(std::span(&after, 1)));
-            }
-            store.emittersDirty = store.emittersDirty || changes;
-        } else if (brightens) {
-            const ChangingMaterial changed{material, {record.begin(), record.end()}};
-            store.emitters.takeMaterials(std::span(&changed, 1));
-            store.emittersMoved = true;
+        const double before = emittedLuminance(old, *store.emission);
+        const double after = emittedLuminance(record, *store.emission);
+        const bool showsOther = store.editable && hasEmissionTexture(store) &&
+                                !sameRecord(emissionRecord(store, old), emissionRecord(store, record));
+        if (showsOther || (before != after && !store.keepsDark && std::min(before, after) <= 0.0)) {
+            store.emittersDirty = true;
+        } else if (before != after) {
+            const std::vector<std::uint32_t> changed =
+                store.emitters.takeMaterial({material, {record.begin(), record.end()}});
+            store.lightMoves.instances.insert(store.lightMoves.instances.end(), changed.begin(),
+                                              changed.end());
         }
     }
     const bool forgets = store.decidedMaterials.contains(material) &&
@@ -281,24 +336,25 @@ void writeMaterial(SceneStore& store, std::uint32_t material, std::span<const st
 }
 
 void settleLights(SceneStore& store) {
-    if (store.emittersDirty) {
-        gatherEmitters(store);
-    }
-    const bool moved = store.lightsMoved || store.emittersMoved;
-    const bool restructured = store.lightsDirty || store.emittersDirty;
-    if (!moved && !restructured) {
+    const bool rebuilds = store.lightsDirty || store.emittersDirty || store.trims;
+    if (!rebuilds && store.lightMoves.isEmpty()) {
         return;
     }
-    std::vector<gpu::LightRecord> records;
-    for (std::uint32_t i = 0; i < store.lights.count(); ++i) {
-        records.push_back(store.lights.read<gpu::LightRecord>(i));
+    if (rebuilds) {
+        const bool keepsDark = store.moves || (store.editable && !store.trims);
+        const bool keptDark = std::exchange(store.keepsDark, keepsDark);
+        if (store.emission && (store.emittersDirty || keptDark != keepsDark)) {
+            gatherEmitters(store);
+        }
     }
-    std::vector<InstanceView> views;
-    forEachEmissive(store, [&](const StoredInstance& instance) { views.push_back(poseOf(store, instance)); });
-    const TreeChange change = !store.moves   ? TreeChange::Build
-                              : restructured ? TreeChange::BuildWithDark
-                                             : TreeChange::Refit;
-    store.followLights(records, views, change);
+    const InstancePoses poses = [&](std::uint32_t number) {
+        return poseOf(store, *store.instanceSlots.find(store.numberedEmitters[number]));
+    };
+    if (rebuilds) {
+        store.buildLights(poses, store.keepsDark);
+    } else {
+        store.refitLights(store.lightMoves, poses);
+    }
 }
 
 }  // namespace glint

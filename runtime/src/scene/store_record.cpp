@@ -32,7 +32,7 @@ constexpr std::size_t kPoseArray = 7;
 // Everything that a recording needs to allocate.
 struct Prepared {
     explicit Prepared(SceneStore& store)
-        : kept(store.scene.pool), brief(store.upload != nullptr ? store.upload->pool : store.scene.pool) {}
+        : kept(store.scene.pool), brief(store.upload != nullptr ? store.upload->pool : store.scene.brief) {}
 
     MemoryPool& kept;
     MemoryPool& brief;  // of resources that only this recording needs
@@ -356,9 +356,9 @@ private:
         store_.reshaped.clear();
         store_.reshapedMeshes.clear();
         store_.builds.clear();
-        for (bool* const flag :
-             {&store_.drawsDirty, &store_.lightsDirty, &store_.lightsMoved, &store_.emittersDirty,
-              &store_.emittersMoved, &store_.setDirty, &store_.trims, &store_.compacts}) {
+        store_.lightMoves = {};
+        for (bool* const flag : {&store_.drawsDirty, &store_.lightsDirty, &store_.emittersDirty,
+                                 &store_.setDirty, &store_.trims, &store_.compacts}) {
             *flag = false;
         }
     }

@@ -454,20 +454,38 @@ void gatherEmitters(EngineScene::State& state) {
     state.firstEmitters.replace(firsts);
 }
 
-// Brings the hierarchy of lights to their present places. `refits`: there are the same lights.
-void settleLights(EngineScene::State& state, bool refits) {
-    std::vector<InstanceView> instances(state.emitters.records.empty() ? 0 : state.placed.size());
-    for (std::size_t i = 0; i < instances.size(); ++i) {
-        instances[i].objectToWorld = state.placed[i];
-    }
-    state.followLights(makeLightRecords(state.lightViews), instances,
-                       refits ? TreeChange::Refit : TreeChange::BuildWithDark);
+InstancePoses posesOf(const EngineScene::State& state) {
+    return [&state](std::uint32_t instance) {
+        InstanceView pose;
+        pose.objectToWorld = state.placed[instance];
+        return pose;
+    };
 }
 
 // Brings triangles and lights to another content.
 void rebuildLights(EngineScene::State& state) {
     gatherEmitters(state);
-    settleLights(state, false);
+    state.buildLights(posesOf(state), true);
+}
+
+// The instances and lights that differ from those that were placed. Both have as many lights.
+LightMoves movesTo(const EngineScene::State& state, std::span<const Rows> instances,
+                   std::span<const LightView> lights) {
+    LightMoves moves;
+    const std::size_t count =
+        state.emitters.records.empty() ? 0 : std::min(instances.size(), state.placed.size());
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (instances[i] != state.placed[i]) {
+            moves.instances.push_back(i);
+        }
+    }
+    for (std::uint32_t i = 0; i < lights.size(); ++i) {
+        const gpu::LightRecord record = makeLightRecord(lights[i]);
+        if (!std::ranges::equal(std::as_bytes(std::span(&record, 1)), std::as_bytes(state.lights.at(i)))) {
+            moves.lights.push_back(i);
+        }
+    }
+    return moves;
 }
 
 // Places the instances and lights. Motion is measured from the transforms before; new instances are still.
@@ -554,9 +572,10 @@ void brightenLights(EngineScene::State& state, std::uint32_t index) {
         return;
     }
     const std::span<const std::uint8_t> record = materials.at(index);
-    const ChangingMaterial changed{index, {record.begin(), record.end()}};
-    if (state.emitters.takeMaterials(std::span(&changed, 1))) {
-        settleLights(state, true);
+    LightMoves moves;
+    moves.instances = state.emitters.takeMaterial({index, {record.begin(), record.end()}});
+    if (!moves.isEmpty()) {
+        state.refitLights(moves, posesOf(state));
     }
 }
 
@@ -605,7 +624,10 @@ Status setMaterial(EngineScene::State& state, std::uint32_t number, OwnMaterial 
 }  // namespace
 
 EngineScene::State::State(Context::State& contextState)
-    : DrawnScene(contextState), SceneRecords(sizeof(std::uint32_t)), pool(contextState, "engine scene") {}
+    : DrawnScene(contextState),
+      SceneRecords(sizeof(std::uint32_t)),
+      pool(contextState, "engine scene"),
+      brief(contextState, "engine scene", MemoryPool::Use::EachFrame) {}
 
 Status EngineScene::State::recordChanges(VkCommandBuffer commands, std::uint64_t frame,
                                          RetiredLot* leftovers) {
@@ -613,7 +635,7 @@ Status EngineScene::State::recordChanges(VkCommandBuffer commands, std::uint64_t
     for (RecordArray* const array : arrays) {
         now.push_back({*array, grownCapacity(array->count(), array->capacity), &pool});
     }
-    ArrayUpdate update(context, pool);
+    ArrayUpdate update(context, brief);
     GLINT_TRY_DO(update.prepareBuffers(now));
     GLINT_TRY_DO(update.prepareStaging(now));
     if (update.hasWork()) {
@@ -728,8 +750,13 @@ Status EngineScene::update(VkCommandBuffer commands, std::span<const std::array<
     }
     const bool refits =
         std::ranges::equal(state_->lightViews, lights, {}, &LightView::type, &LightView::type);
+    const LightMoves moves = refits ? movesTo(*state_, instances, lights) : LightMoves{};
     GLINT_TRY_DO(place(*state_, instances, lights, state_->host.knowsDisks, originMoved));
-    settleLights(*state_, refits);
+    if (!refits) {
+        state_->buildLights(posesOf(*state_), true);
+    } else if (!moves.isEmpty()) {
+        state_->refitLights(moves, posesOf(*state_));
+    }
     return state_->recordChanges(commands, frame);
 }
 GLINT_CATCH

@@ -52,6 +52,7 @@ struct EngineScene::State final : DrawnScene, SceneRecords {
                                      &lights,         &firstRecords, &primitiveMaterials, &lightNodes,
                                      &emitterRecords, &firstEmitters};
     MemoryPool pool;
+    MemoryPool brief;  // of staging memory
     Retired retired;
     std::uint64_t lastFrame = 0;
     EngineScene::View::RecordsBy recordsBy = EngineScene::View::RecordsBy::CustomIndex;

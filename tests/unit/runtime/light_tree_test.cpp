@@ -285,6 +285,37 @@ TEST(LightTree, EmittersAreLeavesUnlessTheyAreDark) {
     expectEmitterBounds(tree, moved);
 }
 
+// Lights far from each other in the tree have ancestors in common.
+TEST(LightTree, RefittingAFewGivesWhatRefittingAllGives) {
+    std::vector<gpu::LightRecord> lights = mixedLights(300, 4);
+    std::vector<EmitterBounds> emitters = someEmitters(500, 7);
+    LightTree tree = buildLightTree(lights, emitters, true);
+    refitLightTree(tree, lights, emitters);
+    const std::vector<gpu::LightRecord> otherLights = mixedLights(300, 5);
+    const std::vector<EmitterBounds> otherEmitters = someEmitters(500, 8);
+    for (const std::uint32_t step : {7U, 150U, 299U}) {
+        std::vector<std::pair<std::uint32_t, gpu::LightRecord>> movedLights;
+        std::vector<std::pair<std::uint32_t, EmitterBounds>> movedEmitters;
+        for (std::uint32_t i = 0; i < lights.size(); i += step) {
+            const std::uint32_t type = lights[i].type;
+            lights[i] = otherLights[i];
+            lights[i].type = type;
+            movedLights.emplace_back(i, lights[i]);
+            emitters[i] = otherEmitters[i];
+            movedEmitters.emplace_back(i, emitters[i]);
+        }
+        LightTree all = tree;
+        std::vector<gpu::LightNode> nodes = tree.nodes;
+        refitLightTree(all, lights, emitters);
+        for (const std::uint32_t node : refitLightTree(tree, movedLights, movedEmitters)) {
+            nodes[node] = tree.nodes[node];
+        }
+        const std::size_t bytes = nodes.size() * sizeof(gpu::LightNode);
+        EXPECT_EQ(std::memcmp(tree.nodes.data(), all.nodes.data(), bytes), 0) << step;
+        EXPECT_EQ(std::memcmp(nodes.data(), all.nodes.data(), bytes), 0) << "it names all that differ";
+    }
+}
+
 TEST(LightTree, AFewLightsAreApartFromEmitters) {
     const std::vector<EmitterBounds> emitters = someEmitters(4, 9);
     std::vector<gpu::LightRecord> lights(gpu::kMostLightsApart, point(1.0F, 2.0F, 3.0F));
