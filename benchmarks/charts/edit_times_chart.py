@@ -24,7 +24,7 @@ ROW = re.compile(r"\| (?P<edit>[^|]+) \| (?P<median>[\d.]+) \| (?P<least>[\d.]+)
 def measure(program):
     results = []
     for count in COUNTS:
-        command = [program, "--lamps", "0", "--objects", str(count), "--rounds", "21", "--triangles", "2"]
+        command = [program, "--lamps", "0", "--objects", str(count), "--rounds", "41", "--triangles", "2"]
         text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
         for row in ROW.finditer(text):
             times = {name: float(row[name]) for name in ("median", "least", "most")}
