@@ -405,8 +405,8 @@ LinearImage EditedScene::fresh() const {
 }
 
 void EditedScene::expectSameAsFresh(const std::string& what) {
-    if (package().lightSamples() > 0) {
-        editor().trim();  // else it has another hierarchy of lights, and other noise
+    if (package().lightSamples() > 0 || package().emission() != nullptr) {
+        editor().trim();  // else it has another hierarchy of lights, and dark ones, and so other noise
     }
     const LinearImage edited = picture();
     const LinearImage reference = fresh();

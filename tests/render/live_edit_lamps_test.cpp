@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -167,6 +168,71 @@ TEST_F(LiveEditLamps, AnotherTextureIsBrightElsewhere) {
     ASSERT_TRUE(editor().replaceTexture(texture.handle, texture.view()));
     edited().expectSameAsFresh("as before");
     EXPECT_EQ(lamps_->shining(), lit);
+}
+
+std::vector<std::uint8_t> bytesOf(const std::vector<gpu::LightNode>& nodes) {
+    const auto* const first = reinterpret_cast<const std::uint8_t*>(nodes.data());
+    return {first, first + nodes.size() * sizeof nodes[0]};
+}
+
+// Compares the hierarchy and the records with those of a refit of all lights.
+void expectRefitted(const SceneStore& store, const std::string& what) {
+    ASSERT_TRUE(store.lightTree.refits) << what << ": the hierarchy was built anew";
+    std::vector<gpu::LightRecord> lights;
+    for (std::uint32_t i = 0; i < store.lights.count(); ++i) {
+        lights.push_back(store.lights.read<gpu::LightRecord>(i));
+    }
+    const std::vector<EmitterBounds> bounds = store.emitters.boundsAt([&](std::uint32_t number) {
+        return poseOf(store, *store.instanceSlots.find(store.numberedEmitters[number]));
+    });
+    LightTree all = store.lightTree;
+    refitLightTree(all, lights, bounds);
+    EXPECT_EQ(bytesOf(store.lightTree.nodes), bytesOf(all.nodes)) << what;
+    const std::span<const std::uint8_t> records = store.lightNodes.at({0, store.lightNodes.count()});
+    EXPECT_EQ(std::vector<std::uint8_t>(records.begin(), records.end()), bytesOf(all.nodes)) << what;
+    for (std::uint32_t i = 0; i < bounds.size(); ++i) {
+        const std::uint32_t leaf = bounds[i].intensity > 0.0 ? all.refits->emitterLeaves[i] : gpu::kNoEmitter;
+        EXPECT_EQ(store.emitterRecords.read<gpu::EmitterRecord>(i).leaf, leaf) << what << ", triangle " << i;
+    }
+}
+
+// One of ten lamps is few enough not to visit the others.
+TEST_F(LiveEditLamps, LampsChangeTheirPartOfTheHierarchy) {
+    for (int i = 0; i < 10; ++i) {
+        lamps_->addLamp();
+    }
+    const SceneStore& store = *edited().gpuScene().state().store;
+    const auto expectAfter = [&](const char* what, const Status& status) {
+        EXPECT_TRUE(status) << what;
+        edited().frame();
+        expectRefitted(store, what);
+    };
+    edited().frame();
+    const MaterialHandle paint = edited().materials[1].handle;
+    EditedScene::Instance& lamp = edited().instances.back();
+    expectAfter("all are visited at first", editor().moveInstance(lamp.handle, kAside));
+    lamp.objectToWorld = kAside;
+    expectAfter("moved back", editor().moveInstance(lamp.handle, kAbove));
+    lamp.objectToWorld = kAbove;
+    expectAfter("hidden", editor().showInstance(lamp.handle, false));
+    expectAfter("moved while it is hidden", editor().moveInstance(lamp.handle, kAside));
+    lamp.objectToWorld = kAside;
+    expectAfter("shown", editor().showInstance(lamp.handle, true));
+    edited().scene.materials[1]["emissiveFactor"] = {7.0F, 6.0F, 5.0F};
+    expectAfter("brighter", editor().setMaterialValues(paint, edited().source(1).record));
+    edited().scene.materials[1]["emissiveFactor"] = {0.0F, 0.0F, 0.0F};
+    expectAfter("dark", editor().setMaterialValues(paint, edited().source(1).record));
+    edited().scene.materials[1]["emissiveFactor"] = {4.0F, 3.0F, 2.0F};
+    expectAfter("as before", editor().setMaterialValues(paint, edited().source(1).record));
+    EditedScene::Light& light = edited().lights.front();
+    light.view.intensity = {0.5F, 0.4F, 0.3F};
+    expectAfter("a light apart", editor().setLight(light.handle, light.view));
+    edited().expectSameAsFresh("trimmed");
+    EXPECT_FALSE(store.lightTree.refits);
+    while (edited().instances.size() > 2) {
+        lamps_->removeLamp();
+    }
+    edited().expectSameAsFresh("removed");
 }
 
 // An edit that concerns no light leaves the hierarchy alone.
