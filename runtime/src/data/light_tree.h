@@ -47,7 +47,7 @@ struct LightTree {
     std::uint32_t treeNodes = 0;  // 0, or 2 n - 1 for n lights with bounds
     std::uint32_t apart = 0;
 
-    // What a refit for a few lights starts from. A refit for all makes it.
+    // The start of a refit for a few lights. A refit for all lights makes it.
     struct Refits {
         static constexpr std::uint32_t kNoLeaf = ~0U;
         std::vector<LightBounds> bounds;           // by node
