@@ -256,7 +256,8 @@ void MemoryBlocks::release(const Allocation& place, const Range& range) {
     }
     const auto spare = std::ranges::find_if(all, [&](const Block& other) {
         return &other != &*block && other.isEmpty() && other.tiling == block->tiling &&
-               other.memory.range().type == block->memory.range().type;
+               other.memory.range().type == block->memory.range().type &&
+               (other.mapped == nullptr) == (block->mapped == nullptr);
     });
     if (!keepsSpare || block->isOfHost || block->bytes > kSpareBytes) {
         all.erase(block);

@@ -50,7 +50,7 @@ struct SceneRecords {
     // The triangles that are lights, in packages with emissive lights. In a scene that neither moves nor is
     // edited they are on the device alone.
     Emitters emitters;
-    LightTree lightTree;
+    LightTree lightTree;  // whose nodes are there alone, too
     struct Counts {
         std::uint32_t lights = 0;
         std::uint32_t emitters = 0;

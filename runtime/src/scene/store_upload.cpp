@@ -364,6 +364,7 @@ private:
         store_.texelsOf = nullptr;
         if (!store_.keeps()) {
             store_.emitters = {};
+            store_.lightTree.nodes = {};
             store_.emitterMeans = {};
             store_.meshes.forEach([&](MeshHandle /*handle*/, StoredMesh& mesh) {
                 for (StoredPrimitive& primitive : mesh.primitives) {

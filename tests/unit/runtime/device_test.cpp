@@ -84,6 +84,16 @@ TEST_F(ContextTest, MemoryOfEachFrameStaysUnlessItIsLarge) {
     EXPECT_EQ(bytesAfter(VkDeviceSize{5} << 20U), larger);
 }
 
+// Where all memory has one type, too.
+TEST_F(ContextTest, ScratchAndStagingMemoryOfEachFrameStay) {
+    Context::State& state = context().state();
+    MemoryPool pool(state, "scene", MemoryPool::Use::EachFrame);
+    must(createBuffer(state, pool, 256, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT));
+    const VkDeviceSize scratch = pool.bytes();
+    must(createBuffer(state, pool, 256, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, MemoryUse::Upload));
+    EXPECT_GT(pool.bytes(), scratch);
+}
+
 // Each pipeline of a renderer is made with these functions in the place of the device's.
 struct SeenPipelines {
     DeviceTable real;
